@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// Derivatives of a number that depends on a simulated trajectory, with respect to everything in the Model that moves it. The adjoint
+/// never sees a design parameter: design/ chains these with its own Jacobians.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::adjoint {
+
+/// dJ/d(configurations): what an objective hands in. Explicit dependence on the model is added by whoever computes it.
+struct TrajectoryGradient {
+    /// [t][body], t = 0 .. steps: derivative with respect to the pose matrix P = [R q], entry by entry (3x4).
+    std::vector<std::vector<Matrix34>> pose_bar;
+};
+TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
+
+/// dJ/d(body data).
+struct BodyGradient {
+    Matrix3X vertices_bar;                        ///< 3 x n, vertices in the body's frame (relative to c, which is constant)
+    Matrix34 pose_start_bar = Matrix34::Zero();   ///< start pose of the reference point's frame, [R q]
+    Matrix34 velocity_start_bar = Matrix34::Zero();
+    double density_bar = 0;
+    Vector3 force_bar = Vector3::Zero();
+    std::vector<Vector6> increment_bar;           ///< [step]: prescribed coordinates' increments over each step (chart coordinates)
+};
+
+struct ModelGradient {
+    std::vector<BodyGradient> bodies;
+    Vector3 gravity_bar = Vector3::Zero();
+};
+ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
+
+/// The same quantities as a direction to differentiate along (forward mode).
+struct BodyTangent {
+    Matrix3X vertices_dot;
+    Vector6 pose_start_dot = Vector6::Zero();     ///< position, then left rotation: dR = [phi] R
+    Matrix34 velocity_start_dot = Matrix34::Zero();
+    double density_dot = 0;
+    Vector3 force_dot = Vector3::Zero();
+    std::vector<Vector6> increment_dot;           ///< [step]
+};
+struct ModelTangent {
+    std::vector<BodyTangent> bodies;
+    Vector3 gravity_dot = Vector3::Zero();
+};
+ModelTangent zero_model_tangent(const core::model::Model& model, int steps);
+
+}  // namespace fettle::adjoint

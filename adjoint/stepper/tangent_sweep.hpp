@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// Forward (tangent) mode of a whole simulation: exact, one linear solve per step and direction; the adjoint's check.
+#pragma once
+
+#include <vector>
+
+#include "fettle/adjoint/model_gradient.hpp"
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::adjoint {
+
+/// @return [t][body]: (position, left rotation) tangent of each pose, t = 0 .. steps.
+Result<std::vector<std::vector<Vector6>>> tangent_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                                        const ModelTangent& direction);
+
+}  // namespace fettle::adjoint

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// Bounding volume hierarchy of one body, built once in the body's own frame and moved with it.
+/// Leaves hold elements: triangles, then codimensional edges, then codimensional points. Each vertex and each edge is owned by exactly one
+/// element that contains it, so that visiting pairs of elements visits each pair of primitives once.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::core::contact {
+
+struct HierarchyNode {
+    Vector3 center = Vector3::Zero();       ///< of the axis-aligned box in the body's frame
+    Vector3 half_extent = Vector3::Zero();  ///< rounded outwards: the box contains its elements exactly
+    double radius = 0;                      ///< upper bound of |X| over the node's points: speed <= |dq| + |w| radius
+    int left = -1, right = -1;              ///< children; -1 for a leaf
+    int first = 0, count = 0;               ///< range in `elements()` (of the whole subtree)
+    bool is_leaf() const { return left < 0; }
+};
+
+/// What an element owns. `vertices` of triangle elements are its three corners; edges have two, points one.
+struct HierarchyElement {
+    int triangle = -1;                      ///< -1: a codimensional edge or point
+    int vertex_count = 0;
+    std::array<int, 3> vertices{-1, -1, -1};
+    int owned_vertex_count = 0, owned_edge_count = 0;
+    std::array<int, 3> owned_vertices{-1, -1, -1};
+    std::array<int, 3> owned_edges{-1, -1, -1};
+};
+
+class BodyHierarchy {
+public:
+    /// Contract: connectivity built, at least one vertex, finite coordinates.
+    explicit BodyHierarchy(const geometry::Mesh& mesh);
+
+    const std::vector<HierarchyNode>& nodes() const { return nodes_; }        ///< root is 0
+    const std::vector<HierarchyElement>& elements() const { return elements_; }
+
+private:
+    std::vector<HierarchyNode> nodes_;
+    std::vector<HierarchyElement> elements_;
+};
+
+}  // namespace fettle::core::contact

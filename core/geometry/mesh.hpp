@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+/// A triangle mesh (possibly with loose edges and points), as plain data. Reading: scene/mesh_reader.hpp;
+/// validity: geometry/mesh_validity.hpp; mass: geometry/mass_moments.hpp.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::core::geometry {
+
+using Edge = std::array<int, 2>;      ///< vertex indices
+using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside
+
+/// Connectivity is fixed for life; a shape parameter moves `vertices` only.
+struct Mesh {
+    std::string name;                      ///< of the file or generator, for messages
+    Matrix3X vertices;                     ///< 3 x n, one column a vertex [m], no two equal (exactly welded)
+    std::vector<Triangle> triangles;
+    std::vector<Edge> edges;               ///< every edge of the triangles once, then the codimensional edges
+    std::vector<int> codimensional_points; ///< vertices used by no edge
+    std::vector<int> triangle_shell;       ///< per triangle: index of its edge-connected shell, 0-based, in order of first triangle
+    std::vector<std::string> shell_names;  ///< one per shell
+};
+
+/// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)
+/// from vertices and triangles. Edges appear in the order of their first triangle; `extra_edges` follow.
+void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges = {});
+
+/// A mesh from vertices and triangles, connectivity built. Vertices are taken as they are (no welding).
+Mesh make_mesh(std::string name, Matrix3X vertices, std::vector<Triangle> triangles);
+
+/// Merges vertices with exactly equal coordinates (-0 equals +0), drops triangles that become degenerate by index, and
+/// rebuilds connectivity. Order of first occurrence is kept.
+Mesh weld_exactly(const Mesh& mesh);
+
+}  // namespace fettle::core::geometry

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// What the stepper works on: bodies with mass, hierarchy and prescribed coordinates. Built once by build_model.hpp, const ever after.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/scene/scene.hpp"
+
+namespace fettle::core::contact {
+class BodyHierarchy;
+}
+
+namespace fettle::core::model {
+
+/// A body's frame is its mesh file's frame, shifted to the reference point c: X = x_file - c. c is the centre of mass of the
+/// first design (of the bounding box, for surfaces) and never follows a parameter; neither do the axes.
+struct Body {
+    std::string name;
+    scene::BodyType type = scene::BodyType::dynamic_body;
+    geometry::Mesh mesh;                                  ///< vertices relative to c [m]
+    Vector3 reference_point = Vector3::Zero();            ///< c in the file's frame [m]
+    double density = 0;
+    Matrix4 moments = Matrix4::Zero();                    ///< M = integral of rho [X;1][X;1]^T [kg m^2, kg m, kg]; zero if not dynamic
+    kinematics::Pose pose_start;                          ///< of the reference point's frame
+    Matrix34 velocity_start = Matrix34::Zero();           ///< Pdot = [[omega] R, v]
+    scene::PrescribedMotion prescribed;
+    Vector3 force = Vector3::Zero();                      ///< at c [N]
+    int group = -1;
+    double radius = 0;                                    ///< largest |X|
+    std::vector<double> edge_length_squared;              ///< undeformed, per edge: the mollifier's eps
+    std::shared_ptr<const contact::BodyHierarchy> hierarchy;
+};
+
+inline bool is_free(const Body& body, int dof) { return !body.prescribed[dof].has_value(); }
+
+struct Model {
+    std::vector<Body> bodies;
+    Vector3 gravity = Vector3::Zero();     ///< [m/s^2]
+    double timestep = 0.01;                ///< h [s]
+    double end_time = -1;                  ///< [s], negative: not given
+    double dhat = 1e-3;                    ///< [m]
+    double dmin = 0;                       ///< [m]
+    double kappa = 0;                      ///< [N/m], fixed for the whole trajectory
+    double velocity_tolerance = 0;         ///< [m/s]
+    int max_newton_iterations = 3000;
+    double diagonal = 1;                   ///< of the bounding box of everything at the start [m]
+    double length_unit = 1;                ///< of the scene file [m], for reports
+};
+
+/// May these two bodies touch? Not a body with itself, nor bodies of one group, nor two bodies without any free degree of freedom
+/// and without prescribed motion relative to each other by contact: static and kinematic bodies do not collide with each other.
+bool may_collide(const Model& model, int a, int b);
+
+}  // namespace fettle::core::model

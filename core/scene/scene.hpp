@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+/// Plain description of a scene, SI units, meshes resolved: what a file said, before anything is computed from it.
+/// Readers: scene_reader.hpp (*.scene.json), fixture_reader.hpp (the source paper's files). Next stage: model/build_model.hpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/kinematics/path.hpp"
+
+namespace fettle::core::scene {
+
+enum class BodyType { dynamic_body, static_body, kinematic_body };
+
+/// A prescribed coordinate as a function of time, relative to its start: u(t) = rate * t + table(t), where the table is
+/// piecewise linear through (times[i], values[i]) and constant outside. After `stop_time` (if any) u stays as it is.
+struct MotionCurve {
+    double rate = 0;                  ///< [m/s] or [rad/s]
+    std::vector<double> times;        ///< [s], strictly increasing; empty: no table
+    std::vector<double> values;       ///< [m] or [rad]
+    std::optional<double> stop_time;  ///< [s]
+};
+double motion_value(const MotionCurve& curve, double time);
+
+/// A degree of freedom: free, or prescribed (held where it is if the curve is zero). Order: px py pz rx ry rz, world axes.
+/// Rotations are components of the rotation vector of each time step.
+using PrescribedMotion = std::array<std::optional<MotionCurve>, 6>;
+
+/// How strictly meshes are taken: our own files refuse what a printable part cannot be; the paper's files load with warnings.
+enum class MeshPolicy { strict, lenient };
+
+struct Body {
+    std::string name;
+    std::string where;                ///< file and JSON pointer, for messages
+    BodyType type = BodyType::dynamic_body;
+    geometry::Mesh mesh;              ///< vertices in the file's frame, scaled, [m]
+    MeshPolicy mesh_policy = MeshPolicy::strict;
+    double density = 1000;            ///< [kg/m^3] closed meshes, [kg/m^2] open surfaces
+    kinematics::Pose pose;            ///< of the file's frame at the start: world = rotation * x + position
+    Vector3 linear_velocity = Vector3::Zero();   ///< of the reference point (model/model.hpp) at the start [m/s]
+    Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
+    PrescribedMotion prescribed;      ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
+    Vector3 force = Vector3::Zero();  ///< constant, world, at the reference point [N]
+    int group = -1;                   ///< bodies of one group (>= 0) never collide
+};
+
+struct Scene {
+    std::string path;                 ///< of the file; empty when made in memory
+    double length_unit = 1;           ///< of the file [m]; for reports only, everything here is SI
+    std::vector<Body> bodies;
+    Vector3 gravity = Vector3::Zero();           ///< [m/s^2]
+    double timestep = 0.01;                      ///< h [s]
+    std::optional<double> end_time;              ///< [s]
+    std::optional<double> dhat;                  ///< activation distance [m]; default 1e-3 of the scene's diagonal
+    double dmin = 0;                             ///< minimum separation [m]
+    std::optional<double> kappa;                 ///< barrier stiffness [N/m]; default chosen by choose_kappa
+    std::optional<double> velocity_tolerance;    ///< Newton stops below this speed of any point [m/s]; default 1e-2 diagonal / s
+    int max_newton_iterations = 3000;
+    std::vector<std::string> warnings;           ///< what a lenient reader accepted
+};
+
+}  // namespace fettle::core::scene

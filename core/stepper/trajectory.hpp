@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+/// The result of a simulation: configurations and the continuous path between them, which is intersection-free (it was
+/// checked by curved CCD segment by segment). Readers and writers: trajectory_io.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/kinematics/path.hpp"
+
+namespace fettle::core::stepper {
+
+/// One time step. Each body has a chart of its own, based at its rotation at the start of the step. The path visits
+/// `nodes[0]` (the start: rotation vector 0), `nodes[1]`, ..., `nodes.back()` (the end), straight in the chart in between.
+/// Usually there are two nodes; more where the straight path would have crossed something.
+/// In time, the k-th of n segments covers [time_t0 + h k/n, time_t0 + h (k+1)/n].
+struct TrajectoryStep {
+    std::vector<std::vector<kinematics::ChartPoint>> nodes;  ///< [node][body]
+};
+
+struct Trajectory {
+    double time_start = 0;
+    double timestep = 0;                                     ///< h [s]
+    std::vector<std::string> body_names;
+    std::vector<std::vector<kinematics::Pose>> poses;        ///< [t][body], t = 0 .. steps.size()
+    std::vector<TrajectoryStep> steps;                       ///< step t leads from poses[t] to poses[t + 1]
+};
+
+/// Segment `k` of step `t` of a body.
+inline kinematics::PathSegment path_segment(const Trajectory& trajectory, int t, int k, int body) {
+    const auto& nodes = trajectory.steps[t].nodes;
+    return kinematics::path_between(trajectory.poses[t][body].rotation, nodes[k][body], nodes[k + 1][body]);
+}
+
+inline int segment_count(const Trajectory& trajectory, int t) { return static_cast<int>(trajectory.steps[t].nodes.size()) - 1; }
+
+}  // namespace fettle::core::stepper
