@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/optimisers/evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "fettle/core/base/contract.hpp"
+
+namespace fettle::design::optimisers {
+
+namespace {
+
+std::string bits_of(const VectorX& x) {
+    std::string key(static_cast<size_t>(x.size()) * sizeof(double), '\0');
+    std::memcpy(key.data(), x.data(), key.size());
+    return key;
+}
+
+// A NaN in an answer is a failure like any other: the optimisers must never compute with it.
+Evaluation checked(Evaluation e, int variables, int constraints) {
+    if (!e.usable) return e;
+    FETTLE_ASSERT(e.gradient.size() == variables && e.constraints.size() == constraints && e.jacobian.rows() == constraints &&
+                      e.jacobian.cols() == variables,
+                  "an evaluation has the problem's sizes");
+    const bool finite = std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
+                        std::isfinite(e.violation);
+    if (!finite) {
+        e.usable = false;
+        e.reason = "the evaluation gave a number that is not finite";
+    }
+    return e;
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem_(problem), options_(std::move(options)) {
+    FETTLE_ASSERT(problem.lower.size() == variables() && problem.upper.size() == variables(), "one bound per variable");
+    FETTLE_ASSERT((problem.lower.array() <= problem.start.array()).all() && (problem.start.array() <= problem.upper.array()).all(),
+                  "the start lies within the bounds");
+    FETTLE_ASSERT(problem.constraint_upper.size() == constraints(), "one bound per constraint");
+    // A variable whose bounds coincide stays where it is; any range scales it.
+    range_ = (problem.upper - problem.lower).unaryExpr([](double r) { return r > 0 ? r : 1.0; });
+    scaled_start_ = (problem.start - problem.lower).cwiseQuotient(range_).cwiseMax(0).cwiseMin(1);
+    constraint_scale_ = VectorX::Ones(constraints());
+    try {
+        const Record& record = evaluate_new(scaled_start_);
+        start_evaluation_ = record.evaluation;
+    } catch (const StopOptimisation&) {
+        start_evaluation_.reason = stop_reason_ == StopReason::interrupted ? "interrupted" : "no evaluation allowed";
+    }
+    rethrow();
+    fix_scaling();
+}
+
+void Evaluator::fix_scaling() {
+    if (start_evaluation_.usable) {
+        const VectorX g = start_evaluation_.gradient.cwiseProduct(range_);
+        const double size = variables() > 0 ? g.lpNorm<Eigen::Infinity>() : 0;
+        const double objective_size = std::max(size, 1e-3 * std::abs(start_evaluation_.objective));
+        if (objective_size > 0) objective_scale_ = 1 / objective_size;
+        for (int i = 0; i < constraints(); ++i) {
+            const double row = start_evaluation_.jacobian.row(i).cwiseProduct(range_.transpose()).lpNorm<Eigen::Infinity>();
+            const double row_size = std::max(row, 1e-3 * std::abs(start_evaluation_.constraints[i]));
+            if (row_size > 0) constraint_scale_[i] = 1 / row_size;
+        }
+    }
+    scaled_constraint_lower_ = problem_.constraint_lower.cwiseProduct(constraint_scale_);
+    scaled_constraint_upper_ = problem_.constraint_upper.cwiseProduct(constraint_scale_);
+    for (Record& record : records_) record.scaled_evaluation = scaled(record.evaluation);
+}
+
+VectorX Evaluator::unscaled(const VectorX& scaled_point) const {
+    // The start is answered exactly: lower + (start - lower) / range * range can differ from it in the last bit.
+    if (scaled_point == scaled_start_) return problem_.start;
+    return (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+}
+
+Evaluation Evaluator::scaled(const Evaluation& e) const {
+    Evaluation s = e;
+    if (!e.usable) return s;
+    s.objective = e.objective * objective_scale_;
+    s.gradient = e.gradient.cwiseProduct(range_) * objective_scale_;
+    s.constraints = e.constraints.cwiseProduct(constraint_scale_);
+    s.jacobian = constraint_scale_.asDiagonal() * e.jacobian * range_.asDiagonal();
+    return s;
+}
+
+const Evaluation& Evaluator::at(const VectorX& point) {
+    const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
+    const auto found = index_.find(bits_of(clamped));
+    if (found != index_.end()) return records_[static_cast<size_t>(found->second)].scaled_evaluation;
+    return evaluate_new(clamped).scaled_evaluation;
+}
+
+const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point) {
+    if (evaluations() >= options_.max_evaluations) stop(StopReason::budget);
+    if (options_.should_stop && options_.should_stop()) stop(StopReason::interrupted);
+    Record record;
+    record.scaled_point = scaled_point;
+    record.point = unscaled(scaled_point);
+    try {
+        record.evaluation = checked(problem_.evaluate(record.point), variables(), constraints());
+    } catch (const Interrupted&) {
+        stop(StopReason::interrupted);
+    } catch (...) {
+        exception_ = std::current_exception();
+        stop(StopReason::exception);
+    }
+    record.scaled_evaluation = scaled(record.evaluation);
+    if (!record.evaluation.usable) ++failures_;
+    records_.push_back(std::move(record));
+    index_[bits_of(scaled_point)] = evaluations() - 1;
+    const int best_before = best_index_;
+    keep_best();
+    if (options_.on_evaluation) {
+        const Record& last = records_.back();
+        options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);
+    }
+    return records_.back();
+}
+
+// Feasible beats infeasible; among feasible the lower objective, among infeasible the smaller violation; the earlier wins ties.
+void Evaluator::keep_best() {
+    const Evaluation& now = records_.back().evaluation;
+    if (!now.usable) return;
+    if (best_index_ < 0) {
+        best_index_ = evaluations() - 1;
+        return;
+    }
+    const Evaluation& best = records_[static_cast<size_t>(best_index_)].evaluation;
+    const bool feasible = now.violation <= 0, best_feasible = best.violation <= 0;
+    const bool better = feasible != best_feasible ? feasible : feasible ? now.objective < best.objective : now.violation < best.violation;
+    if (better) best_index_ = evaluations() - 1;
+}
+
+void Evaluator::stop(StopReason reason) {
+    if (stop_reason_ == StopReason::none) stop_reason_ = reason;
+    throw StopOptimisation();
+}
+
+void Evaluator::rethrow() const {
+    if (exception_) std::rethrow_exception(exception_);
+}
+
+const VectorX& Evaluator::best_point() const {
+    FETTLE_ASSERT(has_best(), "no point could be evaluated");
+    return records_[static_cast<size_t>(best_index_)].point;
+}
+
+const VectorX& Evaluator::best_scaled_point() const {
+    FETTLE_ASSERT(has_best(), "no point could be evaluated");
+    return records_[static_cast<size_t>(best_index_)].scaled_point;
+}
+
+const Evaluation& Evaluator::best_evaluation() const {
+    FETTLE_ASSERT(has_best(), "no point could be evaluated");
+    return records_[static_cast<size_t>(best_index_)].evaluation;
+}
+
+Evaluation Evaluator::best_scaled_evaluation() const {
+    FETTLE_ASSERT(has_best(), "no point could be evaluated");
+    return records_[static_cast<size_t>(best_index_)].scaled_evaluation;
+}
+
+}  // namespace fettle::design::optimisers

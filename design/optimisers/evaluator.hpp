@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+/// The one door between an optimiser and a problem. It scales (variables to [0, 1] by their bounds; f and each c by the largest derivative at
+/// the start, so that all are of order one), evaluates each point once (cached by the exact bits of the point, since Ipopt and NLopt
+/// ask for values and derivatives of one point separately), counts, keeps the best design, and stops a run that is over.
+/// Scaling and the order of evaluations are functions of the problem alone: a run repeated has the same bits.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <deque>
+#include <map>
+#include <string>
+
+#include "fettle/design/optimisers/problem.hpp"
+
+namespace fettle::design::optimisers {
+
+struct EvaluatorOptions {
+    int max_evaluations = 200;
+    std::function<bool()> should_stop;  ///< optional; asked before each evaluation
+    /// Optional: after each evaluation, with its number (1, 2, ...) and whether it became the best.
+    std::function<void(int, const VectorX&, const Evaluation&, bool)> on_evaluation;
+};
+
+/// Thrown out of a callback to end the native optimiser; Evaluator::stop_reason says why. Never leaves minimise().
+struct StopOptimisation : std::exception {
+    const char* what() const noexcept override { return "optimisation stopped"; }
+};
+
+enum class StopReason { none, budget, interrupted, exception };
+
+class Evaluator {
+public:
+    /// Evaluates the start (which may fail: `start_evaluation().usable`) and fixes the scaling from it.
+    /// Errors: rethrows what Problem::evaluate throws, Interrupted excepted (stop_reason).
+    Evaluator(const Problem& problem, EvaluatorOptions options);
+
+    int variables() const { return static_cast<int>(problem_.start.size()); }
+    int constraints() const { return static_cast<int>(problem_.constraint_lower.size()); }
+
+    /// Scaled evaluation: x in [0, 1] (clamped), f, c and derivatives scaled. `usable` may be false.
+    /// Throws StopOptimisation when the run is over.
+    const Evaluation& at(const VectorX& scaled);
+
+    const VectorX& scaled_start() const { return scaled_start_; }
+    const VectorX& scaled_constraint_lower() const { return scaled_constraint_lower_; }
+    const VectorX& scaled_constraint_upper() const { return scaled_constraint_upper_; }
+    VectorX unscaled(const VectorX& scaled) const;
+
+    const Evaluation& start_evaluation() const { return start_evaluation_; }
+    bool has_best() const { return best_index_ >= 0; }
+    const VectorX& best_point() const;             ///< unscaled. Contract: has_best
+    const VectorX& best_scaled_point() const;      ///< Contract: has_best
+    const Evaluation& best_evaluation() const;     ///< unscaled. Contract: has_best
+    Evaluation best_scaled_evaluation() const;     ///< Contract: has_best
+
+    int evaluations() const { return static_cast<int>(records_.size()); }
+    int failures() const { return failures_; }
+    StopReason stop_reason() const { return stop_reason_; }
+    void rethrow() const;                          ///< rethrows an exception of the problem, if there was one
+
+private:
+    struct Record {
+        VectorX scaled_point, point;
+        Evaluation evaluation, scaled_evaluation;
+    };
+    Evaluation scaled(const Evaluation& evaluation) const;
+    void fix_scaling();
+    const Record& evaluate_new(const VectorX& scaled_point);
+    void keep_best();
+    void stop(StopReason reason);
+
+    const Problem& problem_;
+    EvaluatorOptions options_;
+    VectorX range_, scaled_start_, constraint_scale_, scaled_constraint_lower_, scaled_constraint_upper_;
+    double objective_scale_ = 1;
+    Evaluation start_evaluation_;
+    std::deque<Record> records_;                  ///< references into it stay valid
+    std::map<std::string, int> index_;             ///< by the bits of the scaled point
+    int best_index_ = -1;
+    int failures_ = 0;
+    StopReason stop_reason_ = StopReason::none;
+    std::exception_ptr exception_;
+};
+
+}  // namespace fettle::design::optimisers
