@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Broad phase: every pair of primitives of different bodies that could come within the activation distance while the bodies move no
+/// more than an allowance from where the candidates were found. Found by descending the bodies' hierarchies two at a time.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::contact {
+
+/// How far a body may move: a point X by at most translation + rotation |X|.
+struct MotionAllowance {
+    double translation = 0;  ///< [m]
+    double rotation = 0;     ///< [rad]
+};
+
+/// Primitives of two bodies, a < b, by index into their meshes.
+struct BodyPairCandidates {
+    int a = 0, b = 0;
+    std::vector<std::array<int, 2>> vertex_triangle;  ///< vertex of a, triangle of b
+    std::vector<std::array<int, 2>> triangle_vertex;  ///< triangle of a, vertex of b
+    std::vector<std::array<int, 2>> edge_edge;        ///< edge of a, edge of b
+    bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
+};
+
+struct Candidates {
+    std::vector<BodyPairCandidates> pairs;            ///< sorted by (a, b)
+    std::vector<kinematics::Pose> poses;              ///< where they were found
+    std::vector<MotionAllowance> allowances;          ///< per body
+};
+
+/// All pairs whose distance is at most dmin + dhat + (allowances of both primitives).
+Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses,
+                           const std::vector<MotionAllowance>& allowances);
+
+/// Are the candidates complete (up to the activation distance) along the paths? Each body may have moved since they were found, and moves along
+/// `segments` now: completeness holds while both together stay within its allowance.
+bool covers(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
+
+}  // namespace fettle::core::contact

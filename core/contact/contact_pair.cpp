@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/contact_pair.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace fettle::core::contact {
+namespace {
+
+using geometry::ClosestPoints;
+
+// m and its derivatives for a pair (1 unless nearly parallel edges).
+ScalarDerivatives mollifier_of(const ContactPair& pair) {
+    if (pair.type == PairType::point_triangle) return {1, 0, 0};
+    return edge_mollifier(edge_cross_squared(pair.x), pair.mollifier_eps);
+}
+
+ScalarDerivatives barrier_of(const ContactPair& pair, const BarrierParameters& p) {
+    return barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat);
+}
+
+// Interior parameters' directions r_a, made orthonormal in one go: K = L L^T, columns of the result times L^T give r_a.
+struct FreeDirections {
+    std::array<Vector3, 2> r;  // r_a = sum_i w'_a,i x_i
+    Matrix2 l;                 // Cholesky factor of K (free_count 1: only (0,0))
+};
+
+FreeDirections free_directions(const ClosestPoints& c, const PairVertices& x) {
+    FreeDirections d;
+    for (int a = 0; a < c.free_count; ++a) {
+        d.r[a].setZero();
+        for (int i = 0; i < 4; ++i) d.r[a] += c.free_weight[a][i] * x[i];
+    }
+    d.l.setZero();
+    if (c.free_count == 0) return d;
+    d.l(0, 0) = d.r[0].norm();
+    if (c.free_count == 1) return d;
+    const Vector3 t0 = d.r[0] / d.l(0, 0);
+    d.l(1, 0) = t0.dot(d.r[1]);
+    // |r1 x t0| rather than sqrt(|r1|^2 - l10^2): accurate for nearly parallel directions.
+    d.l(1, 1) = d.r[1].cross(t0).norm();
+    return d;
+}
+
+// Solves L y = (a0, a1) for vector-valued right-hand sides, in place.
+template <class V>
+void forward_solve(const Matrix2& l, int count, std::array<V, 2>& a) {
+    if (count > 0) a[0] = a[0] / l(0, 0);
+    if (count > 1) a[1] = (a[1] - l(1, 0) * a[0]) / l(1, 1);
+}
+
+// Pull-back of the pattern w (x) m (m at the closest point of the first body, -m at that of the second).
+Vector12 pull_back(const Vector3& m, const Vector3& arm_first, const Vector3& arm_second) {
+    Vector12 v;
+    v << m, arm_first.cross(m), -m, -arm_second.cross(m);
+    return v;
+}
+
+struct Arms {
+    Vector3 first, second;  // closest points relative to the bodies' positions
+};
+
+Arms arms_of(const ContactPair& pair, const Vector3& first_position, const Vector3& second_position) {
+    const auto& w = pair.closest.weight;
+    Arms a{Vector3::Zero(), Vector3::Zero()};
+    const int n = first_count(pair.type);
+    for (int i = 0; i < n; ++i) a.first += w[i] * (pair.x[i] - first_position);
+    for (int i = n; i < 4; ++i) a.second -= w[i] * (pair.x[i] - second_position);
+    return a;
+}
+
+// Does interior parameter a belong to the first body?
+bool on_first(const ContactPair& pair, int a) {
+    return pair.closest.free_weight[a][0] != 0 || (pair.type == PairType::edge_edge && pair.closest.free_weight[a][1] != 0);
+}
+
+void rank_one(Matrix12& h, double factor, const Vector12& v) { h.selfadjointView<Eigen::Lower>().rankUpdate(v, factor); }
+
+// Gauss-Newton Hessian of factor * b(D), added to h.
+void add_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, HessianKind kind, Matrix12& h) {
+    const ClosestPoints& c = pair.closest;
+    const double d = std::sqrt(c.distance_squared);
+    const Vector3 n = c.difference / d;
+    const double normal = 4 * b.second * c.distance_squared + 2 * b.first;
+    rank_one(h, kind == HessianKind::projected ? std::max(0.0, normal) : normal, pull_back(n, arms.first, arms.second));
+
+    const FreeDirections free = free_directions(c, pair.x);
+    std::array<Vector12, 2> slide, turn;  // w (x) r_a and w'_a (x) n, then both times L^-1
+    std::array<Vector2, 2> spread{};      // crude sizes of the turn patterns' weights
+    for (int a = 0; a < c.free_count; ++a) {
+        slide[a] = pull_back(free.r[a], arms.first, arms.second);
+        turn[a].setZero();
+        turn[a].segment<3>(on_first(pair, a) ? 3 : 9) = free.r[a].cross(n);
+        spread[a] = Vector2::Unit(a);
+    }
+    forward_solve(free.l, c.free_count, slide);
+    forward_solve(free.l, c.free_count, turn);
+    forward_solve(free.l, c.free_count, spread);
+
+    const double tension = -2 * b.first;  // >= 0
+    if (kind == HessianKind::exact) {
+        for (int j = 0; j < c.free_count; ++j) rank_one(h, tension, slide[j] + d * turn[j]);
+        // - tension * (projector on the tangent plane) pattern: two orthonormal tangents of n.
+        const Vector3 t1 = n.unitOrthogonal();
+        rank_one(h, -tension, pull_back(t1, arms.first, arms.second));
+        rank_one(h, -tension, pull_back(n.cross(t1), arms.first, arms.second));
+        return;
+    }
+    double weight_squared = 0;
+    for (double w : c.weight) weight_squared += w * w;
+    for (int j = 0; j < c.free_count; ++j) {
+        // (p + d s)(p + d s)^T - p p^T = d (p s^T + s p^T) + d^2 s s^T: its positive eigenvector in the basis (p, s), scaled to unit patterns.
+        const double rho_p = std::sqrt(weight_squared), rho_s = std::sqrt(2.0) * spread[j].norm();
+        const double off = d * rho_p * rho_s, corner = d * d * rho_s * rho_s;
+        const double eigenvalue = 0.5 * (corner + std::sqrt(corner * corner + 4 * off * off));
+        const double norm_squared = off * off + eigenvalue * eigenvalue;
+        if (!(norm_squared > 0)) continue;
+        rank_one(h, tension * eigenvalue / norm_squared, (off / rho_p) * slide[j] + (eigenvalue / rho_s) * turn[j]);
+    }
+}
+
+// Derivatives of c = |e1 x e2|^2.
+struct EdgeCross {
+    Vector3 e1, e2, c1, c2;         // edges, dc/de1, dc/de2
+    Matrix3 c11, c12, c22;          // second derivatives
+};
+
+EdgeCross edge_cross(const PairVertices& x) {
+    EdgeCross k;
+    k.e1 = x[1] - x[0];
+    k.e2 = x[3] - x[2];
+    const Vector3 n = k.e1.cross(k.e2);
+    // dc = 2 n . (de1 x e2 + e1 x de2): no cancellation when nearly parallel.
+    k.c1 = 2 * k.e2.cross(n);
+    k.c2 = 2 * n.cross(k.e1);
+    const double a = k.e1.squaredNorm(), b = k.e2.squaredNorm(), ab = k.e1.dot(k.e2);
+    k.c11 = 2 * (b * Matrix3::Identity() - k.e2 * k.e2.transpose());
+    k.c22 = 2 * (a * Matrix3::Identity() - k.e1 * k.e1.transpose());
+    k.c12 = 4 * k.e1 * k.e2.transpose() - 2 * k.e2 * k.e1.transpose() - 2 * ab * Matrix3::Identity();
+    return k;
+}
+
+Matrix12 positive_part(const Matrix12& lower) {
+    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(lower);
+    if (eigen.eigenvalues()[0] >= 0) return lower;
+    const Vector12 positive = eigen.eigenvalues().cwiseMax(0.0);
+    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// m b with m < 1: product rule, dense 12x12.
+void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParameters& p, HessianKind kind, BodyPairSum& sum) {
+    const ScalarDerivatives m = mollifier_of(pair);
+    const ScalarDerivatives b = barrier_of(pair, p);
+    const EdgeCross k = edge_cross(pair.x);
+    const double f = p.factor;
+
+    const Vector3 force = 2 * f * m.value * b.first * pair.closest.difference;
+    sum.first.add_force(force, arms.first);
+    sum.second.add_force(-force, arms.second);
+    sum.first.arm += f * b.value * m.first * k.c1 * k.e1.transpose();
+    sum.second.arm += f * b.value * m.first * k.c2 * k.e2.transpose();
+
+    Matrix12 h = Matrix12::Zero();
+    const ScalarDerivatives scaled{0, f * m.value * b.first, f * m.value * b.second};
+    if (m.value > 0) add_distance_hessian(pair, arms, scaled, HessianKind::exact, h);
+    h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
+    const Vector12 dD = 2 * pull_back(pair.closest.difference, arms.first, arms.second);
+    Vector12 dc = Vector12::Zero();
+    dc.segment<3>(3) = k.e1.cross(k.c1);
+    dc.segment<3>(9) = k.e2.cross(k.c2);
+    h += f * b.first * m.first * (dD * dc.transpose() + dc * dD.transpose()) + f * b.value * m.second * dc * dc.transpose();
+    const Matrix3 j1 = -cross_matrix(k.e1), j2 = -cross_matrix(k.e2);
+    const double g = f * b.value * m.first;
+    h.block<3, 3>(3, 3) += g * j1.transpose() * k.c11 * j1;
+    h.block<3, 3>(9, 9) += g * j2.transpose() * k.c22 * j2;
+    const Matrix3 cross_block = g * j1.transpose() * k.c12 * j2;
+    h.block<3, 3>(3, 9) += cross_block;
+    h.block<3, 3>(9, 3) += cross_block.transpose();
+    sum.hessian.triangularView<Eigen::Lower>() += kind == HessianKind::projected ? positive_part(h) : h;
+}
+
+}  // namespace
+
+double pair_potential(const ContactPair& pair, const BarrierParameters& p) {
+    const double gap = pair.closest.distance_squared - p.dmin * p.dmin;
+    if (gap >= p.gap_hat) return 0;
+    return p.factor * mollifier_of(pair).value * barrier(gap, p.gap_hat).value;
+}
+
+std::array<Vector3, 4> pair_forces(const ContactPair& pair, const BarrierParameters& p) {
+    const ScalarDerivatives m = mollifier_of(pair);
+    const ScalarDerivatives b = barrier_of(pair, p);
+    std::array<Vector3, 4> f;
+    for (int i = 0; i < 4; ++i) f[i] = 2 * p.factor * m.value * b.first * pair.closest.weight[i] * pair.closest.difference;
+    if (m.first != 0) {
+        const EdgeCross k = edge_cross(pair.x);
+        const double g = p.factor * b.value * m.first;
+        f[0] -= g * k.c1;
+        f[1] += g * k.c1;
+        f[2] -= g * k.c2;
+        f[3] += g * k.c2;
+    }
+    return f;
+}
+
+std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const BarrierParameters& p, const std::array<Vector3, 4>& v) {
+    const ClosestPoints& c = pair.closest;
+    const ScalarDerivatives m = mollifier_of(pair);
+    const ScalarDerivatives b = barrier_of(pair, p);
+    const Vector3& r = c.difference;
+
+    // d(D) along v, and the change of r when the interior parameters follow: dr = sum w_i v_i + sum_a r_a dbeta_a.
+    Vector3 wv = Vector3::Zero();
+    for (int i = 0; i < 4; ++i) wv += c.weight[i] * v[i];
+    const FreeDirections free = free_directions(c, pair.x);
+    std::array<double, 2> beta{0, 0};  // K^-1 (A^T v), A_a^T v = r_a . wv + r . (sum w'_a,i v_i)
+    for (int a = 0; a < c.free_count; ++a) {
+        Vector3 turn = Vector3::Zero();
+        for (int i = 0; i < 4; ++i) turn += c.free_weight[a][i] * v[i];
+        beta[a] = free.r[a].dot(wv) + r.dot(turn);
+    }
+    forward_solve(free.l, c.free_count, beta);
+    if (c.free_count > 1) beta[1] /= free.l(1, 1);
+    if (c.free_count > 0) beta[0] = (beta[0] - (c.free_count > 1 ? free.l(1, 0) * beta[1] : 0.0)) / free.l(0, 0);
+    Vector3 dr = wv;
+    for (int a = 0; a < c.free_count; ++a) dr -= beta[a] * free.r[a];
+
+    const double dD = 2 * r.dot(wv);
+    const double f = p.factor;
+    std::array<Vector3, 4> out;
+    for (int i = 0; i < 4; ++i) {
+        double slide = 0;  // change of w_i
+        for (int a = 0; a < c.free_count; ++a) slide -= beta[a] * c.free_weight[a][i];
+        out[i] = f * m.value * (b.second * dD * 2 * c.weight[i] * r + b.first * 2 * (c.weight[i] * dr + slide * r));
+    }
+    if (m.first == 0) return out;
+    const EdgeCross k = edge_cross(pair.x);
+    const Vector3 v1 = v[1] - v[0], v2 = v[3] - v[2];
+    const double dc = k.c1.dot(v1) + k.c2.dot(v2);
+    const Vector3 g1 = k.c11 * v1 + k.c12 * v2, g2 = k.c12.transpose() * v1 + k.c22 * v2;
+    const double s = f * (b.first * m.first * dD + b.value * m.second * dc), t = f * b.value * m.first;
+    for (int i = 0; i < 4; ++i) out[i] += f * b.first * m.first * dc * 2 * c.weight[i] * r;
+    out[0] -= s * k.c1 + t * g1;
+    out[1] += s * k.c1 + t * g1;
+    out[2] -= s * k.c2 + t * g2;
+    out[3] += s * k.c2 + t * g2;
+    return out;
+}
+
+void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& p, HessianKind kind, const Vector3& first_position,
+                          const Vector3& second_position, BodyPairSum& sum) {
+    const Arms arms = arms_of(pair, first_position, second_position);
+    if (pair.type == PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps) {
+        add_mollified(pair, arms, p, kind, sum);
+        return;
+    }
+    ScalarDerivatives b = barrier_of(pair, p);
+    b.first *= p.factor;
+    b.second *= p.factor;
+    const Vector3 force = 2 * b.first * pair.closest.difference;
+    sum.first.add_force(force, arms.first);
+    sum.second.add_force(-force, arms.second);
+    add_distance_hessian(pair, arms, b, kind, sum.hessian);
+}
+
+}  // namespace fettle::core::contact

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/contact_set.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace fettle::core::contact {
+namespace {
+
+using kinematics::Pose;
+
+Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_position(pose, body.mesh.vertices.col(v)); }
+
+// Calls visit(first, second, pair) with vertices filled, for every candidate in order.
+template <class Visit>
+void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, const Visit& visit) {
+    const model::Body &a = model.bodies[list.a], &b = model.bodies[list.b];
+    const Pose &pa = poses[list.a], &pb = poses[list.b];
+    ContactPair pair;
+    const auto point_triangle = [&](const model::Body& vb, const Pose& vp, int v, const model::Body& tb, const Pose& tp, int t) {
+        const geometry::Triangle& corners = tb.mesh.triangles[t];
+        pair.vertex = {v, corners[0], corners[1], corners[2]};
+        pair.x[0] = vertex(vb, vp, v);
+        for (int k = 0; k < 3; ++k) pair.x[k + 1] = vertex(tb, tp, corners[k]);
+    };
+    for (const auto& [v, t] : list.vertex_triangle) {
+        point_triangle(a, pa, v, b, pb, t);
+        visit(list.a, list.b, pair);
+    }
+    for (const auto& [t, v] : list.triangle_vertex) {
+        point_triangle(b, pb, v, a, pa, t);
+        visit(list.b, list.a, pair);
+    }
+    pair.type = PairType::edge_edge;
+    for (const auto& [ea, eb] : list.edge_edge) {
+        const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
+        pair.edge = {ea, eb};
+        pair.vertex = {va[0], va[1], vb[0], vb[1]};
+        pair.x = {vertex(a, pa, va[0]), vertex(a, pa, va[1]), vertex(b, pb, vb[0]), vertex(b, pb, vb[1])};
+        pair.mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
+        visit(list.a, list.b, pair);
+    }
+}
+
+kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
+    auto& blocks = hessian.off_diagonal;
+    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b), [](const auto& block, const std::pair<int, int>& key) {
+        return std::pair(block.a, block.b) < key;
+    });
+    if (at != blocks.end() && at->a == a && at->b == b) return *at;
+    return *blocks.insert(at, {a, b, Matrix6::Zero()});
+}
+
+}  // namespace
+
+ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
+    ContactSet set;
+    const double activation = model.dmin + model.dhat;
+    double least = std::numeric_limits<double>::infinity();
+    for (const BodyPairCandidates& list : candidates.pairs) {
+        BodyPairContacts forward{list.a, list.b, {}}, backward{list.b, list.a, {}};
+        for_each_pair(model, list, poses, [&](int first, int, ContactPair& pair) {
+            pair.closest = closest_points(pair.type, pair.x);
+            least = std::min(least, pair.closest.distance_squared);
+            if (pair.closest.distance_squared >= activation * activation) return;
+            (first == list.a ? forward : backward).contacts.push_back(pair);
+        });
+        for (BodyPairContacts* contacts : {&forward, &backward}) {
+            set.count += static_cast<int>(contacts->contacts.size());
+            if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));
+        }
+    }
+    set.minimum_distance = std::sqrt(least);
+    return set;
+}
+
+double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses,
+                         const BarrierParameters& parameters) {
+    const double activation_squared = parameters.activation * parameters.activation;
+    const double dmin_squared = parameters.dmin * parameters.dmin;
+    double sum = 0;
+    for (const BodyPairCandidates& list : candidates.pairs) {
+        double pair_sum = 0;
+        for_each_pair(model, list, poses, [&](int, int, ContactPair& pair) {
+            pair.closest = closest_points(pair.type, pair.x);
+            if (pair.closest.distance_squared >= activation_squared) return;
+            pair_sum += pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters)
+                                                                      : std::numeric_limits<double>::infinity();
+        });
+        sum += pair_sum;
+    }
+    return sum;
+}
+
+void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& poses, const BarrierParameters& parameters, HessianKind kind,
+                             std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
+    for (const BodyPairContacts& list : set.pairs) {
+        BodyPairSum sum;
+        for (const ContactPair& pair : list.contacts)
+            add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sum);
+        gradients[list.first].force += sum.first.force;
+        gradients[list.first].arm += sum.first.arm;
+        gradients[list.second].force += sum.second.force;
+        gradients[list.second].arm += sum.second.arm;
+        const Matrix12 full = sum.hessian.selfadjointView<Eigen::Lower>();
+        hessian.diagonal[list.first] += full.topLeftCorner<6, 6>();
+        hessian.diagonal[list.second] += full.bottomRightCorner<6, 6>();
+        const bool in_order = list.first < list.second;
+        kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(list.first, list.second), std::max(list.first, list.second));
+        if (in_order) block.block += full.topRightCorner<6, 6>();
+        else block.block += full.bottomLeftCorner<6, 6>();
+    }
+}
+
+}  // namespace fettle::core::contact

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// The pairs that are closer than the activation distance at one configuration, and the barrier potential summed over them.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/contact/barrier.hpp"
+#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/kinematics/tangent_system.hpp"
+
+namespace fettle::core::contact {
+
+/// Contacts between one ordered pair of bodies: the first primitive's vertices (point, or edge a) are on `first`.
+struct BodyPairContacts {
+    int first = 0, second = 0;
+    std::vector<ContactPair> contacts;
+};
+
+struct ContactSet {
+    std::vector<BodyPairContacts> pairs;  ///< in the candidates' order; vertices on the higher body come as a pair of their own
+    int count = 0;
+    double minimum_distance = 0;          ///< over all candidates, not only contacts [m]; infinity if there are none
+};
+
+/// Contacts among the candidates at `poses`. Contract: candidates cover `poses`; no pair at or below dmin.
+ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+
+/// Sum of the barrier potential over the candidates; infinity where a pair is at or below dmin.
+double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses,
+                         const BarrierParameters& parameters);
+
+/// Adds first and second derivatives (Gauss-Newton part of the Hessian) to per-body sums.
+/// hessian.diagonal and gradients must have one entry per body; off-diagonal blocks are inserted as needed and end up sorted.
+void add_barrier_derivatives(const ContactSet& set, const std::vector<kinematics::Pose>& poses, const BarrierParameters& parameters,
+                             HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
+
+}  // namespace fettle::core::contact

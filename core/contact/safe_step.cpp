@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/safe_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/contact/contact_pair.hpp"
+
+namespace fettle::core::contact {
+namespace {
+
+using kinematics::PathSegment;
+using kinematics::Pose;
+
+struct Limits {
+    double kept_fraction;  // of the distance above dmin that a pair keeps
+    double kept_most;      // and never has to keep more than this [m]
+};
+
+class StepSearch {
+public:
+    StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits)
+        : model_(model), segments_(segments), limits_(limits) {
+        for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
+    }
+
+    void visit(const BodyPairCandidates& list) {
+        const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
+        const auto& va = a.mesh.vertices;
+        const auto& vb = b.mesh.vertices;
+        for (const auto& [v, t] : list.vertex_triangle) {
+            const geometry::Triangle& c = b.mesh.triangles[t];
+            check(PairType::point_triangle, list.a, list.b, {va.col(v), vb.col(c[0]), vb.col(c[1]), vb.col(c[2])});
+        }
+        for (const auto& [t, v] : list.triangle_vertex) {
+            const geometry::Triangle& c = a.mesh.triangles[t];
+            check(PairType::point_triangle, list.b, list.a, {vb.col(v), va.col(c[0]), va.col(c[1]), va.col(c[2])});
+        }
+        for (const auto& [i, j] : list.edge_edge) {
+            const geometry::Edge &ea = a.mesh.edges[i], &eb = b.mesh.edges[j];
+            check(PairType::edge_edge, list.a, list.b, {va.col(ea[0]), va.col(ea[1]), vb.col(eb[0]), vb.col(eb[1])});
+        }
+    }
+
+    const SafeStep& result() const { return result_; }
+
+private:
+    void check(PairType type, int first, int second, const PairVertices& X) {
+        if (result_.fraction == 0) return;
+        const PathSegment &sa = segments_[first], &sb = segments_[second];
+        PairVertices x;
+        double radius_a = 0, radius_b = 0;
+        const int n = first_count(type);
+        for (int i = 0; i < 4; ++i) {
+            x[i] = world_position(starts_[i < n ? first : second], X[i]);
+            double& radius = i < n ? radius_a : radius_b;
+            radius = std::max(radius, X[i].squaredNorm());
+        }
+        const double distance = std::sqrt(closest_points(type, x).distance_squared);
+        const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
+        // Nothing to do when the pair cannot travel that far (the curved query repeats this with rounding charged).
+        const double travel = (sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * std::sqrt(radius_a) +
+                              sb.rotation_vector_step.norm() * std::sqrt(radius_b);
+        if (distance > kept + result_.fraction * travel * (1 + 1e-10) + 1e-14 * (x[0].norm() + x[3].norm() + distance)) return;
+        const double f = result_.fraction;
+        const CurvedCcdResult ccd = f == 1 ? curved_ccd(type, sa, sb, X, kept)
+                                           : curved_ccd(type, sub_segment(sa, 0, f), sub_segment(sb, 0, f), X, kept);
+        if (!ccd.hit) return;
+        result_ = {f * ccd.toi * (1 - 1e-12), first, second};
+    }
+
+    const model::Model& model_;
+    const std::vector<PathSegment>& segments_;
+    const Limits limits_;
+    std::vector<Pose> starts_;
+    SafeStep result_;
+};
+
+}  // namespace
+
+SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
+    StepSearch search(model, segments, {0.1, 0.25 * model.dhat});
+    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list);
+    return search.result();
+}
+
+bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
+    StepSearch search(model, segments, {0.01, 0.01 * model.dhat});
+    for (const BodyPairCandidates& list : candidates.pairs) {
+        search.visit(list);
+        if (search.result().fraction < 1) return false;
+    }
+    return true;
+}
+
+}  // namespace fettle::core::contact

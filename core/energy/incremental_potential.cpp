@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/energy/incremental_potential.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/energy/inertia.hpp"
+
+namespace fettle::core::energy {
+namespace {
+
+using kinematics::ChartPoint;
+using kinematics::Pose;
+
+bool has_free_dof(const model::Body& body) {
+    for (int k = 0; k < 6; ++k)
+        if (model::is_free(body, k)) return true;
+    return false;
+}
+
+Matrix6 positive_part(const Matrix6& h) {
+    const Eigen::LLT<Matrix6> cholesky(h);
+    if (cholesky.info() == Eigen::Success) return h;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(h);
+    const Vector6 positive = eigen.eigenvalues().cwiseMax(0.0);
+    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// (dq, dtheta) -> (dq, phi).
+Matrix6 chart_to_tangent(const Vector3& theta) {
+    Matrix6 t = Matrix6::Identity();
+    t.bottomRightCorner<3, 3>() = kinematics::left_jacobian(theta);
+    return t;
+}
+
+}  // namespace
+
+StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> poses_t0, const std::vector<Matrix34>& velocities_t0) {
+    StepProblem problem;
+    const double h = model.timestep;
+    problem.model = &model;
+    problem.weight = h * h;
+    problem.barrier = contact::barrier_parameters(model.dhat, model.dmin, model.kappa, problem.weight);
+    problem.pose_hat.resize(model.bodies.size());
+    for (std::size_t i = 0; i < model.bodies.size(); ++i)
+        problem.pose_hat[i] = implicit_euler_pose_hat(pose_matrix(poses_t0[i]), velocities_t0[i], model.gravity, h);
+    problem.poses_t0 = std::move(poses_t0);
+    return problem;
+}
+
+std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<ChartPoint>& points) {
+    std::vector<Pose> poses(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        poses[i] = {kinematics::rotation(points[i].rotation_vector) * problem.poses_t0[i].rotation, points[i].position};
+    return poses;
+}
+
+PotentialValue incremental_potential(const StepProblem& problem, const std::vector<Pose>& poses, const contact::Candidates& candidates) {
+    PotentialValue sum;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const model::Body& body = problem.model->bodies[i];
+        if (!has_free_dof(body)) continue;
+        const double inertia = inertia_potential(pose_matrix(poses[i]), problem.pose_hat[i], body.moments);
+        const double load = problem.weight * body.force.dot(poses[i].position - problem.poses_t0[i].position);
+        sum.value += inertia - load;
+        sum.magnitude += inertia + std::abs(load);
+    }
+    const double barrier = contact::barrier_potential(*problem.model, candidates, poses, problem.barrier);
+    return {sum.value + barrier, sum.magnitude + barrier};
+}
+
+PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<Pose>& poses, const contact::ContactSet& contacts,
+                                 contact::HessianKind kind) {
+    const std::size_t n = poses.size();
+    PoseDerivatives d;
+    d.gradients.resize(n);
+    d.barrier_hessian.diagonal.assign(n, Matrix6::Zero());
+    contact::add_barrier_derivatives(contacts, poses, problem.barrier, kind, d.gradients, d.barrier_hessian);
+    d.force_magnitude.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        const model::Body& body = problem.model->bodies[i];
+        d.force_magnitude[i] = d.gradients[i].force.norm();
+        if (!has_free_dof(body)) continue;
+        kinematics::PoseGradient inertia;
+        add_inertia_gradient(poses[i], problem.pose_hat[i], body.moments, inertia);
+        d.gradients[i].force += inertia.force - problem.weight * body.force;
+        d.gradients[i].arm += inertia.arm;
+        d.force_magnitude[i] += inertia.force.norm() + problem.weight * body.force.norm();
+    }
+    return d;
+}
+
+ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
+                                   const contact::ContactSet& contacts, contact::HessianKind kind) {
+    PoseDerivatives d = pose_derivatives(problem, poses, contacts, kind);
+    ChartDerivatives out;
+    const std::size_t n = poses.size();
+    out.gradient.resize(n);
+    out.hessian.diagonal.resize(n);
+    std::vector<Matrix6> to_tangent(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const model::Body& body = problem.model->bodies[i];
+        const Vector3& theta = points[i].rotation_vector;
+        to_tangent[i] = chart_to_tangent(theta);
+        out.gradient[i] = to_tangent[i].transpose() * tangent_gradient(d.gradients[i]);
+        Matrix6 own = Matrix6::Zero();
+        if (has_free_dof(body)) own = to_tangent[i].transpose() * inertia_hessian(poses[i].rotation, body.moments) * to_tangent[i];
+        own.bottomRightCorner<3, 3>() += chart_curvature(d.gradients[i].arm, kinematics::rotation_derivatives(theta));
+        if (kind == contact::HessianKind::projected) own = positive_part(own);
+        out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.barrier_hessian.diagonal[i] * to_tangent[i];
+    }
+    out.hessian.off_diagonal = std::move(d.barrier_hessian.off_diagonal);
+    for (kinematics::OffDiagonalBlock& b : out.hessian.off_diagonal) b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
+    out.force_magnitude = std::move(d.force_magnitude);
+    return out;
+}
+
+}  // namespace fettle::core::energy
