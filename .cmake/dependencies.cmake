@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: MIT
+# The libraries that fettle stands on. Read by the build and by the installed package, so that both find the same ones.
+# Debian's names for them: .ci/packages.txt.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(TBB 2021)
+find_dependency(NLopt 2.7)
+find_dependency(assimp 5.2)
+find_dependency(nlohmann_json 3.11)
+find_dependency(PkgConfig)
+if(NOT TARGET PkgConfig::IPOPT)
+  pkg_check_modules(IPOPT REQUIRED QUIET IMPORTED_TARGET GLOBAL ipopt)
+endif()
+if(NOT TARGET fettle::cholmod)  # Debian's suitesparse has neither a .pc nor a CMake file
+  find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  mark_as_advanced(CHOLMOD_INCLUDE CHOLMOD_LIBRARY)
+  add_library(fettle::cholmod UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(fettle::cholmod PROPERTIES
+    IMPORTED_LOCATION "${CHOLMOD_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${CHOLMOD_INCLUDE}")
+endif()

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/base/version.hpp"
+
+namespace fettle::core::base {
+
+const char* version() { return FETTLE_VERSION; }
+
+}  // namespace fettle::core::base

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/base/units.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace fettle::core::base;
+
+TEST_CASE("lengths with units become metres, rounded once", "[base]") {
+    CHECK(parse_length("0.3mm").value() == 0.0003);
+    CHECK(parse_length("0.3 mm").value() == 0.0003);
+    CHECK(parse_length("  +1e-2 cm ").value() == 0.0001);
+    CHECK(parse_length("-25 um").value() == -0.000025);
+    CHECK(parse_length("2m").value() == 2);
+    CHECK(parse_length("1in").value() == 0.0254);
+    CHECK(parse_length("1 ft").value() == 0.3048);
+    CHECK(metres_per_unit("mm").value() == 1e-3);
+    CHECK(metres_per_unit("um").value() == 1e-6);
+}
+
+TEST_CASE("what is no length is refused with what is allowed", "[base]") {
+    const auto code = [](const char* text) { return parse_length(text, "--minimum").errors().at(0).code; };
+    CHECK(code("") == ErrorCode::parse);
+    CHECK(code("mm") == ErrorCode::parse);
+    CHECK(code("0.3") == ErrorCode::out_of_range);
+    CHECK(code("0.3 inch") == ErrorCode::out_of_range);
+    CHECK(code("0.3 MM") == ErrorCode::out_of_range);
+    CHECK(code("0.3mm 4") == ErrorCode::out_of_range);
+    CHECK(code("nan mm") == ErrorCode::not_finite);
+    CHECK(code("inf mm") == ErrorCode::not_finite);
+    CHECK(code("1e999 mm") == ErrorCode::not_finite);
+    const Error error = parse_length("0.3", "--minimum").errors().at(0);
+    CHECK(error.where == "--minimum");
+    CHECK(error.message.find("um, mm, cm, m, in, ft") != std::string::npos);
+    CHECK_FALSE(metres_per_unit("yard"));
+}
+
+TEST_CASE("lengths are written in a unit and read back", "[base]") {
+    CHECK(format_length(0.0003, "mm") == "0.3 mm");
+    CHECK(format_length(0.03, "mm") == "30 mm");
+    CHECK(format_length(0.0254, "in") == "1 in");
+    CHECK(format_length(1.0 / 3, "m", 3) == "0.333 m");
+    CHECK(parse_length(format_length(0.1234567890123456, "mm", 17)).value() == Approx(0.1234567890123456).epsilon(1e-15));
+    CHECK_THROWS_AS(format_length(1, "yard"), ContractError);
+}
