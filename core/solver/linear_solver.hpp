@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+/// Solves with the Hessian over the free degrees of freedom: dense Cholesky for few, CHOLMOD (simplicial, symbolic factor kept while
+/// the pattern holds) for many. The same bits on every machine with the same instruction set: no BLAS is involved.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::solver {
+
+/// Numbering of the degrees of freedom that are solved for.
+struct FreeDofs {
+    std::vector<std::array<int, 6>> index;  ///< [body][dof]: column, or -1 if prescribed
+    int count = 0;
+};
+FreeDofs free_dofs(const model::Model& model);
+
+/// Entries of the free DOFs of a per-body vector, and back (prescribed entries are left alone).
+VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values);
+void scatter(const FreeDofs& dofs, const VectorX& free_values, std::vector<Vector6>& values);
+
+/// H v over all bodies' six coordinates.
+std::vector<Vector6> multiply(const kinematics::BlockHessian& hessian, const std::vector<Vector6>& v);
+
+class LinearSolver {
+public:
+    explicit LinearSolver(const FreeDofs& dofs);
+    ~LinearSolver();
+    LinearSolver(LinearSolver&&) noexcept;
+    LinearSolver& operator=(LinearSolver&&) noexcept;
+
+    /// Cholesky of the free part. @return false if it is not positive definite (then solve must not be called).
+    bool factorise(const kinematics::BlockHessian& hessian);
+
+    /// Any invertible symmetric matrix (dense LU, or sparse LU for many): for the adjoint. @return false if it is singular to rounding.
+    bool factorise_indefinite(const kinematics::BlockHessian& hessian);
+
+    /// One column per right-hand side.
+    MatrixX solve(const MatrixX& rhs) const;
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace fettle::core::solver

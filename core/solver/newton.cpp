@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/solver/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "fettle/core/contact/safe_step.hpp"
+
+namespace fettle::core::solver {
+namespace {
+
+using contact::HessianKind;
+using contact::MotionAllowance;
+using kinematics::ChartPoint;
+using kinematics::PathSegment;
+using kinematics::Pose;
+
+constexpr double sufficient_decrease = 1e-4;
+constexpr double smallest_step = 1e-12;
+constexpr double stalled_step = 1e-3;   // a step this short, again and again, means that the way is blocked
+constexpr int stalled_iterations = 25;
+
+Vector6 coordinates(const ChartPoint& p) {
+    Vector6 y;
+    y << p.position, p.rotation_vector;
+    return y;
+}
+
+ChartPoint chart_point(const Vector6& y) { return {y.head<3>(), y.tail<3>()}; }
+
+struct Direction {
+    std::vector<Vector6> step;         // per body
+    std::vector<Vector6> remaining;    // prescribed part of it
+    double remaining_norm = 0;         // l1, rotations times the body's radius [m]
+    double slope = 0;                  // g . step
+    double motion = 0;                 // bound on the largest motion of a point of a body that is solved for [m]
+    double residual = 0;
+    HessianKind kind = HessianKind::exact;
+};
+
+class Minimiser {
+public:
+    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear,
+              const NewtonOptions& options)
+        : problem_(problem), model_(*problem.model), targets_(targets), dofs_(dofs), linear_(linear), options_(options) {
+        for (const Pose& pose : problem.poses_t0) points_.push_back({pose.position, Vector3::Zero()});
+        result_.poses = problem.poses_t0;
+        result_.path.push_back(points_);
+    }
+
+    NewtonResult run(const std::vector<MotionAllowance>& expected_motion) {
+        find_candidates(expected_motion);
+        value_ = energy::incremental_potential(problem_, result_.poses, candidates_);
+        while (iterate()) {
+        }
+        result_.contacts = contacts_.count;
+        result_.minimum_distance = contacts_.minimum_distance;
+        return std::move(result_);
+    }
+
+private:
+    bool stop(NewtonStatus status, const std::string& message = {}) {
+        result_.status = status;
+        result_.message = message;
+        return false;
+    }
+
+    void find_candidates(const std::vector<MotionAllowance>& expected) {
+        std::vector<MotionAllowance> allowances(expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const model::Body& body = model_.bodies[i];
+            if (body.type == scene::BodyType::static_body) continue;
+            allowances[i].translation = 2 * expected[i].translation + 0.25 * model_.dhat;
+            allowances[i].rotation = 2 * expected[i].rotation + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
+        }
+        candidates_ = contact::find_candidates(model_, result_.poses, allowances);
+    }
+
+    // One Newton iteration. @return whether to go on.
+    bool iterate() {
+        if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted);
+        contacts_ = contact::find_contacts(model_, candidates_, result_.poses);
+        const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
+        projected_iterations_ = std::max(0, projected_iterations_ - 1);
+        Direction direction;
+        if (!find_direction(kind, direction)) return stop(NewtonStatus::not_converged, "the Newton matrix could not be made positive definite");
+        result_.residual = direction.residual;
+        const bool arrived = direction.remaining_norm == 0;
+        const bool slow = direction.motion <= options_.velocity_tolerance * model_.timestep;
+        if (!options_.to_rounding && result_.iterations > 0 && arrived && slow) return stop(NewtonStatus::converged);
+        if (result_.iterations >= options_.max_iterations) return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
+
+        ++result_.iterations;
+        const double fraction = search(direction);
+        if (fraction == 0 && direction.kind == HessianKind::exact) {
+            projected_iterations_ = 3;
+            return true;
+        }
+        if (fraction == 0) {
+            if (arrived && slow) return stop(NewtonStatus::converged);
+            return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
+        }
+        stalled_ = fraction < stalled_step ? stalled_ + 1 : 0;
+        if (!arrived && stalled_ >= stalled_iterations) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
+        // A full exact step this small leaves an error of its square over the gap: rounding.
+        const double rounding_motion = 1e-7 * std::min(model_.dhat, contacts_.minimum_distance - model_.dmin);
+        if (options_.to_rounding && fraction == 1 && arrived && direction.kind == HessianKind::exact && direction.motion <= rounding_motion)
+            return finish_at_rounding();
+        return true;
+    }
+
+    // The residual that is reported belongs to the final point.
+    bool finish_at_rounding() {
+        contacts_ = contact::find_contacts(model_, candidates_, result_.poses);
+        const energy::ChartDerivatives d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, HessianKind::projected);
+        result_.residual = residual_of(d);
+        return stop(NewtonStatus::converged);
+    }
+
+    double residual_of(const energy::ChartDerivatives& d) const {
+        double square = 0, magnitude = 0;
+        for (std::size_t i = 0; i < d.gradient.size(); ++i) {
+            for (int k = 0; k < 6; ++k) {
+                if (dofs_.index[i][k] < 0) continue;
+                const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model_.bodies[i].radius, 1e-300);
+                square += g * g;
+            }
+            magnitude += d.force_magnitude[i];
+        }
+        return magnitude > 0 ? std::sqrt(square) / magnitude : std::sqrt(square);
+    }
+
+    bool find_direction(HessianKind kind, Direction& direction) {
+        energy::ChartDerivatives d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
+        bool definite = dofs_.count == 0 || linear_.factorise(d.hessian);
+        if (!definite && kind == HessianKind::exact) {
+            projected_iterations_ = 1;
+            kind = HessianKind::projected;
+            d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
+            definite = linear_.factorise(d.hessian);
+        }
+        for (double shift = 1e-12; !definite && shift < 1e3; shift *= 100) {
+            for (Matrix6& block : d.hessian.diagonal) block.diagonal() *= 1 + shift;
+            definite = linear_.factorise(d.hessian);
+        }
+        if (!definite) return false;
+        direction.kind = kind;
+        direction.residual = residual_of(d);
+        fill_direction(d, direction);
+        return true;
+    }
+
+    void fill_direction(const energy::ChartDerivatives& d, Direction& direction) {
+        const std::size_t n = points_.size();
+        direction.remaining.assign(n, Vector6::Zero());
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vector6 current = coordinates(points_[i]);
+            for (int k = 0; k < 6; ++k) {
+                if (dofs_.index[i][k] >= 0) continue;
+                direction.remaining[i][k] = targets_[i][k] - current[k];
+                direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model_.bodies[i].radius);
+            }
+        }
+        direction.step = direction.remaining;
+        if (dofs_.count > 0) {
+            VectorX rhs = -gather(dofs_, d.gradient);
+            if (direction.remaining_norm > 0) rhs -= gather(dofs_, multiply(d.hessian, direction.remaining));
+            scatter(dofs_, linear_.solve(rhs), direction.step);
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            direction.slope += d.gradient[i].dot(direction.step[i]);
+            bool solved_for = false;
+            for (int index : dofs_.index[i]) solved_for = solved_for || index >= 0;
+            if (solved_for)
+                direction.motion = std::max(direction.motion, direction.step[i].head<3>().norm() + direction.step[i].tail<3>().norm() * model_.bodies[i].radius);
+        }
+    }
+
+    std::vector<ChartPoint> moved(const Direction& direction, double fraction) const {
+        std::vector<ChartPoint> out(points_.size());
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            Vector6 y = coordinates(points_[i]) + fraction * direction.step[i];
+            if (fraction == 1)  // prescribed coordinates arrive exactly
+                for (int k = 0; k < 6; ++k)
+                    if (dofs_.index[i][k] < 0) y[k] = targets_[i][k];
+            out[i] = chart_point(y);
+        }
+        return out;
+    }
+
+    // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
+    double search(const Direction& direction) {
+        const std::vector<ChartPoint> end = moved(direction, 1);
+        std::vector<PathSegment> segments(points_.size());
+        for (std::size_t i = 0; i < points_.size(); ++i) segments[i] = path_between(problem_.poses_t0[i].rotation, points_[i], end[i]);
+        if (!contact::covers(candidates_, segments)) {
+            std::vector<MotionAllowance> expected(points_.size());
+            for (std::size_t i = 0; i < points_.size(); ++i)
+                expected[i] = {segments[i].position_step.norm(), segments[i].rotation_vector_step.norm()};
+            find_candidates(expected);
+        }
+        const contact::SafeStep safe = contact::longest_safe_step(model_, candidates_, segments);
+        limiting_ = safe;
+        const double remaining = direction.remaining_norm;
+        if (remaining > 0) penalty_ = std::max(penalty_, direction.slope > 0 ? 2 * direction.slope / remaining : 0.0);
+        const double slope = direction.slope - penalty_ * remaining;
+        for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
+            std::vector<ChartPoint> trial = moved(direction, fraction);
+            std::vector<Pose> poses = poses_of(problem_, trial);
+            const energy::PotentialValue value = energy::incremental_potential(problem_, poses, candidates_);
+            const double change = value.value - value_.value - penalty_ * fraction * remaining;
+            const double noise = 1e-14 * (value.magnitude + value_.magnitude);
+            if (!(change <= sufficient_decrease * fraction * slope + noise)) continue;
+            points_ = std::move(trial);
+            result_.poses = std::move(poses);
+            value_ = value;
+            result_.path.push_back(points_);
+            return fraction;
+        }
+        return 0;
+    }
+
+    NewtonStatus failure(const Direction& direction) const {
+        return direction.remaining_norm > 0 ? NewtonStatus::blocked : NewtonStatus::not_converged;
+    }
+
+    std::string failure_message(const Direction& direction, const std::string& cause) const {
+        std::ostringstream out;
+        int held = -1;
+        double most = 0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const Vector6& r = direction.remaining[i];
+            const double left = r.head<3>().norm() + r.tail<3>().norm() * model_.bodies[i].radius;
+            if (left > most) {
+                most = left;
+                held = static_cast<int>(i);
+            }
+        }
+        if (held >= 0) out << "body '" << model_.bodies[held].name << "' cannot follow its script (" << most << " m short): ";
+        out << cause;
+        if (limiting_.limiting_a >= 0)
+            out << "; '" << model_.bodies[limiting_.limiting_a].name << "' against '" << model_.bodies[limiting_.limiting_b].name << "'";
+        out << describe_closest() << "; residual " << direction.residual << ", kappa " << model_.kappa << " N/m";
+        return out.str();
+    }
+
+    std::string describe_closest() const {
+        const contact::BodyPairContacts* closest = nullptr;
+        double least = 0;
+        for (const contact::BodyPairContacts& pair : contacts_.pairs)
+            for (const contact::ContactPair& c : pair.contacts)
+                if (!closest || c.closest.distance_squared < least) {
+                    closest = &pair;
+                    least = c.closest.distance_squared;
+                }
+        if (!closest) return {};
+        std::ostringstream out;
+        out << "; closest pair '" << model_.bodies[closest->first].name << "' and '" << model_.bodies[closest->second].name << "' at "
+            << std::sqrt(least) << " m";
+        return out.str();
+    }
+
+    const energy::StepProblem& problem_;
+    const model::Model& model_;
+    const std::vector<Vector6>& targets_;
+    const FreeDofs& dofs_;
+    LinearSolver& linear_;
+    const NewtonOptions& options_;
+    std::vector<ChartPoint> points_;
+    contact::Candidates candidates_;
+    contact::ContactSet contacts_;
+    contact::SafeStep limiting_;
+    energy::PotentialValue value_;
+    double penalty_ = 0;
+    int projected_iterations_ = 0;
+    int stalled_ = 0;
+    NewtonResult result_;
+};
+
+}  // namespace
+
+NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const std::vector<MotionAllowance>& expected_motion,
+                      const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options) {
+    return Minimiser(problem, targets, dofs, linear, options).run(expected_motion);
+}
+
+}  // namespace fettle::core::solver
