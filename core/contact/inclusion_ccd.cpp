@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/inclusion_ccd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <queue>
+#include <vector>
+
+#include "fettle/core/contact/conservative_advancement.hpp"
+
+namespace fettle::core::contact {
+
+namespace {
+
+constexpr double rounding = 36 * 0x1p-52;
+/// Halving stops here whatever the tolerance: middles of boxes stay exact.
+constexpr double least_width = 0x1p-50;
+
+/// A box of (t, u, v): lower corner and widths, all dyadic and exact.
+struct Box {
+    std::array<double, 3> low{0, 0, 0}, width{1, 1, 1};
+};
+
+/// Earliest first; among equals the smallest, so that the search dives.
+struct Later {
+    bool operator()(const Box& a, const Box& b) const {
+        if (a.low[0] != b.low[0]) return a.low[0] > b.low[0];
+        return a.width[0] * a.width[1] * a.width[2] > b.width[0] * b.width[1] * b.width[2];
+    }
+};
+
+struct Range {
+    Vector3 low, high;
+};
+
+class InclusionSearch {
+public:
+    InclusionSearch(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin, const LinearCcdOptions& options)
+        : type_(type), options_(options) {
+        double size = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            x_t0_[i] = t0[i] - t0[0];
+            x_t1_[i] = t1[i] - t0[0];
+            size = std::max({size, x_t0_[i].cwiseAbs().maxCoeff(), x_t1_[i].cwiseAbs().maxCoeff()});
+            finite_ = finite_ && x_t0_[i].allFinite() && x_t1_[i].allFinite();
+        }
+        if (!finite_ || size == 0) return;
+        int exponent = 0;
+        std::frexp(size, &exponent);
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (int k = 0; k < 3; ++k) {
+                x_t0_[i][k] = std::ldexp(x_t0_[i][k], -exponent);
+                x_t1_[i][k] = std::ldexp(x_t1_[i][k], -exponent);
+            }
+        }
+        reach_ = std::ldexp(dmin, -exponent) * (1 + 0x1p-50) + rounding;
+        tolerance_ = std::ldexp(options.tolerance, -exponent);
+        set_dimension_tolerances();
+    }
+
+    LinearCcdResult run() const {
+        if (!finite_) return {true, 0};
+        std::priority_queue<Box, std::vector<Box>, Later> queue;
+        queue.push({});
+        for (int i = 0; !queue.empty(); ++i) {
+            const Box box = queue.top();
+            queue.pop();
+            const Range range = range_over(box);
+            if ((range.low.array() > reach_).any() || (range.high.array() < -reach_).any()) continue;
+            if (i >= options_.max_iterations || is_small(box, range)) return {true, box.low[0]};
+            halve(box, queue);
+        }
+        return {};
+    }
+
+private:
+    Vector3 difference(const PairVertices& x, double u, double v) const {
+        if (type_ == PairType::point_triangle) return x[0] - ((x[2] - x[1]) * u + (x[3] - x[1]) * v + x[1]);
+        return ((x[1] - x[0]) * u + x[0]) - ((x[3] - x[2]) * v + x[2]);
+    }
+
+    PairVertices vertices_at(double t) const {
+        PairVertices x;
+        for (std::size_t i = 0; i < 4; ++i) x[i] = (x_t1_[i] - x_t0_[i]) * t + x_t0_[i];
+        return x;
+    }
+
+    Range range_over(const Box& box) const {
+        Range r{Vector3::Constant(INFINITY), Vector3::Constant(-INFINITY)};
+        for (const double t : {box.low[0], box.low[0] + box.width[0]}) {
+            const PairVertices x = vertices_at(t);
+            for (const double u : {box.low[1], box.low[1] + box.width[1]}) {
+                for (const double v : {box.low[2], box.low[2] + box.width[2]}) {
+                    const Vector3 f = difference(x, u, v);
+                    r.low = r.low.cwiseMin(f);
+                    r.high = r.high.cwiseMax(f);
+                }
+            }
+        }
+        return r;
+    }
+
+    /// Width that keeps the box's image within the tolerance: a third of it per dimension, by the longest edge of the corner hexahedron.
+    void set_dimension_tolerances() {
+        std::array<double, 3> length{0, 0, 0};
+        const auto lengthen = [&](int k, const Vector3& edge) {
+            length[static_cast<std::size_t>(k)] = std::max(length[static_cast<std::size_t>(k)], edge.cwiseAbs().maxCoeff());
+        };
+        for (const double a : {0.0, 1.0}) {
+            for (const double b : {0.0, 1.0}) {
+                lengthen(0, difference(x_t1_, a, b) - difference(x_t0_, a, b));
+                const PairVertices& x = a == 0 ? x_t0_ : x_t1_;
+                lengthen(1, difference(x, 1, b) - difference(x, 0, b));
+                lengthen(2, difference(x, b, 1) - difference(x, b, 0));
+            }
+        }
+        for (std::size_t k = 0; k < 3; ++k) dimension_tolerance_[k] = std::max(least_width, tolerance_ / (3 * std::max(length[k], 1e-300)));
+    }
+
+    bool is_small(const Box& box, const Range& range) const {
+        bool narrow = true, least = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            narrow = narrow && box.width[k] <= dimension_tolerance_[k];
+            least = least && box.width[k] <= least_width;
+        }
+        const bool small_image = (range.high - range.low).maxCoeff() <= tolerance_;
+        const bool inside = (range.low.array() >= -reach_).all() && (range.high.array() <= reach_).all();
+        return narrow || least || small_image || inside;
+    }
+
+    template <class Queue>
+    void halve(const Box& box, Queue& queue) const {
+        std::size_t k = 0;
+        for (std::size_t i = 1; i < 3; ++i) {
+            if (box.width[i] / dimension_tolerance_[i] > box.width[k] / dimension_tolerance_[k]) k = i;
+        }
+        Box half = box;
+        half.width[k] = 0.5 * box.width[k];
+        queue.push(half);
+        half.low[k] += half.width[k];
+        // Points of a triangle have u + v <= 1.
+        if (type_ == PairType::point_triangle && half.low[1] + half.low[2] > 1) return;
+        queue.push(half);
+    }
+
+    PairType type_;
+    const LinearCcdOptions& options_;
+    PairVertices x_t0_, x_t1_;
+    bool finite_ = true;
+    double reach_ = rounding, tolerance_ = 0;
+    std::array<double, 3> dimension_tolerance_{1, 1, 1};
+};
+
+/// Time before which primitives that start apart cannot have met: the first gap over the fastest relative speed of two vertices.
+double first_possible_contact(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin) {
+    const double gap = (distance_lower_bound(type, t0) - dmin) * (1 - 0x1p-50);
+    if (!(gap > 0)) return 0;
+    double speed = 0;
+    const std::size_t first_count = type == PairType::point_triangle ? 1 : 2;
+    for (std::size_t i = 0; i < first_count; ++i) {
+        for (std::size_t j = first_count; j < 4; ++j) {
+            const Vector3 d = t0[i] - t0[j], e = t1[i] - t1[j];
+            speed = std::max(speed, (e - d).norm() + 0x1p-50 * (d.norm() + e.norm()));
+        }
+    }
+    return speed > gap ? gap / speed * (1 - 0x1p-50) : 1;
+}
+
+}  // namespace
+
+LinearCcdResult inclusion_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin, const LinearCcdOptions& options) {
+    LinearCcdResult result = InclusionSearch(type, t0, t1, dmin, options).run();
+    // The first box starts at 0 however late the contact within it is.
+    if (result.hit && result.toi == 0) result.toi = std::min(1.0, first_possible_contact(type, t0, t1, dmin));
+    return result;
+}
+
+}  // namespace fettle::core::contact
