@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/geometry/mesh_validity.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "fettle/core/geometry/predicates.hpp"
+
+namespace fettle::core::geometry {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+/// Beyond this many intersecting pairs the message says "at least".
+constexpr int counted_intersections = 1000;
+
+Corners corners_of(const Matrix3X& vertices, const Triangle& t) { return {vertices.col(t[0]), vertices.col(t[1]), vertices.col(t[2])}; }
+
+Box box_of(const Corners& x) { return {x[0].cwiseMin(x[1]).cwiseMin(x[2]), x[0].cwiseMax(x[1]).cwiseMax(x[2])}; }
+
+std::string coordinates(const Vector3& x) {
+    char text[96];
+    std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g) m", x.x(), x.y(), x.z());
+    return text;
+}
+
+std::string edge_text(const Mesh& mesh, int a, int b) {
+    return "from " + coordinates(mesh.vertices.col(a)) + " to " + coordinates(mesh.vertices.col(b));
+}
+
+bool in_range(const Mesh& mesh, const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](int vertex) { return vertex >= 0 && vertex < mesh.vertices.cols(); });
+}
+
+bool all_in_range(const Mesh& mesh) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) { return in_range(mesh, t); });
+}
+
+/// Faults of one kind: the first few in full, then how many more there are.
+class Faults {
+public:
+    Faults(const Mesh& mesh, int max_per_kind, Errors& errors) : mesh_(mesh), max_per_kind_(max_per_kind), errors_(errors) {}
+
+    void add(ErrorCode code, const std::string& where, const std::string& message) {
+        if (count_++ < max_per_kind_) errors_.push_back({code, mesh_.name + ": " + where, message});
+    }
+    /// "and 12 more <what>", after the last of a kind.
+    void finish(ErrorCode code, const std::string& what) {
+        if (count_ > max_per_kind_) {
+            errors_.push_back({code, mesh_.name, "and " + std::to_string(count_ - max_per_kind_) + " more " + what});
+        }
+        count_ = 0;
+    }
+
+private:
+    const Mesh& mesh_;
+    int max_per_kind_;
+    int count_ = 0;
+    Errors& errors_;
+};
+
+/// One side of a triangle: its undirected edge, whether it runs from the smaller index to the larger, and whose it is.
+struct HalfEdge {
+    int low, high;
+    bool forward;
+    int triangle;
+
+    bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
+};
+
+std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
+    std::vector<HalfEdge> halves;
+    halves.reserve(3 * mesh.triangles.size());
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+            halves.push_back({std::min(a, b), std::max(a, b), a < b, t});
+        }
+    }
+    std::sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
+    });
+    return halves;
+}
+
+/// Calls visit(first, last) with the half edges of each edge that is not in exactly two triangles, once in each direction.
+template <class Visit>
+void visit_faulty_edges(const std::vector<HalfEdge>& halves, Visit visit) {
+    for (std::size_t first = 0, last = 0; first < halves.size(); first = last) {
+        for (last = first + 1; last < halves.size() && halves[last].same_edge(halves[first]);) ++last;
+        const bool sound =
+            last - first == 2 && halves[first].forward != halves[first + 1].forward && halves[first].low != halves[first].high;
+        if (!sound) visit(first, last);
+    }
+}
+
+bool check_numbers(const Mesh& mesh, Faults& faults) {
+    bool sound = true;
+    for (int i = 0; i < mesh.vertices.cols(); ++i) {
+        if (mesh.vertices.col(i).allFinite()) continue;
+        sound = false;
+        faults.add(ErrorCode::not_finite, "vertex " + std::to_string(i),
+                   "coordinates " + coordinates(mesh.vertices.col(i)) + " are not finite; export the mesh again");
+    }
+    faults.finish(ErrorCode::not_finite, "vertices that are not finite");
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (in_range(mesh, mesh.triangles[t])) continue;
+        sound = false;
+        const Triangle& v = mesh.triangles[t];
+        faults.add(ErrorCode::out_of_range, "triangle " + std::to_string(t),
+                   "vertex indices " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) +
+                       " must be in 0 to " + std::to_string(mesh.vertices.cols() - 1));
+    }
+    faults.finish(ErrorCode::out_of_range, "triangles with vertex indices out of range");
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        if (in_range(mesh, {mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]})) continue;
+        sound = false;
+        faults.add(ErrorCode::out_of_range, "edge " + std::to_string(e), "vertex indices are out of range");
+    }
+    faults.finish(ErrorCode::out_of_range, "edges with vertex indices out of range");
+    return sound;
+}
+
+void check_areas(const Mesh& mesh, Faults& faults) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Corners x = corners_of(mesh.vertices, mesh.triangles[t]);
+        if (!is_degenerate(x)) continue;
+        faults.add(ErrorCode::mesh_invalid, "triangle " + std::to_string(t),
+                   "has no area: its corners " + coordinates(x[0]) + ", " + coordinates(x[1]) + ", " + coordinates(x[2]) +
+                       " are on one line; remove it and join its neighbours");
+    }
+    faults.finish(ErrorCode::mesh_invalid, "triangles without area");
+}
+
+void describe_faulty_edge(const Mesh& mesh, const std::vector<HalfEdge>& halves, std::size_t first, std::size_t last, Faults& faults) {
+    const HalfEdge& half = halves[first];
+    const std::string where = "triangle " + std::to_string(half.triangle);
+    const std::string edge = "its edge " + edge_text(mesh, half.low, half.high);
+    const std::size_t count = last - first;
+    if (half.low == half.high) {
+        faults.add(ErrorCode::mesh_invalid, where, "has the same vertex twice; remove it");
+    } else if (count == 1) {
+        faults.add(ErrorCode::mesh_invalid, where, edge + " belongs to no other triangle: the surface is open; close the hole");
+    } else if (count == 2) {
+        faults.add(ErrorCode::mesh_invalid, where,
+                   edge + " runs the same way in triangle " + std::to_string(halves[first + 1].triangle) +
+                       ": one of the two is turned over; orient all triangles counter-clockwise seen from outside");
+    } else {
+        std::string others;
+        for (std::size_t i = first + 1; i < last && i < first + 6; ++i)
+            others += (i == first + 1 ? "" : ", ") + std::to_string(halves[i].triangle);
+        faults.add(ErrorCode::mesh_invalid, where,
+                   edge + " is shared with " + std::to_string(count - 1) + " triangles (" + others + (count > 6 ? ", ..." : "") +
+                       "), one is allowed: separate the parts that touch there");
+    }
+}
+
+/// True if every edge is sound.
+bool check_closed(const Mesh& mesh, Faults& faults) {
+    bool closed = !mesh.triangles.empty();
+    if (!closed) faults.add(ErrorCode::mesh_invalid, "mesh", "has no triangles, so it is not the boundary of a solid");
+    const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+    visit_faulty_edges(halves, [&](std::size_t first, std::size_t last) {
+        closed = false;
+        describe_faulty_edge(mesh, halves, first, last, faults);
+    });
+    faults.finish(ErrorCode::mesh_invalid, "edges that are not in exactly two triangles, once in each direction");
+
+    const std::size_t triangle_edges = std::min(mesh.edges.size(), make_mesh("", mesh.vertices, mesh.triangles).edges.size());
+    for (std::size_t e = triangle_edges; e < mesh.edges.size(); ++e) {
+        faults.add(ErrorCode::mesh_invalid, "edge " + std::to_string(e),
+                   edge_text(mesh, mesh.edges[e][0], mesh.edges[e][1]) + " belongs to no triangle, so not to a solid; remove it");
+    }
+    faults.finish(ErrorCode::mesh_invalid, "edges without a triangle");
+    for (const int vertex : mesh.codimensional_points) {
+        faults.add(ErrorCode::mesh_invalid, "vertex " + std::to_string(vertex),
+                   "at " + coordinates(mesh.vertices.col(vertex)) + " belongs to no triangle, so not to a solid; remove it");
+    }
+    faults.finish(ErrorCode::mesh_invalid, "vertices without a triangle");
+    return closed;
+}
+
+/// True if there are none.
+bool check_self_intersections(const Mesh& mesh, int max_per_kind, Errors& errors) {
+    const auto pairs = self_intersections(mesh, std::max(counted_intersections, max_per_kind + 1));
+    for (int i = 0; i < std::min(max_per_kind, static_cast<int>(pairs.size())); ++i) {
+        const auto [t, u] = pairs[static_cast<std::size_t>(i)];
+        const Box a = box_of(corners_of(mesh.vertices, mesh.triangles[t])), b = box_of(corners_of(mesh.vertices, mesh.triangles[u]));
+        const Vector3 near = (a.low.cwiseMax(b.low) + a.high.cwiseMin(b.high)) / 2;
+        errors.push_back({ErrorCode::mesh_invalid, mesh.name + ": triangle " + std::to_string(t),
+                          "intersects triangle " + std::to_string(u) + " of the same mesh near " + coordinates(near) +
+                              "; unite overlapping parts, or weld vertices that should be one"});
+    }
+    const int more = static_cast<int>(pairs.size()) - max_per_kind;
+    if (more > 0) {
+        const std::string count = (static_cast<int>(pairs.size()) >= counted_intersections ? "at least " : "") + std::to_string(more);
+        errors.push_back({ErrorCode::mesh_invalid, mesh.name, "and " + count + " more pairs of intersecting triangles"});
+    }
+    return pairs.empty();
+}
+
+struct Shell {
+    std::vector<Triangle> triangles;
+    std::vector<int> vertices;  ///< sorted, distinct
+    Box box;
+};
+
+std::vector<Shell> shells_of(const Mesh& mesh) {
+    FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "validate_mesh needs a mesh with connectivity (build_connectivity)");
+    std::vector<Shell> shells(mesh.shell_names.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) shells.at(mesh.triangle_shell[t]).triangles.push_back(mesh.triangles[t]);
+    for (Shell& shell : shells) {
+        shell.box = box_of(corners_of(mesh.vertices, shell.triangles.front()));
+        for (const Triangle& t : shell.triangles) {
+            const Box box = box_of(corners_of(mesh.vertices, t));
+            shell.box = {shell.box.low.cwiseMin(box.low), shell.box.high.cwiseMax(box.high)};
+            shell.vertices.insert(shell.vertices.end(), t.begin(), t.end());
+        }
+        std::sort(shell.vertices.begin(), shell.vertices.end());
+        shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
+    }
+    return shells;
+}
+
+/// Of two shells that do not cross: is `inner` within `outer`? Asked of a vertex that is not on `outer`; all others are on the same side.
+bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertices) {
+    for (const int vertex : inner.vertices) {
+        if (std::binary_search(outer.vertices.begin(), outer.vertices.end(), vertex)) continue;
+        const Vector3 x = vertices.col(vertex);
+        return outer.box.contains(x) && point_in_solid(x, vertices, outer.triangles);
+    }
+    return false;
+}
+
+/// Each shell of a closed mesh without self-intersections: a solid (positive volume) within an even number of others, a cavity
+/// (negative volume) within an odd number.
+void check_orientation(const Mesh& mesh, Faults& faults) {
+    const std::vector<Shell> shells = shells_of(mesh);
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+        int depth = 0;
+        std::string around;
+        for (std::size_t other = 0; other < shells.size(); ++other) {
+            if (other == s || !lies_within(shells[s], shells[other], mesh.vertices)) continue;
+            ++depth;
+            around = mesh.shell_names[other];
+        }
+        const int sign = volume_sign(mesh.vertices, shells[s].triangles);
+        const std::string where = "shell \"" + mesh.shell_names[s] + "\"";
+        if (sign == 0) {
+            faults.add(ErrorCode::mesh_invalid, where, "encloses no volume");
+        } else if (sign < 0 && depth % 2 == 0) {
+            faults.add(ErrorCode::mesh_invalid, where,
+                       "is inside out: its triangles are clockwise seen from outside; reverse the order of their corners");
+        } else if (sign > 0 && depth % 2 == 1) {
+            faults.add(ErrorCode::mesh_invalid, where,
+                       "is a solid inside the solid \"" + around +
+                           "\", so its volume would count twice; for a cavity reverse its triangles, else make it a body of its own");
+        }
+    }
+    faults.finish(ErrorCode::mesh_invalid, "shells that are inside out or empty");
+}
+
+bool all_on_one_side(const Corners& triangle, const Corners& points) {
+    const int side = orient3d(triangle[0], triangle[1], triangle[2], points[0]);
+    return side != 0 && orient3d(triangle[0], triangle[1], triangle[2], points[1]) == side &&
+           orient3d(triangle[0], triangle[1], triangle[2], points[2]) == side;
+}
+
+/// Corners of t in cyclic order such that the ones shared with u come first. Returns how many are shared.
+int rotate_shared_first(Triangle& t, const Triangle& u) {
+    const auto is_shared = [&](int vertex) { return std::find(u.begin(), u.end(), vertex) != u.end(); };
+    const int count = static_cast<int>(std::count_if(t.begin(), t.end(), is_shared));
+    if (count == 1) {
+        while (!is_shared(t[0])) std::rotate(t.begin(), t.begin() + 1, t.end());
+    } else if (count == 2) {
+        while (is_shared(t[2])) std::rotate(t.begin(), t.begin() + 1, t.end());
+    }
+    return count;
+}
+
+/// Two triangles with an area: do they meet anywhere but in the vertices and the edge that they share by index?
+bool intersect_improperly(const Matrix3X& vertices, Triangle t, Triangle u) {
+    const int shared = rotate_shared_first(t, u);
+    rotate_shared_first(u, t);
+    const Corners a = corners_of(vertices, t), b = corners_of(vertices, u);
+    if (shared == 0) return triangles_intersect(a, b);
+    if (shared == 1) {
+        // From a common point x other than the shared vertex v one can go on, away from v, until one of the triangles ends: on its edge
+        // opposite to v, still within the other.
+        return segment_intersects_triangle(a[1], a[2], b) || segment_intersects_triangle(b[1], b[2], a);
+    }
+    if (shared == 2) {
+        // Two half planes bounded by one line meet elsewhere only if they are the same half plane.
+        if (orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
+        const int axis = projection_axis(a[0], a[1], a[2]);
+        const auto side = [&](const Vector3& x) { return orient2d(projected(a[0], axis), projected(a[1], axis), projected(x, axis)); };
+        return side(a[2]) == side(b[2]);
+    }
+    return true;
+}
+
+/// Sign of orient2d(a, b, p') with p' = p + (epsilon, epsilon^2) for every small enough epsilon > 0: never 0 unless a = b.
+int orient2d_perturbed(const Vector2& a, const Vector2& b, const Vector2& p) {
+    const int sign = orient2d(a, b, p);
+    if (sign != 0) return sign;
+    if (a.y() != b.y()) return b.y() < a.y() ? 1 : -1;
+    return (b.x() > a.x()) - (b.x() < a.x());
+}
+
+bool point_on_triangle(const Vector3& point, const Corners& triangle) {
+    return box_of(triangle).contains(point) && segment_intersects_triangle(point, point, triangle);
+}
+
+}  // namespace
+
+Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int max_per_kind) {
+    Errors errors;
+    Faults faults(mesh, max_per_kind, errors);
+    if (!check_numbers(mesh, faults)) return errors;  // nothing else has a meaning
+    check_areas(mesh, faults);
+    const bool closed = requirements.closed && check_closed(mesh, faults);
+    const bool simple = requirements.no_self_intersection && check_self_intersections(mesh, max_per_kind, errors);
+    if (!closed) return errors;
+    if (simple) {
+        check_orientation(mesh, faults);
+    } else if (volume_sign(mesh.vertices, mesh.triangles) <= 0) {
+        // Where shells may cross, which is inside which has no answer: only the sum can be judged.
+        faults.add(ErrorCode::mesh_invalid, "mesh", "its volume is not positive: it is inside out, or empty; reverse its triangles");
+    }
+    return errors;
+}
+
+bool is_closed(const Mesh& mesh) {
+    if (mesh.triangles.empty() || !all_in_range(mesh)) return false;
+    bool closed = true;
+    visit_faulty_edges(sorted_half_edges(mesh), [&](std::size_t, std::size_t) { closed = false; });
+    return closed;
+}
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, int max_count) {
+    FETTLE_ASSERT(all_in_range(mesh), "self_intersections needs vertex indices in range");
+    std::vector<Box> boxes;
+    std::vector<int> triangles;  // those with an area; the others are faults of their own
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+        const Corners x = corners_of(mesh.vertices, mesh.triangles[t]);
+        if (is_degenerate(x)) continue;
+        boxes.push_back(box_of(x));
+        triangles.push_back(t);
+    }
+    std::vector<std::pair<int, int>> pairs;
+    if (max_count <= 0) return pairs;
+    visit_overlapping_pairs(boxes, [&](int i, int j) {
+        const int t = triangles[i], u = triangles[j];
+        if (intersect_improperly(mesh.vertices, mesh.triangles[t], mesh.triangles[u])) pairs.emplace_back(t, u);
+        return static_cast<int>(pairs.size()) < max_count;
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b) {
+    if (!box_of(a).overlaps(box_of(b)) || all_on_one_side(a, b) || all_on_one_side(b, a)) return false;
+    // If they meet, then an edge of one meets the other: the ends of their common segment, or a corner within, are on an edge.
+    for (int k = 0; k < 3; ++k) {
+        if (segment_intersects_triangle(a[k], a[(k + 1) % 3], b) || segment_intersects_triangle(b[k], b[(k + 1) % 3], a)) return true;
+    }
+    return false;
+}
+
+bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
+    // Ray in direction +x, moved by (epsilon, epsilon^2) in y and z so that it meets no edge and no vertex. A point in the plane of a
+    // triangle that the moved ray crosses is on the triangle (it is in its closed projection), which the first test has excluded.
+    const Vector2 p = projected(point, 0);
+    bool inside = false;
+    for (const Triangle& triangle : triangles) {
+        const Corners x = corners_of(vertices, triangle);
+        const Box box = box_of(x);
+        const bool in_projection = (box.low.tail<2>().array() <= p.array()).all() && (p.array() <= box.high.tail<2>().array()).all();
+        if (!in_projection || box.high.x() < point.x()) continue;
+        if (point_on_triangle(point, x)) return false;
+        const Vector2 a = projected(x[0], 0), b = projected(x[1], 0), c = projected(x[2], 0);
+        const int side = orient2d_perturbed(a, b, p);
+        if (side == 0 || orient2d_perturbed(b, c, p) != side || orient2d_perturbed(c, a, p) != side) continue;
+        // Crossed; ahead if the point is on the side from which the +x direction goes through the plane.
+        if (orient3d(x[0], x[1], x[2], point) == -side) inside = !inside;
+    }
+    return inside;
+}
+
+}  // namespace fettle::core::geometry
