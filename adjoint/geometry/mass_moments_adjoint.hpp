@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Derivatives of the moment matrices of core/geometry/mass_moments.hpp in the vertex coordinates, exact: the moments are polynomials (solid) or
-/// polynomials times areas (surface). `_adjoint` is the reverse map M_bar -> X_bar, `_tangent` the forward map X_dot -> M_dot;
+/// Derivatives of the moment matrices of core/geometry/mass_moments.hpp in the vertex coordinates, exact: the moments are polynomials
+/// (solid) or polynomials times areas (surface). `_adjoint` is the reverse map M_bar -> X_bar, `_tangent` the forward map X_dot -> M_dot;
 /// <M_bar, tangent(X_dot)> = <adjoint(M_bar), X_dot> with <A, B> = sum_ij A_ij B_ij.
 ///
 /// Accuracy: terms of size |X|^5 cancel for a part far from the origin, in the moments and here. Shift the vertices to the body's

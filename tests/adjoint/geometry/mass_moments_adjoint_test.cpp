@@ -46,13 +46,14 @@ TEST_CASE("tangent of the moments against central differences, and the Taylor re
         double best = 1;
         for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
             const Matrix4 difference = (c.moments(mesh.vertices + step * direction, mesh.triangles) -
-                                        c.moments(mesh.vertices - step * direction, mesh.triangles)) / (2 * step);
+                                        c.moments(mesh.vertices - step * direction, mesh.triangles)) /
+                                       (2 * step);
             best = std::min(best, (difference - exact).norm() / exact.norm());
         }
         CHECK(best < 1e-9);
         const auto remainder = [&](double step) {
-            return (c.moments(mesh.vertices + step * direction, mesh.triangles) - c.moments(mesh.vertices, mesh.triangles) -
-                    step * exact).norm();
+            return (c.moments(mesh.vertices + step * direction, mesh.triangles) - c.moments(mesh.vertices, mesh.triangles) - step * exact)
+                .norm();
         };
         CHECK(std::log10(remainder(1e-2) / remainder(1e-3)) == Approx(2).margin(0.1));
         CHECK(std::log10(remainder(1e-3) / remainder(1e-4)) == Approx(2).margin(0.02));

@@ -111,14 +111,12 @@ TEST_CASE("welding: signed zeros, NaN, one ulp, degenerate triangles, codimensio
     mesh.name = "m";
     mesh.vertices.resize(3, 9);
     //                 0  1  2     3  4   5       6    7    8
-    mesh.vertices <<   0, 1, 0,   -0., 1, one_up, nan, nan, 0,
-                       0, 0, 1,    0,  0, 0,      0,   0,   1,
-                       0, 0, 0,   -0., 0, 0,      0,   0,   5;
+    mesh.vertices << 0, 1, 0, -0., 1, one_up, nan, nan, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0., 0, 0, 0, 0, 5;
     mesh.triangles = {{0, 1, 2}, {3, 4, 1}, {3, 4, 5}};
     build_connectivity(mesh, {{2, 4}, {2, 8}, {0, 3}});
     const Mesh welded = weld_exactly(mesh);
-    CHECK(welded.vertices.cols() == 7);                                        // 3 = 0, 4 = 1
-    CHECK(welded.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}});    // the middle one is degenerate by index
+    CHECK(welded.vertices.cols() == 7);                                                        // 3 = 0, 4 = 1
+    CHECK(welded.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}});                    // the middle one is degenerate by index
     CHECK(welded.edges == std::vector<Edge>{{0, 1}, {1, 2}, {2, 0}, {1, 3}, {3, 0}, {2, 6}});  // 2-4 is an edge of a triangle now
-    CHECK(welded.codimensional_points == std::vector<int>{4, 5});              // both NaN vertices
+    CHECK(welded.codimensional_points == std::vector<int>{4, 5});                              // both NaN vertices
 }
