@@ -20,8 +20,14 @@ struct BuildOptions {
 /// @return the model, or every fault found: `where` names body, mesh and element.
 Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options = {});
 
-/// Barrier stiffness [N/m] that needs no tuning: the largest of inertial stiffness m/h^2 scale and what carries every body's
-/// weight at half the activation distance. A pure function of masses, h, gravity and dhat.
+/// Barrier stiffness [N/m] that needs no tuning: over the dynamic bodies, the largest of
+///   0.1 m / h^2           inertia: a contact that stops the body within a step or so stays well conditioned beside m / h^2, and
+///   4 m |g + f/m| / dhat  load: one contact at half the activation distance pushes with about 1.08 kappa dhat, so that the load is carried
+///                         with room to spare (the energy of a contact is kappa b(D) / (4 (dmin + dhat)^2), b(D) = -(D - Dhat)^2 ln(D / Dhat)).
+/// 1 if there is no dynamic body: then nothing touches. A pure function of masses, forces, h, gravity and dhat.
 double choose_kappa(const Model& model);
+
+/// Fills radius (rounded up), edge_length_squared and hierarchy from the body's mesh.
+void complete_geometry(Body& body);
 
 }  // namespace fettle::core::model

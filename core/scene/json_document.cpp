@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/scene/nearest_word.hpp"
 
 namespace fettle::core::scene {
 
@@ -49,24 +50,6 @@ std::string joined(const std::vector<std::string_view>& words) {
 std::string known_hint(std::string_view word, const std::vector<std::string_view>& known) {
     const auto nearest = nearest_word(word, known);
     return nearest ? "did you mean `" + *nearest + "`?" : "known: " + joined(known);
-}
-
-/// Four times the edit distance, where a change of case counts as a quarter.
-int quadrupled_edit_distance(std::string_view a, std::string_view b) {
-    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-    std::vector<std::vector<int>> cost(a.size() + 1, std::vector<int>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) {
-        for (std::size_t j = 0; j <= b.size(); ++j) {
-            if (i == 0 || j == 0) {
-                cost[i][j] = static_cast<int>(4 * (i + j));
-                continue;
-            }
-            const int replace = a[i - 1] == b[j - 1] ? 0 : (lower(a[i - 1]) == lower(b[j - 1]) ? 1 : 4);
-            cost[i][j] = std::min({cost[i - 1][j] + 4, cost[i][j - 1] + 4, cost[i - 1][j - 1] + replace});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 4);
-        }
-    }
-    return cost[a.size()][b.size()];
 }
 
 struct Place {
@@ -162,21 +145,6 @@ double in_metres(double number, double unit) {
     return per_metre >= 2 && 1 / per_metre == unit ? number / per_metre : number * unit;
 }
 
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
-    std::optional<std::string> best;
-    int best_cost = 0;
-    if (word.size() > 100) return best;
-    for (const auto& candidate : known) {
-        const int cost = quadrupled_edit_distance(word, candidate);
-        const int allowed = std::max(4, static_cast<int>(4 * std::max(word.size(), candidate.size()) / 3));
-        if (cost <= allowed && (!best || cost < best_cost)) {
-            best = std::string(candidate);
-            best_cost = cost;
-        }
-    }
-    return best;
-}
-
 bool JsonNode::is_null() const { return value_ && value_of(value_).is_null(); }
 bool JsonNode::is_bool() const { return value_ && value_of(value_).is_boolean(); }
 bool JsonNode::is_number() const { return value_ && value_of(value_).is_number(); }
@@ -218,6 +186,8 @@ JsonNode JsonNode::require(std::string_view key) const {
     if (is_object() && !found.exists()) fail(ErrorCode::missing_key, "the key `" + std::string(key) + "` is required here");
     return found;
 }
+
+JsonNode JsonNode::unless_null() const { return {context_, is_null() ? nullptr : value_, pointer_}; }
 
 std::vector<JsonNode> JsonNode::elements() const {
     std::vector<JsonNode> out;
@@ -371,8 +341,12 @@ std::optional<std::vector<double>> JsonNode::numbers() const {
     }
     std::vector<double> out;
     bool good = true;
-    for (const JsonNode& entry : elements()) {
-        const auto found = entry.number();
+    const json& array = value_of(value_);
+    out.reserve(array.size());
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        // Long lists of numbers are common: a node, with its pointer, is made only to report a fault.
+        const bool plain = array[i].is_number();
+        const std::optional<double> found = plain ? array[i].get<double>() : child(&array[i], std::to_string(i)).number();
         good = good && found.has_value();
         out.push_back(found.value_or(0));
     }

@@ -58,6 +58,8 @@ public:
     JsonNode operator[](std::string_view key) const;
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;
+    /// This node; absent if it is null (for formats where null means "as if it were not there").
+    JsonNode unless_null() const;
     std::vector<JsonNode> elements() const;                        ///< of an array; wrong_type otherwise; empty if absent
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
 
@@ -112,10 +114,6 @@ private:
     JsonDocument();
     std::unique_ptr<JsonNode::Context> context_;
 };
-
-/// The entry of `known` nearest to `word` in edit distance (insert, delete, replace, swap neighbours; a change of case counts a quarter), if it is
-/// near enough to be a slip: at most a third of the longer word's letters, at least 1.
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string_view>& known);
 
 /// `number` times `unit`, correctly rounded where one metre is a whole number of units (30 mm is 0.03 m, bit for bit).
 double in_metres(double number, double unit);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,11 +33,19 @@ using PrescribedMotion = std::array<std::optional<MotionCurve>, 6>;
 /// How strictly meshes are taken: our own files refuse what a printable part cannot be; the paper's files load with warnings.
 enum class MeshPolicy { strict, lenient };
 
+/// A part that a generator makes (design/shapes/); core knows none of them, see ReadOptions in scene_reader.hpp.
+struct ShapeSpec {
+    std::string generator;
+    std::map<std::string, double> dimensions;  ///< lengths [m]
+    std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
+};
+
 struct Body {
     std::string name;
     std::string where;                ///< file and JSON pointer, for messages
     BodyType type = BodyType::dynamic_body;
     geometry::Mesh mesh;              ///< vertices in the file's frame, scaled, [m]
+    std::optional<ShapeSpec> shape;   ///< what `mesh` was made from, if a generator made it
     MeshPolicy mesh_policy = MeshPolicy::strict;
     double density = 1000;            ///< [kg/m^3] closed meshes, [kg/m^2] open surfaces
     kinematics::Pose pose;            ///< of the file's frame at the start: world = rotation * x + position
@@ -44,6 +53,7 @@ struct Body {
     Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
     PrescribedMotion prescribed;      ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
     Vector3 force = Vector3::Zero();  ///< constant, world, at the reference point [N]
+    std::optional<Vector3> reference_point;      ///< in the file's frame [m]; default see model/model.hpp
     int group = -1;                   ///< bodies of one group (>= 0) never collide
 };
 
@@ -61,5 +71,8 @@ struct Scene {
     int max_newton_iterations = 3000;
     std::vector<std::string> warnings;           ///< what a lenient reader accepted
 };
+
+/// Diagonal of the bounding box of everything at the start [m]; 0 for an empty scene.
+double bounding_diagonal(const Scene& scene);
 
 }  // namespace fettle::core::scene

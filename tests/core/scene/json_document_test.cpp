@@ -2,7 +2,8 @@
 #include "fettle/core/scene/json_document.hpp"
 
 #include <catch2/catch.hpp>
-#include <cmath>
+
+#include "fettle/core/scene/nearest_word.hpp"
 
 namespace fettle::core::scene {
 namespace {

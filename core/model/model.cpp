@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::model {
+
+bool may_collide(const Model& model, int a, int b) {
+    if (a == b) return false;
+    const Body& first = model.bodies[static_cast<std::size_t>(a)];
+    const Body& second = model.bodies[static_cast<std::size_t>(b)];
+    if (first.group >= 0 && first.group == second.group) return false;
+    return first.type == scene::BodyType::dynamic_body || second.type == scene::BodyType::dynamic_body;
+}
+
+}  // namespace fettle::core::model

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/start_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/geometry/predicates.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+using contact::HierarchyElement;
+using contact::HierarchyNode;
+using Corners = std::array<Vector3, 3>;  ///< of an element; an edge or a point repeats its last vertex
+
+struct Box {
+    Vector3 center, half;
+};
+
+struct PlacedBody {
+    const Body* body = nullptr;
+    Matrix3X vertices;  ///< world, rounded: the positions that the verdict is about
+    Box box;            ///< of all of them, with some room
+    double slack = 0;   ///< far above the rounding error of a position
+
+    Box placed(const HierarchyNode& node) const {
+        const Matrix3& rotation = body->pose_start.rotation;
+        return {rotation * node.center + body->pose_start.position, rotation.cwiseAbs() * node.half_extent + Vector3::Constant(slack)};
+    }
+    Corners corners(const HierarchyElement& element) const {
+        Corners out;
+        for (int k = 0; k < 3; ++k) out[k] = vertices.col(element.vertices[std::min(k, element.vertex_count - 1)]);
+        return out;
+    }
+};
+
+PlacedBody place(const Body& body) {
+    PlacedBody out;
+    out.body = &body;
+    out.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
+    out.slack = 1e-14 * (body.radius + body.pose_start.position.cwiseAbs().maxCoeff());
+    out.box = out.placed(body.hierarchy->nodes().front());
+    return out;
+}
+
+double gap_squared(const Box& a, const Box& b) {
+    return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0).squaredNorm();
+}
+
+bool elements_intersect(const Corners& a, int a_count, const Corners& b, int b_count) {
+    if (a_count == 3 && b_count == 3) return geometry::triangles_intersect(a, b);
+    if (a_count == 3) return geometry::segment_intersects_triangle(b[0], b[1], a);
+    return geometry::segment_intersects_triangle(a[0], a[1], b);
+}
+
+struct Approach {
+    double distance_squared = std::numeric_limits<double>::infinity();
+    Vector3 place = Vector3::Zero();  ///< a point of the first element that attains it
+};
+
+Approach element_distance(const Corners& a, const Corners& b) {
+    Approach best;
+    const auto offer = [&](const geometry::ClosestPoints& closest, const Vector3& point) {
+        if (closest.distance_squared < best.distance_squared) best = {closest.distance_squared, point};
+    };
+    for (int i = 0; i < 3; ++i) {
+        offer(geometry::point_triangle_closest(a[i], b[0], b[1], b[2]), a[i]);
+        offer(geometry::point_triangle_closest(b[i], a[0], a[1], a[2]), b[i]);
+        for (int j = 0; j < 3; ++j) {
+            const auto closest = geometry::edge_edge_closest(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
+            offer(closest, closest.weight[0] * a[i] + closest.weight[1] * a[(i + 1) % 3]);
+        }
+    }
+    return best;
+}
+
+/// A point (up to rounding) where an edge of one crosses the other; nothing when they only lie in one plane.
+std::optional<Vector3> crossing(const Corners& edges, const Corners& triangle) {
+    for (int i = 0; i < 3; ++i) {
+        const Vector3 &p = edges[i], &q = edges[(i + 1) % 3];
+        if (!geometry::segment_intersects_triangle(p, q, triangle)) continue;
+        const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+        const double along = normal.dot(q - p);
+        if (along == 0) continue;
+        return p + std::clamp(normal.dot(triangle[0] - p) / along, 0.0, 1.0) * (q - p);
+    }
+    return std::nullopt;
+}
+
+struct Fault {
+    bool intersects = false;
+    double distance = 0;
+    const HierarchyElement *a = nullptr, *b = nullptr;
+    Vector3 place = Vector3::Zero();
+};
+
+/// Descends two hierarchies at once; stops at the first intersection, otherwise keeps the closest pair within the minimum separation.
+class PairSearch {
+public:
+    PairSearch(const PlacedBody& a, const PlacedBody& b, double dmin) : a_(a), b_(b), dmin_(dmin), reach_squared_(dmin * dmin) {}
+
+    std::optional<Fault> run() {
+        std::vector<std::pair<int, int>> open{{0, 0}};
+        const auto &a_nodes = a_.body->hierarchy->nodes(), &b_nodes = b_.body->hierarchy->nodes();
+        while (!open.empty() && !(fault_ && fault_->intersects)) {
+            const auto [i, j] = open.back();
+            open.pop_back();
+            const HierarchyNode &a = a_nodes[i], &b = b_nodes[j];
+            if (gap_squared(a_.placed(a), b_.placed(b)) > reach_squared_) continue;
+            if (a.is_leaf() && b.is_leaf()) {
+                compare_leaves(a, b);
+            } else if (b.is_leaf() || (!a.is_leaf() && a.half_extent.maxCoeff() > b.half_extent.maxCoeff())) {
+                open.emplace_back(a.left, j);
+                open.emplace_back(a.right, j);
+            } else {
+                open.emplace_back(i, b.left);
+                open.emplace_back(i, b.right);
+            }
+        }
+        return fault_;
+    }
+
+private:
+    void compare_leaves(const HierarchyNode& a, const HierarchyNode& b) {
+        for (int i = a.first; i < a.first + a.count; ++i) {
+            for (int j = b.first; j < b.first + b.count; ++j) {
+                compare(a_.body->hierarchy->elements()[i], b_.body->hierarchy->elements()[j]);
+                if (fault_ && fault_->intersects) return;
+            }
+        }
+    }
+
+    void compare(const HierarchyElement& a, const HierarchyElement& b) {
+        const Corners first = a_.corners(a), second = b_.corners(b);
+        if (elements_intersect(first, a.vertex_count, second, b.vertex_count)) {
+            auto place = crossing(first, second);
+            if (!place) place = crossing(second, first);
+            fault_ = Fault{true, 0, &a, &b, place.value_or(element_distance(first, second).place)};
+            return;
+        }
+        if (dmin_ == 0) return;
+        const Approach found = element_distance(first, second);
+        if (found.distance_squared > reach_squared_ || (fault_ && found.distance_squared >= reach_squared_)) return;
+        reach_squared_ = found.distance_squared;
+        fault_ = Fault{false, std::sqrt(found.distance_squared), &a, &b, found.place};
+    }
+
+    const PlacedBody &a_, &b_;
+    double dmin_, reach_squared_;
+    std::optional<Fault> fault_;
+};
+
+/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
+std::vector<int> samples(const geometry::Mesh& mesh) {
+    std::vector<int> out = mesh.codimensional_points;
+    std::vector<bool> seen(mesh.shell_names.size(), false);
+    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
+        const int shell = mesh.triangle_shell[t];
+        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
+        seen[shell] = true;
+    }
+    for (const auto& edge : mesh.edges) {
+        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
+    }
+    return out;
+}
+
+/// A point of `inner` in the material of `outer`, if there is one. Contract: their surfaces do not cross; `outer` is closed.
+std::optional<Vector3> point_inside(const PlacedBody& inner, const PlacedBody& outer) {
+    for (const int v : samples(inner.body->mesh)) {
+        const Vector3 point = inner.vertices.col(v);
+        if (((point - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() > 0) continue;
+        if (geometry::point_in_solid(point, outer.vertices, outer.body->mesh.triangles)) return point;
+    }
+    return std::nullopt;
+}
+
+std::string shown(const HierarchyElement& element) {
+    if (element.vertex_count == 3) return "triangle " + std::to_string(element.triangle);
+    if (element.vertex_count == 1) return "vertex " + std::to_string(element.vertices[0]);
+    return "edge " + std::to_string(element.vertices[0]) + "-" + std::to_string(element.vertices[1]);
+}
+
+class Messages {
+public:
+    explicit Messages(const Model& model) : model_(model) {
+        for (const char* name : {"um", "mm", "cm", "in", "ft"}) {
+            if (base::metres_per_unit(name).value() == model.length_unit) unit_ = name;
+        }
+    }
+
+    base::Error error(const Body& a, const Body& b, const std::string& what, const Vector3& place) const {
+        std::string near;
+        for (int k = 0; k < 3; ++k) near += (k ? ", " : "") + length(place[k]);
+        return {base::ErrorCode::bodies_intersect, "bodies `" + a.name + "` and `" + b.name + "`",
+                "`" + a.name + "` and `" + b.name + "` " + what + ", near (" + near + ") in the world; move or shape them apart"};
+    }
+    std::string length(double metres) const { return base::format_length(metres, unit_); }
+
+private:
+    const Model& model_;
+    std::string unit_ = "m";
+};
+
+std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, const Model& model, const Messages& messages) {
+    if (gap_squared(a.box, b.box) > model.dmin * model.dmin) return std::nullopt;
+    if (const auto fault = PairSearch(a, b, model.dmin).run()) {
+        const std::string elements = shown(*fault->a) + " of `" + a.body->name + "` and " + shown(*fault->b) + " of `" + b.body->name + "`";
+        const std::string what = fault->intersects ? "intersect or touch at the start: " + elements
+                                                   : "are " + messages.length(fault->distance) + " apart at the start, the minimum separation is " +
+                                                         messages.length(model.dmin) + ": " + elements;
+        return messages.error(*a.body, *b.body, what, fault->place);
+    }
+    for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+        // Whether a mesh is closed is worth finding out only when something lies within its box.
+        if (outer->body->mesh.triangles.empty() || !geometry::is_closed(outer->body->mesh)) continue;
+        if (const auto point = point_inside(*inner, *outer)) {
+            return messages.error(*inner->body, *outer->body, "overlap at the start: the first lies inside the second's material", *point);
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+base::Errors check_start(const Model& model) {
+    std::vector<PlacedBody> bodies;
+    for (const Body& body : model.bodies) bodies.push_back(place(body));
+    const Messages messages(model);
+    base::Errors errors;
+    const int count = static_cast<int>(bodies.size());
+    for (int i = 0; i < count; ++i) {
+        for (int j = i + 1; j < count; ++j) {
+            if (!may_collide(model, i, j)) continue;
+            if (auto error = check_pair(bodies[i], bodies[j], model, messages)) errors.push_back(std::move(*error));
+        }
+    }
+    return errors;
+}
+
+}  // namespace fettle::core::model

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/build_model.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/kinematics/rotation.hpp"
+#include "fettle/tests/core/geometry/sample_meshes.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+using base::ErrorCode;
+using scene::BodyType;
+
+scene::Body box_body(const std::string& name, const Vector3& low, const Vector3& high) {
+    scene::Body body;
+    body.name = name;
+    body.where = "a.scene.json#/bodies/" + name;
+    body.mesh = tests::box_mesh(low, high);
+    return body;
+}
+
+scene::Scene scene_of(std::vector<scene::Body> bodies) {
+    scene::Scene scene;
+    scene.path = "a.scene.json";
+    scene.bodies = std::move(bodies);
+    return scene;
+}
+
+base::Error only_error(const base::Result<Model>& result) {
+    REQUIRE(result.errors().size() == 1);
+    return result.errors().front();
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_CASE("A box gets its mass, frame and sizes", "[model]") {
+    scene::Body box = box_body("box", {1, 2, 3}, {2, 4, 6});  // 1 x 2 x 3, centre (1.5, 3, 4.5)
+    box.density = 500;
+    box.pose.rotation = kinematics::rotation({0.1, 0.2, 0.3});
+    box.pose.position = {7, 8, 9};
+    box.linear_velocity = {1, 0, 0};
+    box.angular_velocity = {0, 0, 2};
+    scene::Scene scene = scene_of({box});
+    scene.timestep = 0.02;
+    const auto model = build_model(scene);
+    REQUIRE(model);
+    const Body& body = model->bodies[0];
+    CHECK((body.reference_point - Vector3(1.5, 3, 4.5)).norm() < 1e-14);
+    const double mass = 3000;
+    CHECK(body.moments(3, 3) == Approx(mass).epsilon(1e-14));
+    CHECK(body.moments.col(3).head<3>().norm() < 1e-11);  // about the centre of mass
+    CHECK((body.moments.topLeftCorner<3, 3>() - mass / 12 * Vector3(1, 4, 9).asDiagonal().toDenseMatrix()).norm() < 1e-9);
+    CHECK(body.radius >= 0.5 * std::sqrt(14.0));
+    CHECK(body.radius <= 0.5 * std::sqrt(14.0) * (1 + 1e-14));
+    CHECK(body.edge_length_squared.size() == body.mesh.edges.size());
+    CHECK((body.pose_start.position - (box.pose.rotation * Vector3(1.5, 3, 4.5) + box.pose.position)).norm() < 1e-14);
+    for (int i = 0; i < 8; ++i) {  // the shift of the frame moves nothing in the world
+        const Vector3 before = kinematics::world_position(box.pose, box.mesh.vertices.col(i));
+        CHECK((kinematics::world_position(body.pose_start, body.mesh.vertices.col(i)) - before).norm() < 1e-14);
+    }
+    // A point's velocity by [omega] (R X) + v and by Pdot [X; 1] is the same.
+    const Vector3 X(0.3, -0.2, 0.5);
+    const Vector3 velocity = body.velocity_start.leftCols<3>() * X + body.velocity_start.col(3);
+    CHECK((velocity - (box.angular_velocity.cross(box.pose.rotation * X) + box.linear_velocity)).norm() < 1e-14);
+    CHECK(body.hierarchy->elements().size() == 12);
+    CHECK(model->diagonal == Approx(scene::bounding_diagonal(scene)));
+    CHECK(model->dhat == Approx(1e-3 * model->diagonal));
+    CHECK(model->velocity_tolerance == Approx(1e-2 * model->diagonal));
+    CHECK(model->end_time < 0);
+}
+
+TEST_CASE("A reference point is the caller's, the scene's, or a default", "[model]") {
+    scene::Body box = box_body("box", {0, 0, 0}, {2, 2, 2});
+    const auto reference = [](const scene::Scene& scene, const BuildOptions& options) {
+        return build_model(scene, options).value().bodies[0].reference_point;
+    };
+    CHECK(reference(scene_of({box}), {}).isApprox(Vector3(1, 1, 1)));
+    box.reference_point = Vector3(0, 0, 1);
+    CHECK(reference(scene_of({box}), {}) == Vector3(0, 0, 1));
+    BuildOptions options;
+    options.reference_points = {Vector3(5, 0, 0)};
+    CHECK(reference(scene_of({box}), options) == Vector3(5, 0, 0));
+    const auto model = build_model(scene_of({box}), options);
+    CHECK(model->bodies[0].moments(0, 3) == Approx(-4 * model->bodies[0].moments(3, 3)));  // first moment about that point
+
+    scene::Body ground = box;
+    ground.reference_point.reset();
+    ground.type = BodyType::static_body;
+    ground.mesh.triangles.resize(2);  // an open surface in x from 0 to 2, z = 0
+    geometry::build_connectivity(ground.mesh);
+    CHECK(reference(scene_of({ground}), {}).isApprox(Vector3(1, 1, 1)));  // middle of the box around its vertices
+}
+
+TEST_CASE("Who may collide", "[model]") {
+    std::vector<scene::Body> bodies;
+    for (int i = 0; i < 5; ++i) bodies.push_back(box_body(std::to_string(i), Vector3(3.0 * i, 0, 0), Vector3(3.0 * i + 1, 1, 1)));
+    bodies[2].type = BodyType::static_body;
+    bodies[3].type = BodyType::kinematic_body;
+    bodies[0].group = bodies[4].group = 7;
+    const auto model = build_model(scene_of(bodies));
+    REQUIRE(model);
+    CHECK(may_collide(*model, 0, 1));
+    CHECK(may_collide(*model, 1, 2));
+    CHECK(may_collide(*model, 3, 1));
+    CHECK_FALSE(may_collide(*model, 2, 3));
+    CHECK_FALSE(may_collide(*model, 0, 4));
+    CHECK_FALSE(may_collide(*model, 1, 1));
+    for (const auto& dof : model->bodies[2].prescribed) CHECK(dof.has_value());
+    for (int dof = 0; dof < 6; ++dof) CHECK(is_free(model->bodies[1], dof));
+}
+
+TEST_CASE("A density that is not positive is refused with body and place", "[model]") {
+    for (const double density : {-1000.0, 0.0}) {
+        scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
+        box.density = density;
+        const auto error = only_error(build_model(scene_of({box})));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.where == "a.scene.json#/bodies/piston/density");
+        CHECK(contains(error.message, "`piston`"));
+        box.type = BodyType::static_body;
+        CHECK(build_model(scene_of({box})));
+    }
+    scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
+    box.density = std::numeric_limits<double>::quiet_NaN();
+    CHECK(only_error(build_model(scene_of({box}))).code == ErrorCode::not_finite);
+}
+
+TEST_CASE("Meshes that cannot be a dynamic solid are refused", "[model]") {
+    scene::Body open = box_body("lid", {0, 0, 0}, {1, 1, 1});
+    open.mesh.triangles.pop_back();
+    geometry::build_connectivity(open.mesh);
+    SECTION("open, strict") {
+        const auto result = build_model(scene_of({open}));
+        REQUIRE_FALSE(result);
+        CHECK(result.errors().front().code == ErrorCode::mesh_invalid);
+        CHECK(contains(result.errors().front().message, "`lid`"));
+        CHECK(contains(result.errors().front().where, "a.scene.json#/bodies/lid"));
+    }
+    SECTION("open, lenient: not something we do yet") {
+        open.mesh_policy = scene::MeshPolicy::lenient;
+        CHECK(only_error(build_model(scene_of({open}))).code == ErrorCode::unsupported);
+    }
+    SECTION("open but static or kinematic is fine") {
+        open.type = BodyType::static_body;
+        CHECK(build_model(scene_of({open})));
+        open.type = BodyType::kinematic_body;
+        CHECK(build_model(scene_of({open})));
+    }
+    SECTION("inside out") {
+        scene::Body box = box_body("box", {0, 0, 0}, {1, 1, 1});
+        box.mesh = tests::inside_out(box.mesh);
+        CHECK(build_model(scene_of({box})).errors().front().code == ErrorCode::mesh_invalid);
+        box.mesh_policy = scene::MeshPolicy::lenient;
+        CHECK(only_error(build_model(scene_of({box}))).code == ErrorCode::mesh_invalid);
+    }
+    SECTION("self-intersecting, static too") {
+        scene::Body two = box_body("two", {0, 0, 0}, {1, 1, 1});
+        two.mesh = tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), tests::box_mesh({0.5, 0.5, 0.5}, {2, 2, 2}));
+        for (const auto type : {BodyType::dynamic_body, BodyType::static_body}) {
+            two.type = type;
+            const auto result = build_model(scene_of({two}));
+            REQUIRE_FALSE(result);
+            CHECK(result.errors().front().code == ErrorCode::mesh_invalid);
+            CHECK(contains(result.errors().front().message, "triangle"));
+        }
+        BuildOptions options;
+        options.check_meshes = false;
+        CHECK(build_model(scene_of({two}), options));
+    }
+    SECTION("a vertex that is not a number") {
+        scene::Body box = box_body("box", {0, 0, 0}, {1, 1, 1});
+        box.mesh.vertices(1, 5) = std::numeric_limits<double>::quiet_NaN();
+        const auto error = only_error(build_model(scene_of({box})));
+        CHECK(error.code == ErrorCode::not_finite);
+        CHECK(contains(error.message, "vertex 5"));
+    }
+    SECTION("every fault of every body is told") {
+        scene::Body box = box_body("box", {5, 0, 0}, {6, 1, 1});
+        box.density = -1;
+        CHECK(build_model(scene_of({open, box})).errors().size() >= 2);
+    }
+}
+
+TEST_CASE("Stiffness follows mass, step, load and activation distance", "[model]") {
+    scene::Body box = box_body("box", {0, 0, 0}, {1, 1, 1});  // 1000 kg
+    scene::Scene scene = scene_of({box});
+    scene.dhat = 1e-3;
+    scene.timestep = 0.01;
+    CHECK(build_model(scene)->kappa == Approx(0.1 * 1000 / 1e-4));
+    scene.gravity = {0, -10, 0};
+    CHECK(build_model(scene)->kappa == Approx(4 * 1000 * 10 / 1e-3));
+    scene.bodies[0].force = {0, 10'000, 0};  // carries the weight
+    CHECK(build_model(scene)->kappa == Approx(0.1 * 1000 / 1e-4));
+    scene.kappa = 5;
+    CHECK(build_model(scene)->kappa == 5);
+    BuildOptions options;
+    options.kappa = 6;
+    CHECK(build_model(scene, options)->kappa == 6);
+}
+
+}  // namespace
+}  // namespace fettle::core::model
