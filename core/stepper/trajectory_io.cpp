@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/stepper/trajectory_io.hpp"
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "fettle/core/base/atomic_file.hpp"
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/scene/json_document.hpp"
+
+namespace fettle::core::stepper {
+namespace {
+
+using base::ErrorCode;
+using kinematics::ChartPoint;
+using kinematics::Pose;
+using scene::JsonDocument;
+using scene::JsonNode;
+
+const std::vector<std::string_view> type_names{"dynamic", "static", "kinematic"};  // in the order of scene::BodyType
+
+std::size_t triangle_edge_count(const geometry::Mesh& mesh) {
+    geometry::Mesh bare;
+    bare.vertices = mesh.vertices;
+    bare.triangles = mesh.triangles;
+    geometry::build_connectivity(bare);
+    return bare.edges.size();
+}
+
+std::string hexadecimal(std::uint64_t number) {
+    std::string out(16, '0');
+    for (int i = 15; i >= 0; --i, number >>= 4) out[static_cast<std::size_t>(i)] = "0123456789abcdef"[number & 15];
+    return out;
+}
+
+/// Appends JSON to a string. Only what this file needs.
+class Writer {
+public:
+    std::string text;
+
+    void number(double x) {
+        FETTLE_ASSERT(std::isfinite(x), "a trajectory with a number that is not finite");
+        if (x == 0 && std::signbit(x)) {
+            text += "-0.0";  // readers take "-0" for a whole number, which has no sign
+            return;
+        }
+        char buffer[32];
+        const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, x);
+        FETTLE_ASSERT(code == std::errc(), "a number longer than its buffer");
+        text.append(buffer, end);
+    }
+    void string(const std::string& value) {
+        text += '"';
+        for (const char c : value) {
+            if (c == '"' || c == '\\') text += '\\';
+            if (static_cast<unsigned char>(c) < 0x20) {
+                text += "\\u00";
+                text += "0123456789abcdef"[c >> 4];
+                text += "0123456789abcdef"[c & 15];
+            } else {
+                text += c;
+            }
+        }
+        text += '"';
+    }
+    void key(const char* name) {
+        if (text.back() != '{') text += ",\n ";
+        string(name);
+        text += ": ";
+    }
+    /// "[", one item after the other as `write(i)` puts them, "]".
+    template <class Write>
+    void list(std::size_t count, const char* separator, const Write& write) {
+        text += '[';
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i > 0) text += separator;
+            write(i);
+        }
+        text += ']';
+    }
+    template <class Vector>
+    void vector(const Vector& v) {
+        list(static_cast<std::size_t>(v.size()), ",", [&](std::size_t i) { number(v[static_cast<Eigen::Index>(i)]); });
+    }
+};
+
+void write_body(Writer& out, const model::Body& body) {
+    out.text += '{';
+    out.key("name");
+    out.string(body.name);
+    out.key("type");
+    out.string(std::string(type_names[static_cast<std::size_t>(body.type)]));
+    out.key("group");
+    out.number(body.group);
+    out.key("reference_point");
+    out.vector(body.reference_point);
+    out.key("mesh");
+    out.text += '{';
+    out.key("name");
+    out.string(body.mesh.name);
+    out.key("vertices");
+    out.vector(body.mesh.vertices.reshaped());
+    const auto whole = [&](int index) { out.text += std::to_string(index); };
+    out.key("triangles");
+    out.list(3 * body.mesh.triangles.size(), ",", [&](std::size_t i) { whole(body.mesh.triangles[i / 3][i % 3]); });
+    const std::size_t first = triangle_edge_count(body.mesh);
+    out.key("edges");
+    out.list(2 * (body.mesh.edges.size() - first), ",", [&](std::size_t i) { whole(body.mesh.edges[first + i / 2][i % 2]); });
+    out.text += "}}";
+}
+
+void write_pose(Writer& out, const Pose& pose) {
+    Eigen::Matrix<double, 12, 1> numbers;
+    numbers << pose.rotation.row(0).transpose(), pose.rotation.row(1).transpose(), pose.rotation.row(2).transpose(), pose.position;
+    out.vector(numbers);
+}
+
+void write_node(Writer& out, const ChartPoint& node) {
+    Vector6 numbers;
+    numbers << node.position, node.rotation_vector;
+    out.vector(numbers);
+}
+
+class Reader {
+public:
+    explicit Reader(JsonDocument& document) : document_(document) {}
+
+    base::Result<StoredTrajectory> read() {
+        const JsonNode root = document_.root();
+        root.allow_keys({"fettle_trajectory", "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies",
+                         "poses", "steps"});
+        root.require("fettle_trajectory").integer(1, 1);
+        if (!document_.errors().empty()) return document_.errors();
+        out_.path = document_.path();
+        out_.scene_path = root["scene"].string().value_or("");
+        out_.model.length_unit = root.require("length_unit").number(scene::positive).value_or(1);
+        out_.model.dhat = root.require("dhat").number(scene::positive).value_or(1);
+        out_.model.dmin = root.require("dmin").number(scene::not_negative).value_or(0);
+        out_.trajectory.time_start = root.require("time_start").number().value_or(0);
+        out_.model.timestep = out_.trajectory.timestep = root.require("timestep").number(scene::positive).value_or(1);
+        for (const JsonNode& body : root.require("bodies").elements()) read_body(body);
+        read_poses(root.require("poses"));
+        read_steps(root.require("steps"));
+        if (!document_.errors().empty()) return document_.errors();
+        check_path(root);
+        finish_model(root.require("geometry_hash"));
+        if (!document_.errors().empty()) return document_.errors();
+        return std::move(out_);
+    }
+
+private:
+    std::size_t body_count() const { return out_.model.bodies.size(); }
+
+    /// `list` has `count` entries, or a fault.
+    bool has_entries(const std::vector<JsonNode>& list, std::size_t count, const JsonNode& node, const char* what) {
+        if (list.size() == count) return true;
+        if (node.is_array()) {
+            node.fail(ErrorCode::inconsistent, std::to_string(list.size()) + " entries, " + std::to_string(count) + " wanted: " + what);
+        }
+        return false;
+    }
+
+    std::vector<int> indices(const JsonNode& node, std::size_t columns, Eigen::Index limit) {
+        std::vector<int> out;
+        const auto found = node.numbers().value_or(std::vector<double>{});
+        if (found.size() % columns != 0) node.fail(ErrorCode::inconsistent, "the number of indices is not a multiple of " + std::to_string(columns));
+        for (const double x : found) {
+            if (x != std::floor(x) || x < 0 || x >= static_cast<double>(limit)) {
+                node.fail(ErrorCode::out_of_range, "an index is not a whole number from 0 to " + std::to_string(limit - 1));
+                return {};
+            }
+            out.push_back(static_cast<int>(x));
+        }
+        if (found.size() % columns != 0) out.clear();
+        return out;
+    }
+
+    void read_body(const JsonNode& node) {
+        model::Body body;
+        body.name = node.require("name").string().value_or("");
+        const std::string type = node.require("type").choice(type_names).value_or("dynamic");
+        body.type = type == "static" ? scene::BodyType::static_body : type == "kinematic" ? scene::BodyType::kinematic_body
+                                                                                           : scene::BodyType::dynamic_body;
+        body.group = node.require("group").integer(-1).value_or(-1);
+        body.reference_point = node.require("reference_point").vector3().value_or(Vector3::Zero());
+        const JsonNode mesh = node.require("mesh");
+        body.mesh.name = mesh.require("name").string().value_or("");
+        const auto coordinates = mesh.require("vertices").numbers().value_or(std::vector<double>{});
+        if (coordinates.empty() || coordinates.size() % 3 != 0) mesh["vertices"].fail(ErrorCode::inconsistent, "three coordinates per vertex are wanted");
+        body.mesh.vertices.resize(3, static_cast<Eigen::Index>(coordinates.size() / 3));
+        for (Eigen::Index i = 0; i < body.mesh.vertices.size(); ++i) body.mesh.vertices.reshaped()[i] = coordinates[static_cast<std::size_t>(i)];
+        const auto corners = indices(mesh.require("triangles"), 3, body.mesh.vertices.cols());
+        for (std::size_t i = 0; i < corners.size(); i += 3) body.mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+        std::vector<geometry::Edge> edges;
+        const auto ends = indices(mesh.require("edges"), 2, body.mesh.vertices.cols());
+        for (std::size_t i = 0; i < ends.size(); i += 2) edges.push_back({ends[i], ends[i + 1]});
+        geometry::build_connectivity(body.mesh, edges);
+        out_.trajectory.body_names.push_back(body.name);
+        out_.model.bodies.push_back(std::move(body));
+    }
+
+    void read_poses(const JsonNode& node) {
+        for (const JsonNode& instant : node.elements()) {
+            std::vector<Pose> poses;
+            const auto entries = instant.elements();
+            if (!has_entries(entries, body_count(), instant, "one pose per body")) continue;
+            for (const JsonNode& entry : entries) poses.push_back(read_pose(entry));
+            out_.trajectory.poses.push_back(std::move(poses));
+        }
+        if (node.is_array() && out_.trajectory.poses.empty()) node.fail(ErrorCode::inconsistent, "the start pose is missing");
+    }
+
+    Pose read_pose(const JsonNode& node) {
+        const auto numbers = node.numbers();
+        if (!numbers || numbers->size() != 12) {
+            if (numbers) node.fail(ErrorCode::inconsistent, "12 numbers are wanted: a rotation row by row, and a position");
+            return {};
+        }
+        Pose pose;
+        for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = (*numbers)[static_cast<std::size_t>(i)];
+        for (int i = 0; i < 3; ++i) pose.position[i] = (*numbers)[static_cast<std::size_t>(9 + i)];
+        const double defect = (pose.rotation.transpose() * pose.rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
+        if (!(defect <= 1e-9) || !(pose.rotation.determinant() > 0)) node.fail(ErrorCode::out_of_range, "the first nine numbers are not a rotation matrix");
+        return pose;
+    }
+
+    void read_steps(const JsonNode& node) {
+        const auto steps = node.elements();
+        const std::size_t poses = out_.trajectory.poses.size();
+        if (poses > 0) has_entries(steps, poses - 1, node, "one step between each two poses");
+        for (const JsonNode& step : steps) {
+            TrajectoryStep read;
+            for (const JsonNode& node_of_step : step.elements()) read.nodes.push_back(read_node(node_of_step));
+            if (step.is_array() && read.nodes.size() < 2) step.fail(ErrorCode::inconsistent, "a step has at least two nodes");
+            out_.trajectory.steps.push_back(std::move(read));
+        }
+    }
+
+    std::vector<ChartPoint> read_node(const JsonNode& node) {
+        const auto entries = node.elements();
+        std::vector<ChartPoint> points(body_count());
+        if (!has_entries(entries, body_count(), node, "six numbers per body")) return points;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const auto numbers = entries[i].numbers();
+            if (!numbers || numbers->size() != 6) {
+                if (numbers) entries[i].fail(ErrorCode::inconsistent, "six numbers are wanted: px py pz rx ry rz");
+                continue;
+            }
+            for (int k = 0; k < 3; ++k) {
+                points[i].position[k] = (*numbers)[static_cast<std::size_t>(k)];
+                points[i].rotation_vector[k] = (*numbers)[static_cast<std::size_t>(3 + k)];
+            }
+        }
+        return points;
+    }
+
+    /// A certificate is about the path as stored: it must be one path, without jumps from step to step.
+    void check_path(const JsonNode& root) {
+        const Trajectory& trajectory = out_.trajectory;
+        const auto steps = root["steps"].elements();
+        for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
+            const auto &first = trajectory.steps[t].nodes.front(), &last = trajectory.steps[t].nodes.back();
+            for (std::size_t b = 0; b < body_count(); ++b) {
+                const Pose &before = trajectory.poses[t][b], &after = trajectory.poses[t + 1][b];
+                const Matrix3X& vertices = out_.model.bodies[b].mesh.vertices;
+                const double allowed = 1e-9 * (vertices.cwiseAbs().maxCoeff() + before.position.norm() + after.position.norm());
+                const Matrix3 reached = kinematics::rotation(last[b].rotation_vector) * before.rotation;
+                const bool starts = first[b].rotation_vector == Vector3::Zero() && (first[b].position - before.position).norm() <= allowed;
+                const bool ends = (last[b].position - after.position).norm() <= allowed && (reached - after.rotation).cwiseAbs().maxCoeff() <= 1e-9;
+                if (starts && ends) continue;
+                steps[t].fail(ErrorCode::inconsistent, "the path of body `" + trajectory.body_names[b] + "` does not " +
+                                                           (starts ? "end at the next pose" : "start at its pose with rotation vector 0"));
+            }
+        }
+    }
+
+    void finish_model(const JsonNode& hash) {
+        for (std::size_t b = 0; b < body_count(); ++b) {
+            out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
+            model::complete_geometry(out_.model.bodies[b]);
+        }
+        out_.model.end_time = out_.trajectory.time_start + out_.trajectory.timestep * static_cast<double>(out_.trajectory.steps.size());
+        const auto stored = hash.string();
+        const std::string found = hexadecimal(geometry_hash(out_.model));
+        if (stored && *stored != found) {
+            hash.fail(ErrorCode::inconsistent, "the meshes are not those that the trajectory was written with (" + found + "): the file was changed");
+        }
+    }
+
+    JsonDocument& document_;
+    StoredTrajectory out_;
+};
+
+}  // namespace
+
+std::uint64_t geometry_hash(const model::Model& model) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    const auto add = [&hash](std::uint64_t word, int bytes) {
+        for (int i = 0; i < bytes; ++i, word >>= 8) hash = (hash ^ (word & 255)) * 0x100000001b3u;
+    };
+    for (const model::Body& body : model.bodies) {
+        add(body.name.size(), 8);
+        for (const char c : body.name) add(static_cast<unsigned char>(c), 1);
+        add(static_cast<std::uint64_t>(body.mesh.vertices.cols()), 8);
+        for (const double x : body.mesh.vertices.reshaped()) add(std::bit_cast<std::uint64_t>(x), 8);
+        add(body.mesh.triangles.size(), 8);
+        for (const auto& triangle : body.mesh.triangles) {
+            for (const int v : triangle) add(static_cast<std::uint32_t>(v), 4);
+        }
+        add(body.mesh.edges.size(), 8);
+        for (const auto& edge : body.mesh.edges) {
+            for (const int v : edge) add(static_cast<std::uint32_t>(v), 4);
+        }
+    }
+    return hash;
+}
+
+base::Errors write_trajectory(const std::filesystem::path& path, const Trajectory& trajectory, const model::Model& model,
+                              const std::string& scene_path) {
+    FETTLE_ASSERT(trajectory.body_names.size() == model.bodies.size() && trajectory.poses.size() == trajectory.steps.size() + 1,
+                  "a trajectory that is not of this model");
+    Writer out;
+    out.text = "{";
+    out.key("fettle_trajectory");
+    out.number(1);
+    out.key("scene");
+    out.string(scene_path);
+    out.key("geometry_hash");
+    out.string(hexadecimal(geometry_hash(model)));
+    for (const auto& [name, value] : {std::pair{"length_unit", model.length_unit}, {"dhat", model.dhat}, {"dmin", model.dmin},
+                                      {"time_start", trajectory.time_start}, {"timestep", trajectory.timestep}}) {
+        out.key(name);
+        out.number(value);
+    }
+    out.key("bodies");
+    out.list(model.bodies.size(), ",\n  ", [&](std::size_t b) { write_body(out, model.bodies[b]); });
+    out.key("poses");
+    out.list(trajectory.poses.size(), ",\n  ", [&](std::size_t t) {
+        out.list(model.bodies.size(), ",", [&](std::size_t b) { write_pose(out, trajectory.poses[t][b]); });
+    });
+    out.key("steps");
+    out.list(trajectory.steps.size(), ",\n  ", [&](std::size_t t) {
+        const auto& nodes = trajectory.steps[t].nodes;
+        out.list(nodes.size(), ",", [&](std::size_t k) {
+            out.list(model.bodies.size(), ",", [&](std::size_t b) { write_node(out, nodes[k][b]); });
+        });
+    });
+    out.text += "}\n";
+    return base::write_file_atomically(path, out.text);
+}
+
+bool is_trajectory_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string start(200, '\0');
+    file.read(start.data(), static_cast<std::streamsize>(start.size()));
+    start.resize(static_cast<std::size_t>(file.gcount()));
+    return start.find("\"fettle_trajectory\"") != std::string::npos;
+}
+
+base::Result<StoredTrajectory> read_trajectory(const std::filesystem::path& path) {
+    auto document = JsonDocument::read(path.string());
+    if (!document) return document.errors();
+    return Reader(*document).read();
+}
+
+}  // namespace fettle::core::stepper
