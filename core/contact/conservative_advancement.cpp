@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/contact/conservative_advancement.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/curved_ccd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/contact/conservative_advancement.hpp"
+
+namespace fettle::core::contact {
+
+using kinematics::PathSegment;
+using kinematics::rotation;
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double inflate = 1 + 64 * u;
+
+/// The rest of the segment is taken in one piece if its deviation is at most the first share of the current gap; else the piece is cut
+/// to the second. Measured on the public queries: large pieces are best where nothing is near (0.39 us per query at 0.9, 0.52 at 0.1),
+/// small ones where something is, because the deviation eats the linear query's gap (92 us at 0.9, 29 at 0.5, 9 at 0.1).
+constexpr double whole_share = 0.75;
+constexpr double piece_share = 0.125;
+
+/// A hit is reported at this share of the first gap, or at the linear tolerance if that is less: as in conservative advancement.
+constexpr double gap_share = 0.1;
+
+/// One body's turning arms: x_i(s) = R(theta + s w) Y_i without the translation.
+class TurningArms {
+public:
+    TurningArms(const PathSegment& segment, const Vector3* X, std::size_t count)
+        : theta_(segment.rotation_vector_t0), w_(segment.rotation_vector_step), count_(count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            arms_[i] = segment.base * X[i];
+            radius_ = std::max({radius_, X[i].norm(), arms_[i].norm()});
+        }
+        radius_ *= inflate;
+        theta_norm_ = theta_.norm();
+        speed_ = w_.norm() * inflate;
+    }
+
+    /// Upper bound of how far an arm's end moves over the whole segment.
+    double travel() const { return speed_ * radius_ * inflate; }
+    double radius() const { return radius_; }
+    double rounding(double s) const { return rotated_rounding(theta_norm_, speed_, s, radius_); }
+
+    void place(double s, const Vector3& translation, Vector3* x) const {
+        const Matrix3 r = rotation(theta_ + s * w_);
+        for (std::size_t i = 0; i < count_; ++i) x[i] = r * arms_[i] + translation;
+    }
+
+    /// Largest deviation over the piece [s, s + h].
+    double deviation(double s, double h, DeviationBound bound) const {
+        if (speed_ == 0) return 0;
+        const Vector3 start = theta_ + s * w_, turn = h * w_;
+        double largest = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            largest = std::max(largest, bound == DeviationBound::interval ? arc_deviation_interval(start, turn, arms_[i])
+                                                                          : arc_deviation(start, turn, arms_[i]));
+        }
+        return largest * inflate;
+    }
+
+private:
+    Vector3 theta_, w_;
+    std::array<Vector3, 3> arms_;
+    std::size_t count_;
+    double radius_ = 0, theta_norm_ = 0, speed_ = 0;
+};
+
+class CurvedQuery {
+public:
+    CurvedQuery(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin, const CurvedCcdOptions& options)
+        : type_(type),
+          first_count_(type == PairType::point_triangle ? 1 : 2),
+          a_(a, X.data(), first_count_),
+          b_(b, X.data() + first_count_, 4 - first_count_),
+          offset_(a.position_t0 - b.position_t0),
+          offset_step_(a.position_step - b.position_step),
+          dmin_(dmin),
+          options_(options) {
+        offset_rounding_ = u * (4 * offset_.norm() + 8 * offset_step_.norm());
+    }
+
+    CurvedCcdResult run() {
+        PairVertices x = place(0);
+        double gap = gap_at(0, x);
+        if (!(gap > 0)) return {true, 0};
+        if (gap > (a_.travel() + b_.travel() + offset_step_.norm()) * inflate) return {};
+        const double threshold = std::min(options_.linear.tolerance, gap_share * gap);
+        double s = 0;
+        for (int piece = 0; piece < options_.max_pieces && gap > threshold; ++piece) {
+            const double reached = advance(s, x, gap);
+            if (reached >= 1) return {};
+            if (!(reached > s)) break;
+            s = reached;
+            gap = gap_at(s, x);
+        }
+        return {true, s};
+    }
+
+private:
+    /// Vertices at s, relative to body b's reference point: differences of positions keep the rounding small far from the origin.
+    PairVertices place(double s) const {
+        PairVertices x;
+        a_.place(s, offset_ + s * offset_step_, x.data());
+        b_.place(s, Vector3::Zero(), x.data() + first_count_);
+        return x;
+    }
+
+    /// What the computed vertices of a piece up to s are off by, both primitives together, chord and arc (hence twice).
+    double rounding(double s) const { return 2 * (a_.rounding(s) + b_.rounding(s) + offset_rounding_); }
+
+    double gap_at(double s, const PairVertices& x) const { return (distance_lower_bound(type_, x) - dmin_ - rounding(s)) * (1 - 4 * u); }
+
+    double deviation(double s, double h) const {
+        return (a_.deviation(s, h, options_.deviation) + b_.deviation(s, h, options_.deviation)) * inflate;
+    }
+
+    /// Advances from s over the longest piece whose deviation is small against the gap, or as far in it as is proven to be clear.
+    /// Returns where it got to, and the vertices there in x; s itself if there is no progress.
+    double advance(double s, PairVertices& x, double gap) {
+        double end = std::min(1.0, s + 4 * piece_), charge = deviation(s, end - s);
+        double allowed = whole_share * gap;
+        while (charge > allowed) {
+            allowed = piece_share * gap;
+            // The closed form grows with the square of the piece, the interval bound with its length, and far out not at all.
+            const double ratio =
+                options_.deviation == DeviationBound::interval ? std::min(0.5, allowed / charge) : 0.95 * std::sqrt(allowed / charge);
+            end = s + ratio * (end - s);
+            if (!(end > s)) return s;
+            charge = deviation(s, end - s);
+        }
+        piece_ = end - s;
+        const PairVertices x_end = place(end);
+        const double separation = (dmin_ + charge + rounding(end)) * inflate;
+        const LinearCcdResult linear = linear_ccd(type_, x, x_end, separation, options_.linear);
+        if (!linear.hit) {
+            x = x_end;
+            return end;
+        }
+        // Rounded down: the product and the sums are off by less than 4u s.
+        const double reached = (s + linear.toi * (end - s)) * (1 - 8 * u);
+        if (!(reached > s)) return s;
+        x = place(reached);
+        return reached;
+    }
+
+    PairType type_;
+    std::size_t first_count_;
+    TurningArms a_, b_;
+    Vector3 offset_, offset_step_;
+    double offset_rounding_ = 0;
+    double dmin_;
+    const CurvedCcdOptions& options_;
+    double piece_ = 1;  ///< length of the last piece; the next may be four times as long
+};
+
+}  // namespace
+
+CurvedCcdResult curved_ccd(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin,
+                           const CurvedCcdOptions& options) {
+    FETTLE_ASSERT(dmin >= 0, "a minimum separation is not negative");
+    return CurvedQuery(type, a, b, X, dmin, options).run();
+}
+
+}  // namespace fettle::core::contact
