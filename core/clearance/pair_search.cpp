@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/clearance/triangle_pair.hpp"
+#include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -88,6 +88,7 @@ public:
         }
         const double lower = std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result_.upper});
         result_.lower = std::max(lower, 0.0);
+        refine_witness();
         name_edges();
         return result_;
     }
@@ -201,18 +202,18 @@ private:
     Vector3 closest_direction(int segment_index, int instant_index, int a, int b) {
         const PairSegment& segment = segments_[segment_index];
         const Instant& at = instants_[instant_index];
-        const Matrix3 x_a = (at.rotation_a * corners(a_, a)).colwise() + at.offset;
-        const Matrix3 x_b = at.rotation_b * corners(b_, b);
-        const TrianglePairDistance pair = triangle_pair_distance(x_a, x_b);
+        const TrianglePairDistance pair = placed_distance(at, corners(a_, a), corners(b_, b));
         const double upper = pair.distance + segment.slack;
-        if (upper < result_.upper) {
-            result_.upper = upper;
-            set_witness(segment, at, a, b, pair);
-        }
+        if (upper < result_.upper) set_witness(segment_index, at, a, b, pair);
         return pair.intersecting ? Vector3::Zero() : unit_direction(pair.difference);
     }
 
-    void set_witness(const PairSegment& segment, const Instant& at, int a, int b, const TrianglePairDistance& pair) {
+    void set_witness(int segment_index, const Instant& at, int a, int b, const TrianglePairDistance& pair) {
+        const PairSegment& segment = segments_[segment_index];
+        result_.upper = pair.distance + segment.slack;
+        witness_segment_ = segment_index;
+        witness_a_ = a;
+        witness_b_ = b;
         const contact::HierarchyElement &element_a = a_.hierarchy->elements()[a], &element_b = b_.hierarchy->elements()[b];
         Witness& w = result_.witness;
         w.step = segment.step;
@@ -301,6 +302,19 @@ private:
         intervals_[index] = interval;
     }
 
+    // The instants that the search looks at are dyadic: their distance is within the tolerance of the least, but a derivative at fixed time
+    // wants the time itself right, whose error is the square root of that.
+    void refine_witness() {
+        const PairSegment& segment = segments_[witness_segment_];
+        const Matrix3 corners_a = corners(a_, witness_a_), corners_b = corners(b_, witness_b_);
+        const double s = least_distance_near(segment, corners_a, corners_b, result_.witness.s);
+        const Instant at = instant_at(segment, s);
+        const TrianglePairDistance pair = placed_distance(at, corners_a, corners_b);
+        // A flat minimum: the better instant's distance may differ by rounding only.
+        if (pair.distance + segment.slack <= result_.upper * (1 + 4 * std::numeric_limits<double>::epsilon()))
+            set_witness(witness_segment_, at, witness_a_, witness_b_, pair);
+    }
+
     // The witness holds edges by their corners until the end: finding an edge's index means looking through the mesh.
     void name_edges() {
         if (!result_.witness.edge_edge) return;
@@ -325,6 +339,7 @@ private:
     std::vector<Entry> queue_;    // a heap
     double aside_ = infinity;     // least bound of the entries that are not in the queue any more and were not split
     std::int64_t made_ = 0;
+    int witness_segment_ = 0, witness_a_ = 0, witness_b_ = 0;  // elements
     geometry::Edge edge_a_{}, edge_b_{};
     SearchResult result_;
 };

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "clearance_oracle.hpp"
+#include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
 using namespace fettle;
 using namespace fettle::tests::clearance;
@@ -24,7 +24,7 @@ struct Audit {
 Audit audit(const MovingPair& pair, const SearchResult& result, double tolerance, int samples) {
     Audit audit;
     const Real at_witness = pair.distance_at(result.witness.s);
-    const Real sampled = std::min(sampled_minimum(pair, samples, 8), at_witness);
+    const Real sampled = std::min(sampled_minimum(pair, samples, 6), at_witness);
     audit.sampled = static_cast<double>(sampled);
     audit.lower_above_sample = static_cast<double>(result.lower - sampled);
     audit.upper_not_attained = static_cast<double>(std::abs(result.upper - at_witness)) - 2 * pair.segment().slack;
@@ -153,7 +153,7 @@ TEST_CASE("A pin turning in a bore", "[clearance]") {
     SearchOptions options;
     options.tolerance = 1e-6;
     const SearchResult result = search_pair(pair.a.search(), pair.b.search(), {pair.segment()}, options);
-    const Audit a = audit(pair, result, options.tolerance, 100);
+    const Audit a = audit(pair, result, options.tolerance, 30);
     CAPTURE(result.lower, result.upper, a.sampled, result.evaluations);
     CHECK(a.lower_above_sample <= 0);
     CHECK(a.upper_not_attained <= 0);
