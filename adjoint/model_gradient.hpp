@@ -20,11 +20,13 @@ TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
 /// dJ/d(body data).
 struct BodyGradient {
     Matrix3X vertices_bar;                        ///< 3 x n, vertices in the body's frame (relative to c, which is constant)
-    Matrix34 pose_start_bar = Matrix34::Zero();   ///< start pose of the reference point's frame, [R q]
-    Matrix34 velocity_start_bar = Matrix34::Zero();
-    double density_bar = 0;
+    /// Start pose of the reference point's frame, [R q], entry by entry; R's part is defined up to what a rotation cannot do:
+    /// pair it with tangents dP = [[phi] R, dq]. Body::velocity_start is held (a caller that holds omega in [[omega] R, v] adds that term).
+    Matrix34 pose_start_bar = Matrix34::Zero();
+    Matrix34 velocity_start_bar = Matrix34::Zero();  ///< Pdot at the start, entry by entry
+    double density_bar = 0;                       ///< moments = density * solid_moments(vertices)
     Vector3 force_bar = Vector3::Zero();
-    std::vector<Vector6> increment_bar;           ///< [step]: prescribed coordinates' increments over each step (chart coordinates)
+    std::vector<Vector6> increment_bar;           ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
 };
 
 struct ModelGradient {

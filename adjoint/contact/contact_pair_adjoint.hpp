@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// Dependence of one pair's forces (core/contact/contact_pair.hpp) on the mollifier's eps, and of eps on the undeformed edges:
+///   eps = mollifier_scale |E1|^2 |E2|^2,   E1 = X1 - X0 in the first body's frame, E2 = X3 - X2 in the second's.
+/// With x = c/eps, m = x (2 - x), m' = dm/dc = 2 (1 - x)/eps:
+///   dm/deps = -2 x (1 - x)/eps,   dm'/deps = (4 x - 2)/eps^2,
+/// and the forces f_i = factor (m b' 2 w_i r + b m' dc/dx_i) follow by the product rule. All is zero where m = 1.
+#pragma once
+
+#include <array>
+
+#include "fettle/core/contact/contact_pair.hpp"
+
+namespace fettle::adjoint::contact {
+
+/// Is the mollifier below 1, so that the potential depends on eps?
+inline bool is_mollified(const core::contact::ContactPair& pair) {
+    return pair.type == core::contact::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
+}
+
+/// df_i/deps (world) [N s^2/m^4 with the weight h^2]. Contract: is_mollified(pair).
+std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPair& pair, const core::contact::BarrierParameters& parameters);
+
+/// deps/dX_i of the four undeformed vertices, each in its own body's frame [m^3].
+std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1);
+
+}  // namespace fettle::adjoint::contact

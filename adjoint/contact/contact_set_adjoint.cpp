@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+
+#include <Eigen/Geometry>
+
+#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+
+namespace fettle::adjoint::contact {
+namespace {
+
+using core::contact::ContactPair;
+using core::kinematics::Pose;
+using Four = std::array<Vector3, 4>;
+
+// The body of each of a pair's four vertices.
+std::array<int, 4> bodies_of(const core::contact::BodyPairContacts& list, const ContactPair& pair) {
+    std::array<int, 4> body;
+    for (int i = 0; i < 4; ++i) body[i] = i < first_count(pair.type) ? list.first : list.second;
+    return body;
+}
+
+Four undeformed(const core::model::Model& model, const std::array<int, 4>& body, const ContactPair& pair) {
+    Four X;
+    for (int i = 0; i < 4; ++i) X[i] = model.bodies[body[i]].mesh.vertices.col(pair.vertex[i]);
+    return X;
+}
+
+double dot(const Four& a, const Four& b) { return a[0].dot(b[0]) + a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]); }
+
+}  // namespace
+
+void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vector<std::vector<Vector6>>& lambda,
+                                       std::vector<ModelGradient>& model_bar) {
+    for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
+        for (const ContactPair& pair : list.contacts) {
+            const std::array<int, 4> body = bodies_of(list, pair);
+            const Four force = pair_forces(pair, at.parameters);
+            const bool mollified = is_mollified(pair);
+            Four force_eps, eps_gradient;
+            if (mollified) {
+                const Four X = undeformed(at.model, body, pair);
+                force_eps = pair_forces_eps_derivative(pair, at.parameters);
+                eps_gradient = mollifier_eps_gradient(X[0], X[1], X[2], X[3]);
+            }
+            for (std::size_t s = 0; s < lambda.size(); ++s) {
+                Four v;
+                for (int i = 0; i < 4; ++i) {
+                    const Vector6& motion = lambda[s][body[i]];
+                    v[i] = motion.head<3>() + motion.tail<3>().cross(pair.x[i] - at.poses[body[i]].position);
+                }
+                const Four change = pair_hessian_product(pair, at.parameters, v);
+                const double eps_bar = mollified ? dot(force_eps, v) : 0.0;
+                for (int i = 0; i < 4; ++i) {
+                    auto vertex_bar = model_bar[s].bodies[body[i]].vertices_bar.col(pair.vertex[i]);
+                    vertex_bar -= at.poses[body[i]].rotation.transpose() * (change[i] - lambda[s][body[i]].tail<3>().cross(force[i]));
+                    if (mollified) vertex_bar -= eps_bar * eps_gradient[i];
+                }
+            }
+        }
+}
+
+void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Matrix34>& poses_dot, const ModelTangent& direction,
+                                  PoseGradientTangent& out) {
+    for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
+        for (const ContactPair& pair : list.contacts) {
+            const std::array<int, 4> body = bodies_of(list, pair);
+            const Four X = undeformed(at.model, body, pair);
+            Four X_dot, v;
+            for (int i = 0; i < 4; ++i) {
+                X_dot[i] = direction.bodies[body[i]].vertices_dot.col(pair.vertex[i]);
+                v[i] = poses_dot[body[i]] * X[i].homogeneous() + at.poses[body[i]].rotation * X_dot[i];
+            }
+            const Four force = pair_forces(pair, at.parameters);
+            Four force_dot = pair_hessian_product(pair, at.parameters, v);
+            if (is_mollified(pair)) {
+                const double eps_dot = dot(mollifier_eps_gradient(X[0], X[1], X[2], X[3]), X_dot);
+                const Four force_eps = pair_forces_eps_derivative(pair, at.parameters);
+                for (int i = 0; i < 4; ++i) force_dot[i] += eps_dot * force_eps[i];
+            }
+            for (int i = 0; i < 4; ++i) {
+                out.value[body[i]] += force[i] * X[i].homogeneous().transpose();
+                out.dot[body[i]] += force_dot[i] * X[i].homogeneous().transpose();
+                out.dot[body[i]].leftCols<3>() += force[i] * X_dot[i].transpose();
+            }
+        }
+}
+
+}  // namespace fettle::adjoint::contact

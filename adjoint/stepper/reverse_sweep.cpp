@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+
+#include <Eigen/Geometry>
+#include <utility>
+
+#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/energy/inertia.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+
+namespace fettle::adjoint {
+namespace {
+
+using core::kinematics::pose_matrix;
+using core::model::Body;
+using core::model::Model;
+using core::stepper::Trajectory;
+
+// The left-rotation gradient of a gradient in the entries of R: <r_bar, [phi] R> = axial . phi.
+Vector3 rotation_gradient(const Matrix3& r_bar, const Matrix3& rotation) {
+    const Matrix3 s = r_bar * rotation.transpose();
+    return {s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1)};
+}
+
+class ReverseSweep {
+public:
+    ReverseSweep(const Model& model, const Trajectory& trajectory, const std::vector<TrajectoryGradient>& seeds)
+        : model_(model), trajectory_(trajectory), seeds_(seeds), dofs_(core::solver::free_dofs(model)), solver_(dofs_) {
+        const std::size_t bodies = model.bodies.size();
+        const int steps = static_cast<int>(trajectory.steps.size());
+        for (const TrajectoryGradient& seed : seeds)
+            FETTLE_ASSERT(seed.pose_bar.size() == trajectory.poses.size(), "a seed has one pose gradient per stored configuration");
+        out_.assign(seeds.size(), zero_model_gradient(model, steps));
+        end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
+        start_ = before_ = end_;
+        moments_bar_.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
+        y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
+        lambda_ = motion_ = y_bar_;
+        left_jacobian_.resize(bodies);
+    }
+
+    Errors run() {
+        const int steps = static_cast<int>(trajectory_.steps.size());
+        add_seeds(steps, end_);
+        if (steps > 0) add_seeds(steps - 1, start_);
+        for (int t = steps - 1; t >= 0; --t) {
+            if (t > 0) add_seeds(t - 1, before_);
+            if (Errors errors = step_back(t); !errors.empty()) return errors;
+            for (auto& bodies : end_)
+                for (Matrix34& p : bodies) p.setZero();
+            // end <- start <- before <- zero
+            std::swap(end_, start_);
+            std::swap(start_, before_);
+        }
+        finish();
+        return {};
+    }
+
+    std::vector<ModelGradient> take() { return std::move(out_); }
+
+private:
+    void add_seeds(int t, std::vector<std::vector<Matrix34>>& pose_bar) const {
+        for (std::size_t s = 0; s < seeds_.size(); ++s)
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) pose_bar[s][i] += seeds_[s].pose_bar[t][i];
+    }
+
+    Errors step_back(int t) {
+        const LinearisedStep step = linearise_step(model_, trajectory_, t);
+        if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
+        solve(step);
+        for (std::size_t s = 0; s < seeds_.size(); ++s) {
+            const std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                prescribed_back(t, s, i, step, h_lambda[i]);
+                inertia_back(t, s, i, step);
+            }
+        }
+        const contact::ContactsAtPose at{model_, step.contacts, step.poses, step.problem.barrier};
+        contact::subtract_contact_vertices_adjoint(at, motion_, out_);
+        return {};
+    }
+
+    // y_bar, lambda, and lambda's motion (dq, phi) of each body.
+    void solve(const LinearisedStep& step) {
+        for (std::size_t i = 0; i < model_.bodies.size(); ++i)
+            left_jacobian_[i] = core::kinematics::left_jacobian(step.points[i].rotation_vector);
+        MatrixX rhs(dofs_.count, static_cast<Eigen::Index>(seeds_.size()));
+        for (std::size_t s = 0; s < seeds_.size(); ++s) {
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                y_bar_[s][i].head<3>() = end_[s][i].col(3);
+                y_bar_[s][i].tail<3>() = left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
+            }
+            rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
+        }
+        const MatrixX lambda = refined_solve(solver_, dofs_, step.derivatives.hessian, rhs);
+        for (std::size_t s = 0; s < seeds_.size(); ++s) {
+            core::solver::scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                motion_[s][i].head<3>() = lambda_[s][i].head<3>();
+                motion_[s][i].tail<3>() = left_jacobian_[i] * lambda_[s][i].tail<3>();
+            }
+        }
+    }
+
+    // Prescribed coordinates' increments, and what they are measured from: the start's position and the chart's base.
+    void prescribed_back(int t, std::size_t s, std::size_t i, const LinearisedStep& step, const Vector6& h_lambda) {
+        const Body& body = model_.bodies[i];
+        Vector6 increment_bar = Vector6::Zero();
+        for (int k = 0; k < 6; ++k)
+            if (!is_free(body, k)) increment_bar[k] = y_bar_[s][i][k] - h_lambda[k];
+        out_[s].bodies[i].increment_bar[t] = increment_bar;
+        start_[s][i].col(3) += increment_bar.head<3>();
+        if (rotates_freely(body)) return;
+        const Vector3& theta = step.points[i].rotation_vector;
+        const Vector3 lambda_theta = lambda_[s][i].tail<3>(), phi = motion_[s][i].tail<3>();
+        const Matrix3 back = core::kinematics::left_jacobian_inverse(theta).transpose();
+        const Vector3 torque = back * step.derivatives.gradient[i].tail<3>();
+        const core::kinematics::RotationDerivatives r = core::kinematics::rotation_derivatives(theta);
+        const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), r);
+        const Vector3 end_bar = back * (increment_bar.tail<3>() + curvature * lambda_theta) + 0.5 * phi.cross(torque);
+        const Vector3 base_bar = r.value.transpose() * end_bar;
+        start_[s][i].leftCols<3>() += 0.5 * cross_matrix(base_bar) * trajectory_.poses[t][i].rotation;
+    }
+
+    // The residual is linear in P_hat, in M and in the force.
+    void inertia_back(int t, std::size_t s, std::size_t i, const LinearisedStep& step) {
+        const double h = model_.timestep;
+        Matrix34 v;
+        v << cross_matrix(motion_[s][i].tail<3>()) * step.poses[i].rotation, motion_[s][i].head<3>();
+        const Matrix34 pose_hat_bar = -energy::inertia_pose_hat_adjoint(v, model_.bodies[i].moments);
+        moments_bar_[s][i] -= energy::inertia_moments_adjoint(v, pose_matrix(step.poses[i]) - step.problem.pose_hat[i]);
+        out_[s].bodies[i].force_bar += step.problem.weight * motion_[s][i].head<3>();
+        out_[s].gravity_bar += h * h * pose_hat_bar.col(3);
+        if (t > 0) {
+            start_[s][i] += 2 * pose_hat_bar;
+            before_[s][i] -= pose_hat_bar;
+        } else {
+            start_[s][i] += pose_hat_bar;
+            out_[s].bodies[i].velocity_start_bar += h * pose_hat_bar;
+        }
+    }
+
+    // After the first step the swaps have left P_bar[0] in end_.
+    void finish() {
+        for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+            const Body& body = model_.bodies[i];
+            const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+            for (std::size_t s = 0; s < seeds_.size(); ++s) {
+                BodyGradient& bar = out_[s].bodies[i];
+                bar.pose_start_bar = end_[s][i];
+                if (moments_bar_[s][i].isZero(0)) continue;
+                bar.density_bar = moments_bar_[s][i].cwiseProduct(solid).sum();
+                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[s][i], bar.vertices_bar);
+            }
+        }
+    }
+
+    const Model& model_;
+    const Trajectory& trajectory_;
+    const std::vector<TrajectoryGradient>& seeds_;
+    const core::solver::FreeDofs dofs_;
+    core::solver::LinearSolver solver_;
+    std::vector<ModelGradient> out_;
+    std::vector<std::vector<Matrix34>> end_, start_, before_;  // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
+    std::vector<std::vector<Matrix4>> moments_bar_;            // [seed][body]
+    std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
+    std::vector<Matrix3> left_jacobian_;
+};
+
+}  // namespace
+
+Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Trajectory& trajectory, const std::vector<TrajectoryGradient>& seeds) {
+    if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
+    ReverseSweep sweep(model, trajectory, seeds);
+    if (Errors errors = sweep.run(); !errors.empty()) return errors;
+    return sweep.take();
+}
+
+}  // namespace fettle::adjoint

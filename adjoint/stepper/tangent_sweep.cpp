@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+
+namespace fettle::adjoint {
+namespace {
+
+using core::kinematics::pose_matrix;
+using core::kinematics::RotationDerivatives;
+using core::model::Body;
+using core::model::Model;
+using core::stepper::Trajectory;
+
+Matrix34 matrix_of(const Vector6& tangent, const Matrix3& rotation) {
+    Matrix34 p;
+    p << cross_matrix(tangent.tail<3>()) * rotation, tangent.head<3>();
+    return p;
+}
+
+Vector6 tangent_of(const Matrix34& pose_dot, const Matrix3& rotation) {
+    const Matrix3 s = pose_dot.leftCols<3>() * rotation.transpose();
+    Vector6 out;
+    out << pose_dot.col(3), 0.5 * Vector3(s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1));
+    return out;
+}
+
+double inner(const Matrix3& a, const Matrix3& b) { return a.cwiseProduct(b).sum(); }
+
+const Matrix3& second_derivative(const RotationDerivatives& r, int a, int b) {
+    static constexpr std::array<std::array<int, 3>, 3> place{{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+    return r.hessian[place[a][b]];
+}
+
+class TangentSweep {
+public:
+    TangentSweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction)
+        : model_(model), trajectory_(trajectory), direction_(direction), dofs_(core::solver::free_dofs(model)), solver_(dofs_) {
+        FETTLE_ASSERT(direction.bodies.size() == model.bodies.size(), "a direction has an entry for each body");
+        for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+            const Body& body = model.bodies[i];
+            const BodyTangent& dot = direction.bodies[i];
+            moments_dot_.push_back(dot.density_dot * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles) +
+                                   body.density * geometry::solid_moments_tangent(body.mesh.vertices, body.mesh.triangles, dot.vertices_dot));
+            poses_dot_.push_back(matrix_of(dot.pose_start_dot, trajectory.poses[0][i].rotation));
+            velocities_dot_.push_back(dot.velocity_start_dot);
+        }
+        out_.push_back(tangents(0));
+    }
+
+    Errors run() {
+        for (int t = 0; t < static_cast<int>(trajectory_.steps.size()); ++t)
+            if (Errors errors = step(t); !errors.empty()) return errors;
+        return {};
+    }
+
+    std::vector<std::vector<Vector6>> take() { return std::move(out_); }
+
+private:
+    std::vector<Vector6> tangents(int t) const {
+        std::vector<Vector6> out(poses_dot_.size());
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = tangent_of(poses_dot_[i], trajectory_.poses[t][i].rotation);
+        return out;
+    }
+
+    // dP/dy_k of a body in the step's chart.
+    Matrix34 chart_direction(int t, std::size_t i, const RotationDerivatives& r, int k) const {
+        Matrix34 d = Matrix34::Zero();
+        if (k < 3) d(k, 3) = 1;
+        else d.leftCols<3>() = r.gradient[k - 3] * trajectory_.poses[t][i].rotation;
+        return d;
+    }
+
+    // The end pose's change with the unknowns held: the chart's base, the prescribed positions and increments.
+    Matrix34 known_change(int t, std::size_t i, const RotationDerivatives& r) const {
+        const Body& body = model_.bodies[i];
+        Matrix34 change = Matrix34::Zero();
+        change.leftCols<3>() = r.value * poses_dot_[i].leftCols<3>();
+        for (int k = 0; k < 6; ++k) {
+            if (is_free(body, k)) continue;
+            change += direction_.bodies[i].increment_dot[t][k] * chart_direction(t, i, r, k);
+            if (k < 3) change(k, 3) += poses_dot_[i](k, 3);
+        }
+        return change;
+    }
+
+    // Change of dE/dy_k with the unknowns held, for dE/dP = value and its change.
+    double residual_change(int t, std::size_t i, const RotationDerivatives& r, int k, const Matrix34& value, const Matrix34& dot) const {
+        if (k < 3) return dot(k, 3);
+        const int a = k - 3;
+        const Matrix3& base = trajectory_.poses[t][i].rotation;
+        double change = inner(dot.leftCols<3>(), r.gradient[a] * base) + inner(value.leftCols<3>(), r.gradient[a] * poses_dot_[i].leftCols<3>());
+        for (int b = 0; b < 3; ++b)
+            if (!is_free(model_.bodies[i], b + 3))
+                change += direction_.bodies[i].increment_dot[t][b + 3] * inner(value.leftCols<3>(), second_derivative(r, a, b) * base);
+        return change;
+    }
+
+    Matrix34 pose_hat_change(std::size_t i) const {
+        const double h = model_.timestep;
+        Matrix34 change = poses_dot_[i] + h * velocities_dot_[i];
+        change.col(3) += h * h * direction_.gravity_dot;
+        return change;
+    }
+
+    Errors step(int t) {
+        const LinearisedStep step = linearise_step(model_, trajectory_, t);
+        if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
+        const std::size_t n = model_.bodies.size();
+        std::vector<RotationDerivatives> r(n);
+        std::vector<Matrix34> end_dot(n);
+        contact::PoseGradientTangent energy{std::vector<Matrix34>(n, Matrix34::Zero()), std::vector<Matrix34>(n, Matrix34::Zero())};
+        for (std::size_t i = 0; i < n; ++i) {
+            r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
+            end_dot[i] = known_change(t, i, r[i]);
+            const Matrix34 minus_hat = pose_matrix(step.poses[i]) - step.problem.pose_hat[i];
+            const Matrix4& moments = model_.bodies[i].moments;
+            energy.value[i] = minus_hat * moments;
+            energy.value[i].col(3) -= step.problem.weight * model_.bodies[i].force;
+            energy.dot[i] = adjoint::energy::inertia_gradient_tangent(minus_hat, moments, end_dot[i] - pose_hat_change(i), moments_dot_[i]);
+            energy.dot[i].col(3) -= step.problem.weight * direction_.bodies[i].force_dot;
+        }
+        contact::add_contact_gradient_tangent({model_, step.contacts, step.poses, step.problem.barrier}, end_dot, direction_, energy);
+        std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
+        for (std::size_t i = 0; i < n; ++i)
+            for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);
+        const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
+        core::solver::scatter(dofs_, refined_solve(solver_, dofs_, step.derivatives.hessian, rhs).col(0), y_dot);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, r[i], k);
+        advance(t, end_dot);
+        return {};
+    }
+
+    void advance(int t, const std::vector<Matrix34>& end_dot) {
+        for (std::size_t i = 0; i < end_dot.size(); ++i) {
+            const Matrix3& rotation = trajectory_.poses[t + 1][i].rotation;
+            const Matrix34 next = matrix_of(tangent_of(end_dot[i], rotation), rotation);  // rounding must not leave the tangent space
+            velocities_dot_[i] = (next - poses_dot_[i]) / model_.timestep;
+            poses_dot_[i] = next;
+        }
+        out_.push_back(tangents(t + 1));
+    }
+
+    const Model& model_;
+    const Trajectory& trajectory_;
+    const ModelTangent& direction_;
+    const core::solver::FreeDofs dofs_;
+    core::solver::LinearSolver solver_;
+    std::vector<Matrix4> moments_dot_;
+    std::vector<Matrix34> poses_dot_, velocities_dot_;  // at the current step's start
+    std::vector<std::vector<Vector6>> out_;
+};
+
+}  // namespace
+
+Result<std::vector<std::vector<Vector6>>> tangent_sweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction) {
+    if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
+    TangentSweep sweep(model, trajectory, direction);
+    if (Errors errors = sweep.run(); !errors.empty()) return errors;
+    return sweep.take();
+}
+
+}  // namespace fettle::adjoint
