@@ -57,18 +57,15 @@ std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<ChartPo
     return poses;
 }
 
-PotentialValue incremental_potential(const StepProblem& problem, const std::vector<Pose>& poses, const contact::Candidates& candidates) {
-    PotentialValue sum;
+double incremental_potential(const StepProblem& problem, const std::vector<Pose>& poses, const contact::Candidates& candidates) {
+    double sum = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const model::Body& body = problem.model->bodies[i];
         if (!has_free_dof(body)) continue;
-        const double inertia = inertia_potential(pose_matrix(poses[i]), problem.pose_hat[i], body.moments);
-        const double load = problem.weight * body.force.dot(poses[i].position - problem.poses_t0[i].position);
-        sum.value += inertia - load;
-        sum.magnitude += inertia + std::abs(load);
+        sum += inertia_potential(pose_matrix(poses[i]), problem.pose_hat[i], body.moments) -
+               problem.weight * body.force.dot(poses[i].position - problem.poses_t0[i].position);
     }
-    const double barrier = contact::barrier_potential(*problem.model, candidates, poses, problem.barrier);
-    return {sum.value + barrier, sum.magnitude + barrier};
+    return sum + contact::barrier_potential(*problem.model, candidates, poses, problem.barrier);
 }
 
 PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<Pose>& poses, const contact::ContactSet& contacts,

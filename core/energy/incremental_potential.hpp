@@ -26,13 +26,8 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinema
 
 std::vector<kinematics::Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points);
 
-/// Value and the sum of the magnitudes of its terms (what rounding is relative to).
-struct PotentialValue {
-    double value = 0;
-    double magnitude = 0;
-};
-PotentialValue incremental_potential(const StepProblem& problem, const std::vector<kinematics::Pose>& poses,
-                                     const contact::Candidates& candidates);
+/// The value; infinity where a pair is at or below dmin.
+double incremental_potential(const StepProblem& problem, const std::vector<kinematics::Pose>& poses, const contact::Candidates& candidates);
 
 /// First derivatives before any choice of coordinates (inertia, loads and barrier), and the Gauss-Newton Hessian of barrier alone.
 struct PoseDerivatives {

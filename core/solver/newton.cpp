@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "fettle/core/contact/safe_step.hpp"
@@ -20,6 +21,8 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double stalled_step = 1e-3;   // a step this short, again and again, means that the way is blocked
 constexpr int stalled_iterations = 25;
+constexpr int stagnant_iterations = 12;  // without a smaller residual, when rounding is all that is left
+constexpr double usable_residual = 1e-8; // of a solve to rounding that stagnates: the adjoint's accuracy
 
 Vector6 coordinates(const ChartPoint& p) {
     Vector6 y;
@@ -36,6 +39,7 @@ struct Direction {
     double slope = 0;                  // g . step
     double motion = 0;                 // bound on the largest motion of a point of a body that is solved for [m]
     double residual = 0;
+    double rounding = 0;               // of the potential's value here: what a difference of two values may be wrong by
     HessianKind kind = HessianKind::exact;
 };
 
@@ -91,6 +95,11 @@ private:
         if (!options_.to_rounding && result_.iterations > 0 && arrived && slow) return stop(NewtonStatus::converged);
         if (result_.iterations >= options_.max_iterations) return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
 
+        if (options_.to_rounding && result_.iterations > 0 && arrived && slow && is_stagnant(direction.residual)) {
+            if (direction.residual <= usable_residual) return stop(NewtonStatus::converged);
+            return stop(NewtonStatus::not_converged, failure_message(direction, "rounding stops the solve before it is accurate enough for a gradient"));
+        }
+
         ++result_.iterations;
         const double fraction = search(direction);
         if (fraction == 0 && direction.kind == HessianKind::exact) {
@@ -108,6 +117,15 @@ private:
         if (options_.to_rounding && fraction == 1 && arrived && direction.kind == HessianKind::exact && direction.motion <= rounding_motion)
             return finish_at_rounding();
         return true;
+    }
+
+    bool is_stagnant(double residual) {
+        if (residual < 0.5 * least_residual_) {
+            least_residual_ = residual;
+            since_least_ = 0;
+            return false;
+        }
+        return ++since_least_ >= stagnant_iterations;
     }
 
     // The residual that is reported belongs to the final point.
@@ -131,6 +149,17 @@ private:
         return magnitude > 0 ? std::sqrt(square) / magnitude : std::sqrt(square);
     }
 
+    // Positions carry an error of a few ulp of their size; the value moves by force times that, and by its square through the inertia.
+    double rounding_of(const energy::ChartDerivatives& d) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const model::Body& body = model_.bodies[i];
+            const double ulp = 16 * std::numeric_limits<double>::epsilon() * (points_[i].position.norm() + body.radius);
+            sum += d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
+        }
+        return sum;
+    }
+
     bool find_direction(HessianKind kind, Direction& direction) {
         energy::ChartDerivatives d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
         bool definite = dofs_.count == 0 || linear_.factorise(d.hessian);
@@ -147,6 +176,7 @@ private:
         if (!definite) return false;
         direction.kind = kind;
         direction.residual = residual_of(d);
+        direction.rounding = rounding_of(d);
         fill_direction(d, direction);
         return true;
     }
@@ -208,10 +238,9 @@ private:
         for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
             std::vector<ChartPoint> trial = moved(direction, fraction);
             std::vector<Pose> poses = poses_of(problem_, trial);
-            const energy::PotentialValue value = energy::incremental_potential(problem_, poses, candidates_);
-            const double change = value.value - value_.value - penalty_ * fraction * remaining;
-            const double noise = 1e-14 * (value.magnitude + value_.magnitude);
-            if (!(change <= sufficient_decrease * fraction * slope + noise)) continue;
+            const double value = energy::incremental_potential(problem_, poses, candidates_);
+            const double change = value - value_ - penalty_ * fraction * remaining;
+            if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
             points_ = std::move(trial);
             result_.poses = std::move(poses);
             value_ = value;
@@ -242,7 +271,19 @@ private:
         if (limiting_.limiting_a >= 0)
             out << "; '" << model_.bodies[limiting_.limiting_a].name << "' against '" << model_.bodies[limiting_.limiting_b].name << "'";
         out << describe_closest() << "; residual " << direction.residual << ", kappa " << model_.kappa << " N/m";
+        const double wanted = sufficient_kappa();
+        if (wanted > model_.kappa) out << " (with kappa " << wanted << " N/m the same forces would leave half of dhat)";
         return out.str();
+    }
+
+    // The force of the closest pair, kappa b'(d) d, at half the activation distance.
+    double sufficient_kappa() const {
+        const double d = contacts_.minimum_distance, half = model_.dmin + 0.5 * model_.dhat;
+        if (!(d > model_.dmin) || d >= half) return 0;
+        const auto slope = [&](double at) {
+            return at * contact::barrier(at * at - model_.dmin * model_.dmin, problem_.barrier.gap_hat).first;
+        };
+        return model_.kappa * slope(d) / slope(half);
     }
 
     std::string describe_closest() const {
@@ -271,10 +312,12 @@ private:
     contact::Candidates candidates_;
     contact::ContactSet contacts_;
     contact::SafeStep limiting_;
-    energy::PotentialValue value_;
+    double value_ = 0;
     double penalty_ = 0;
     int projected_iterations_ = 0;
     int stalled_ = 0;
+    double least_residual_ = std::numeric_limits<double>::infinity();
+    int since_least_ = 0;
     NewtonResult result_;
 };
 
