@@ -30,6 +30,7 @@ struct RelativeMotion {
     PairType type;
     std::array<Vector3, 4> d, e;
     Vector3 largest;  ///< D_k of the header
+    bool finite;
 };
 
 RelativeMotion relative_motion(PairType type, const PairVertices& t0, const PairVertices& t1) {
@@ -37,11 +38,14 @@ RelativeMotion relative_motion(PairType type, const PairVertices& t0, const Pair
     RelativeMotion m;
     m.type = type;
     m.largest.setZero();
+    Vector3 zero = Vector3::Zero();  // not a number as soon as anything is not finite, which comparisons would pass over
     for (std::size_t i = 0; i < 4; ++i) {
         m.d[i] = t0[pairs[i].first] - t0[pairs[i].second];
         m.e[i] = t1[pairs[i].first] - t1[pairs[i].second];
         m.largest = m.largest.cwiseMax(m.d[i].cwiseAbs()).cwiseMax(m.e[i].cwiseAbs());
+        zero += 0.0 * m.d[i] + 0.0 * m.e[i];
     }
+    m.finite = zero.sum() == 0;
     return m;
 }
 
@@ -250,12 +254,14 @@ private:
 LinearCcdResult conservative_advancement(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
                                          const LinearCcdOptions& options) {
     const RelativeMotion m = relative_motion(type, t0, t1);
+    if (!m.finite) return {true, 0};
     if (separated_along_axis(m, dmin)) return {};
     return Advancement(m, dmin, options).run();
 }
 
 double distance_lower_bound(PairType type, const PairVertices& x) {
     const RelativeMotion m = relative_motion(type, x, x);
+    if (!m.finite) return 0;
     const Separation s = separation(m, separating_direction(type, vertices_at(m, 0)), 0, 0);
     return s.gap > 0 ? s.gap : std::max(0.0, best_separation(m, vertices_at(m, 0), 0, 0).gap);
 }
