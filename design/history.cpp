@@ -95,12 +95,14 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     e.gradient = to_vector(json.at("gradient"));
     e.constraints = to_vector(json.at("constraints"));
     e.jacobian.resize(static_cast<Eigen::Index>(json.at("jacobian").size()), n);
-    for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i) e.jacobian.row(i) = to_vector(json.at("jacobian")[static_cast<size_t>(i)]).transpose();
+    for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i)
+        e.jacobian.row(i) = to_vector(json.at("jacobian")[static_cast<size_t>(i)]).transpose();
     e.violation = json.at("violation").get<double>();
     entry.terms = named_values(json.at("terms"));
     entry.certified = named_values(json.at("certified"));
     const auto m = static_cast<Eigen::Index>(header.constraints.size());
-    if (e.gradient.size() != n || e.constraints.size() != m || e.jacobian.rows() != m) throw std::runtime_error("sizes do not match the header");
+    if (e.gradient.size() != n || e.constraints.size() != m || e.jacobian.rows() != m)
+        throw std::runtime_error("sizes do not match the header");
     return entry;
 }
 
@@ -159,7 +161,8 @@ Result<History> History::open(const std::string& directory, const HistoryHeader&
     history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (history.file_ < 0) return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
     if (::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
-        return Error{ErrorCode::file_unreadable, path.string(), "another process is writing this history; wait for it, or give --out another folder"};
+        return Error{ErrorCode::file_unreadable, path.string(),
+                     "another process is writing this history; wait for it, or give --out another folder"};
     }
     if (mode == HistoryMode::fresh && fs::file_size(path, failure) > 0) {
         const Result<std::string> kept = rename_away(path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The history of an optimisation: DIR/history.jsonl, a header line, then one JSON object per evaluation, appended and flushed to the disk as
-/// it happens. Doubles are written so that they read back bit for bit. A resumed run is the same run again, its evaluations answered from
-/// here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
+/// The history of an optimisation: DIR/history.jsonl, a header line, then one JSON object per evaluation, appended and flushed to the disk
+/// as it happens. Doubles are written so that they read back bit for bit. A resumed run is the same run again, its evaluations answered
+/// from here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
 ///   header      fettle_history 1, design (hash of all that an evaluation depends on), program, parameters, constraints (names)
 ///   evaluation  evaluation (1, 2, ...), usable, reason, parameters (by name, SI), objective, gradient, constraints, jacobian (rows),
 ///               violation, terms (by name), certified (lower bounds by constraint), forward_seconds, backward_seconds

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// The one door between an optimiser and a problem. It scales (variables to [0, 1] by their bounds; f and each c by the largest derivative at
-/// the start, so that all are of order one), evaluates each point once (cached by the exact bits of the point, since Ipopt and NLopt
-/// ask for values and derivatives of one point separately), counts, keeps the best design, and stops a run that is over.
-/// Scaling and the order of evaluations are functions of the problem alone: a run repeated has the same bits.
+/// The one door between an optimiser and a problem. It scales (variables to [0, 1] by their bounds; f and each c by the largest derivative
+/// at the start, so that all are of order one), evaluates each point once (cached by the exact bits of the point, since Ipopt and NLopt ask
+/// for values and derivatives of one point separately), counts, keeps the best design, and stops a run that is over. Scaling and the order
+/// of evaluations are functions of the problem alone: a run repeated has the same bits.
 #pragma once
 
+#include <deque>
 #include <exception>
 #include <functional>
-#include <deque>
 #include <map>
 #include <string>
 
@@ -49,15 +49,15 @@ public:
 
     const Evaluation& start_evaluation() const { return start_evaluation_; }
     bool has_best() const { return best_index_ >= 0; }
-    const VectorX& best_point() const;             ///< unscaled. Contract: has_best
-    const VectorX& best_scaled_point() const;      ///< Contract: has_best
-    const Evaluation& best_evaluation() const;     ///< unscaled. Contract: has_best
-    Evaluation best_scaled_evaluation() const;     ///< Contract: has_best
+    const VectorX& best_point() const;          ///< unscaled. Contract: has_best
+    const VectorX& best_scaled_point() const;   ///< Contract: has_best
+    const Evaluation& best_evaluation() const;  ///< unscaled. Contract: has_best
+    Evaluation best_scaled_evaluation() const;  ///< Contract: has_best
 
     int evaluations() const { return static_cast<int>(records_.size()); }
     int failures() const { return failures_; }
     StopReason stop_reason() const { return stop_reason_; }
-    void rethrow() const;                          ///< rethrows an exception of the problem, if there was one
+    void rethrow() const;  ///< rethrows an exception of the problem, if there was one
 
 private:
     struct Record {
@@ -75,8 +75,8 @@ private:
     VectorX range_, scaled_start_, constraint_scale_, scaled_constraint_lower_, scaled_constraint_upper_;
     double objective_scale_ = 1;
     Evaluation start_evaluation_;
-    std::deque<Record> records_;                  ///< references into it stay valid
-    std::map<std::string, int> index_;             ///< by the bits of the scaled point
+    std::deque<Record> records_;        ///< references into it stay valid
+    std::map<std::string, int> index_;  ///< by the bits of the scaled point
     int best_index_ = -1;
     int failures_ = 0;
     StopReason stop_reason_ = StopReason::none;

@@ -91,8 +91,8 @@ public:
         return !settled_;
     }
 
-    void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*, Index, const Number*, const Number*, Number,
-                           const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {}
+    void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*, Index, const Number*, const Number*,
+                           Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {}
 
     int iterations() const { return iterations_; }
     bool settled() const { return settled_; }
@@ -117,19 +117,32 @@ private:
 
 const char* words(Ipopt::ApplicationReturnStatus status) {
     switch (status) {
-        case Ipopt::Solve_Succeeded: return "optimal to tolerance";
-        case Ipopt::Solved_To_Acceptable_Level: return "optimal to acceptable tolerance";
-        case Ipopt::Infeasible_Problem_Detected: return "converged to a point of local infeasibility";
-        case Ipopt::Search_Direction_Becomes_Too_Small: return "search direction became too small";
-        case Ipopt::Feasible_Point_Found: return "feasible point found";
-        case Ipopt::Maximum_Iterations_Exceeded: return "iteration limit";
-        case Ipopt::Restoration_Failed: return "feasibility restoration failed";
-        case Ipopt::Error_In_Step_Computation: return "error in step computation";
-        case Ipopt::Not_Enough_Degrees_Of_Freedom: return "fewer variables than equality constraints";
-        case Ipopt::Invalid_Number_Detected: return "no step could be evaluated";
-        case Ipopt::User_Requested_Stop: return "no further improvement above the tolerance";
-        case Ipopt::NonIpopt_Exception_Thrown: return "stopped";
-        default: return "failed";
+        case Ipopt::Solve_Succeeded:
+            return "optimal to tolerance";
+        case Ipopt::Solved_To_Acceptable_Level:
+            return "optimal to acceptable tolerance";
+        case Ipopt::Infeasible_Problem_Detected:
+            return "converged to a point of local infeasibility";
+        case Ipopt::Search_Direction_Becomes_Too_Small:
+            return "search direction became too small";
+        case Ipopt::Feasible_Point_Found:
+            return "feasible point found";
+        case Ipopt::Maximum_Iterations_Exceeded:
+            return "iteration limit";
+        case Ipopt::Restoration_Failed:
+            return "feasibility restoration failed";
+        case Ipopt::Error_In_Step_Computation:
+            return "error in step computation";
+        case Ipopt::Not_Enough_Degrees_Of_Freedom:
+            return "fewer variables than equality constraints";
+        case Ipopt::Invalid_Number_Detected:
+            return "no step could be evaluated";
+        case Ipopt::User_Requested_Stop:
+            return "no further improvement above the tolerance";
+        case Ipopt::NonIpopt_Exception_Thrown:
+            return "stopped";
+        default:
+            return "failed";
     }
 }
 

@@ -29,7 +29,7 @@ struct Run {
     nlopt_opt opt;
     bool stop_at_failure;
     std::vector<Side> inequalities, equalities;
-    bool over = false;                ///< StopOptimisation was thrown
+    bool over = false;  ///< StopOptimisation was thrown
     bool failed = false;
     VectorX failed_point;
 
@@ -77,10 +77,14 @@ void equality_sides(unsigned, double* result, unsigned n, const double* x, doubl
 
 nlopt_algorithm native(NloptAlgorithm algorithm) {
     switch (algorithm) {
-        case NloptAlgorithm::mma: return NLOPT_LD_MMA;
-        case NloptAlgorithm::ccsaq: return NLOPT_LD_CCSAQ;
-        case NloptAlgorithm::slsqp: return NLOPT_LD_SLSQP;
-        case NloptAlgorithm::cobyla: return NLOPT_LN_COBYLA;
+        case NloptAlgorithm::mma:
+            return NLOPT_LD_MMA;
+        case NloptAlgorithm::ccsaq:
+            return NLOPT_LD_CCSAQ;
+        case NloptAlgorithm::slsqp:
+            return NLOPT_LD_SLSQP;
+        case NloptAlgorithm::cobyla:
+            return NLOPT_LN_COBYLA;
     }
     return NLOPT_LD_MMA;
 }
@@ -104,8 +108,8 @@ struct NativeRun {
     VectorX failed_point;
 };
 
-NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const OptimiserOptions& options, const VectorX& start, const VectorX& lower,
-                     const VectorX& upper) {
+NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const OptimiserOptions& options, const VectorX& start,
+                     const VectorX& lower, const VectorX& upper) {
     const auto n = static_cast<unsigned>(evaluator.variables());
     const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(native(algorithm), n), nlopt_destroy);
     const bool recovers = algorithm == NloptAlgorithm::mma || algorithm == NloptAlgorithm::ccsaq;
@@ -114,7 +118,8 @@ NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const Optim
     nlopt_set_min_objective(opt.get(), objective, &run);
     const std::vector<double> tolerances(std::max(run.inequalities.size(), run.equalities.size()) + 1, constraint_tolerance);
     if (!run.inequalities.empty()) {
-        nlopt_add_inequality_mconstraint(opt.get(), static_cast<unsigned>(run.inequalities.size()), inequality_sides, &run, tolerances.data());
+        nlopt_add_inequality_mconstraint(opt.get(), static_cast<unsigned>(run.inequalities.size()), inequality_sides, &run,
+                                         tolerances.data());
     }
     if (!run.equalities.empty()) {
         nlopt_add_equality_mconstraint(opt.get(), static_cast<unsigned>(run.equalities.size()), equality_sides, &run, tolerances.data());
@@ -135,16 +140,26 @@ NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const Optim
 
 const char* words(nlopt_result result) {
     switch (result) {
-        case NLOPT_SUCCESS: return "success";
-        case NLOPT_STOPVAL_REACHED: return "stop value reached";
-        case NLOPT_FTOL_REACHED: return "objective changes less than the tolerance";
-        case NLOPT_XTOL_REACHED: return "parameters change less than the tolerance";
-        case NLOPT_MAXEVAL_REACHED: return "evaluation limit";
-        case NLOPT_ROUNDOFF_LIMITED: return "limited by rounding";
-        case NLOPT_INVALID_ARGS: return "invalid arguments";
-        case NLOPT_OUT_OF_MEMORY: return "out of memory";
-        case NLOPT_FORCED_STOP: return "stopped";
-        default: return "failed";
+        case NLOPT_SUCCESS:
+            return "success";
+        case NLOPT_STOPVAL_REACHED:
+            return "stop value reached";
+        case NLOPT_FTOL_REACHED:
+            return "objective changes less than the tolerance";
+        case NLOPT_XTOL_REACHED:
+            return "parameters change less than the tolerance";
+        case NLOPT_MAXEVAL_REACHED:
+            return "evaluation limit";
+        case NLOPT_ROUNDOFF_LIMITED:
+            return "limited by rounding";
+        case NLOPT_INVALID_ARGS:
+            return "invalid arguments";
+        case NLOPT_OUT_OF_MEMORY:
+            return "out of memory";
+        case NLOPT_FORCED_STOP:
+            return "stopped";
+        default:
+            return "failed";
     }
 }
 
@@ -152,10 +167,14 @@ const char* words(nlopt_result result) {
 
 std::string NloptOptimiser::name() const {
     switch (algorithm_) {
-        case NloptAlgorithm::mma: return "mma";
-        case NloptAlgorithm::ccsaq: return "ccsaq";
-        case NloptAlgorithm::slsqp: return "slsqp";
-        case NloptAlgorithm::cobyla: return "cobyla";
+        case NloptAlgorithm::mma:
+            return "mma";
+        case NloptAlgorithm::ccsaq:
+            return "ccsaq";
+        case NloptAlgorithm::slsqp:
+            return "slsqp";
+        case NloptAlgorithm::cobyla:
+            return "cobyla";
     }
     return "nlopt";
 }
@@ -185,7 +204,8 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
         }
         // Rounding limits SLSQP at a good optimum as often as at a bad one: the optimality residual is the judge.
         const bool ended = run.result > 0 || run.result == NLOPT_ROUNDOFF_LIMITED;
-        const bool at_box = ((best - lower).array() <= 0 && lower.array() > 0).any() || ((upper - best).array() <= 0 && upper.array() < 1).any();
+        const bool at_box =
+            ((best - lower).array() <= 0 && lower.array() > 0).any() || ((upper - best).array() <= 0 && upper.array() < 1).any();
         if (ended && at_box) {
             radius = std::min(1.0, 2 * radius);
             start = best;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// min |A x - b|_2 over x >= 0, by the active set method of Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23. Small and dense.
+/// min |A x - b|_2 over x >= 0, by the active set method of Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23. Small and
+/// dense.
 #pragma once
 
 #include "fettle/core/base/types.hpp"

@@ -12,13 +12,20 @@ namespace fettle::design::optimisers {
 
 const char* to_string(OptimiserStatus status) {
     switch (status) {
-        case OptimiserStatus::converged: return "converged";
-        case OptimiserStatus::budget_spent: return "budget_spent";
-        case OptimiserStatus::infeasible: return "infeasible";
-        case OptimiserStatus::infeasible_budget: return "infeasible_budget_spent";
-        case OptimiserStatus::not_converged: return "not_converged";
-        case OptimiserStatus::interrupted: return "interrupted";
-        case OptimiserStatus::start_failed: return "start_failed";
+        case OptimiserStatus::converged:
+            return "converged";
+        case OptimiserStatus::budget_spent:
+            return "budget_spent";
+        case OptimiserStatus::infeasible:
+            return "infeasible";
+        case OptimiserStatus::infeasible_budget:
+            return "infeasible_budget_spent";
+        case OptimiserStatus::not_converged:
+            return "not_converged";
+        case OptimiserStatus::interrupted:
+            return "interrupted";
+        case OptimiserStatus::start_failed:
+            return "start_failed";
     }
     return "unknown";
 }
@@ -62,9 +69,12 @@ namespace {
 // The native optimiser's answer, the budget and the best design's feasibility, as one verdict.
 OptimiserStatus verdict(const Evaluator& evaluator, const NativeOutcome& native, bool feasible) {
     switch (evaluator.stop_reason()) {
-        case StopReason::interrupted: return OptimiserStatus::interrupted;
-        case StopReason::budget: return feasible ? OptimiserStatus::budget_spent : OptimiserStatus::infeasible_budget;
-        default: break;
+        case StopReason::interrupted:
+            return OptimiserStatus::interrupted;
+        case StopReason::budget:
+            return feasible ? OptimiserStatus::budget_spent : OptimiserStatus::infeasible_budget;
+        default:
+            break;
     }
     if (!feasible) return OptimiserStatus::infeasible;
     return native.success ? OptimiserStatus::converged : OptimiserStatus::not_converged;
@@ -100,7 +110,8 @@ OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, con
     report.status = verdict(evaluator, native, report.feasible);
     report.optimality = optimality_residual(evaluator, evaluator.best_scaled_point(), evaluator.best_scaled_evaluation(), 1e-4);
     report.message = optimiser.name() + ": " + native.message;
-    if (evaluator.stop_reason() == StopReason::budget) report.message = "stopped after max_evaluations = " + std::to_string(options.max_evaluations);
+    if (evaluator.stop_reason() == StopReason::budget)
+        report.message = "stopped after max_evaluations = " + std::to_string(options.max_evaluations);
     if (evaluator.stop_reason() == StopReason::interrupted) report.message = "interrupted";
     return report;
 }

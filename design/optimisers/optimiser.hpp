@@ -39,24 +39,24 @@ public:
 };
 
 enum class OptimiserStatus {
-    converged,     ///< feasible, and the native optimiser ended of itself
-    budget_spent,  ///< feasible, but max_evaluations came first
-    infeasible,    ///< the native optimiser ended at a design that violates a requirement
+    converged,          ///< feasible, and the native optimiser ended of itself
+    budget_spent,       ///< feasible, but max_evaluations came first
+    infeasible,         ///< the native optimiser ended at a design that violates a requirement
     infeasible_budget,  ///< max_evaluations came before a feasible design was found
-    not_converged, ///< feasible, but the native optimiser gave up
-    interrupted,   ///< should_stop; the best design so far
-    start_failed   ///< the start cannot be evaluated
+    not_converged,      ///< feasible, but the native optimiser gave up
+    interrupted,        ///< should_stop; the best design so far
+    start_failed        ///< the start cannot be evaluated
 };
 const char* to_string(OptimiserStatus status);
 
 struct OptimiserReport {
     OptimiserStatus status = OptimiserStatus::start_failed;
-    std::string message;           ///< for people: what ended it, in the native optimiser's words too
+    std::string message;  ///< for people: what ended it, in the native optimiser's words too
     Evaluation start;
-    VectorX point;                 ///< the best design (the start if nothing could be evaluated)
+    VectorX point;  ///< the best design (the start if nothing could be evaluated)
     Evaluation best;
-    bool feasible = false;         ///< best.violation <= 0
-    double optimality = 0;         ///< residual of the optimality conditions at the best point, scaled; see optimality_residual
+    bool feasible = false;  ///< best.violation <= 0
+    double optimality = 0;  ///< residual of the optimality conditions at the best point, scaled; see optimality_residual
     int evaluations = 0, failures = 0, iterations = 0;
 };
 
@@ -68,8 +68,8 @@ const std::vector<std::string>& optimiser_names();
 /// Errors: an unknown name (out_of_range), the message lists those known.
 Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const std::string& where = {});
 
-/// Largest component of grad f - sum l_i n_i over l >= 0, all scaled, where n_i are the inward normals of the bounds and constraints that hold
-/// with equality to within `active` (scaled): 0 at a point that satisfies the first-order conditions.
+/// Largest component of grad f - sum l_i n_i over l >= 0, all scaled, where n_i are the inward normals of the bounds and constraints that
+/// hold with equality to within `active` (scaled): 0 at a point that satisfies the first-order conditions.
 double optimality_residual(const Evaluator& evaluator, const VectorX& scaled_point, const Evaluation& scaled_evaluation, double active);
 
 }  // namespace fettle::design::optimisers

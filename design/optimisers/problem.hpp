@@ -14,7 +14,7 @@ namespace fettle::design::optimisers {
 
 /// f, c and their derivatives at one point; or the reason why there are none. Plain values: it is what the history keeps.
 struct Evaluation {
-    bool usable = false;   ///< false: the point cannot be evaluated (not buildable, blocked ...); then only `reason` means anything
+    bool usable = false;  ///< false: the point cannot be evaluated (not buildable, blocked ...); then only `reason` means anything
     std::string reason;
     double objective = 0;  ///< f
     VectorX gradient;      ///< n
