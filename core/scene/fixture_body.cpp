@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/fixture_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/scene/mesh_reader.hpp"
+#include "fettle/core/scene/placement.hpp"
+
+namespace fettle::core::scene {
+namespace {
+
+using base::ErrorCode;
+
+const std::vector<std::string_view> body_keys{
+    "mesh",           "vertices",        "edges",           "faces",    "density",  "enabled",            "type",
+    "is_dof_fixed",   "position",        "rotation",        "scale",    "dimensions", "linear_velocity",  "angular_velocity",
+    "force",          "torque",          "group_id",        "oriented", "split_components", "kinematic_max_time", "kinematic_poses",
+    "ipc_comparison_enabled"};
+
+constexpr const char* no_2d = "2D scenes are not supported";
+
+Vector3 scale_factors(const JsonNode& node, const geometry::Mesh& mesh) {
+    const JsonNode scale = node["scale"].unless_null(), dimensions = node["dimensions"].unless_null();
+    if (dimensions.exists()) {
+        const Vector3 extent = mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
+        Vector3 factors = fixture_vector(dimensions).value_or(Vector3::Ones());
+        for (int i = 0; i < 3; ++i) factors[i] /= extent[i] == 0 ? 1 : extent[i];
+        return factors;
+    }
+    if (scale.is_array()) return fixture_vector(scale).value_or(Vector3::Ones());
+    return Vector3::Constant(scale.number().value_or(1));
+}
+
+std::array<bool, 6> fixed_dofs(const JsonNode& node) {
+    std::array<bool, 6> fixed{};
+    if (node.is_bool()) {
+        fixed.fill(node.boolean().value_or(false));
+        return fixed;
+    }
+    const auto entries = node.elements();
+    if (entries.size() == 3) {
+        node.fail(ErrorCode::unsupported, no_2d);
+    } else if (node.exists() && node.is_array() && entries.size() != 6) {
+        node.fail(ErrorCode::wrong_type, "a list of six (px py pz rx ry rz) is wanted, found " + node.shown());
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(6, entries.size()); ++i) fixed[i] = entries[i].boolean().value_or(false);
+    return fixed;
+}
+
+BodyType body_type(const JsonNode& node, const std::array<bool, 6>& fixed) {
+    const std::string type = node.string().value_or("dynamic");
+    if (type != "static" && type != "kinematic" && type != "dynamic") node.warn("unknown type " + node.shown() + " means static");
+    const bool held = std::all_of(fixed.begin(), fixed.end(), [](bool f) { return f; });
+    if (held || (type != "dynamic" && type != "kinematic")) return BodyType::static_body;
+    return type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
+}
+
+/// What that format turns an open kinematic body about: the centroid of its surface (ours is the middle of its box).
+std::optional<Vector3> surface_centre(const geometry::Mesh& mesh) {
+    if (mesh.triangles.empty() || geometry::is_closed(mesh)) return std::nullopt;
+    const Matrix4 moments = geometry::surface_moments(mesh.vertices, mesh.triangles);
+    if (!(moments(3, 3) > 0)) return std::nullopt;
+    return moments.col(3).head<3>() / moments(3, 3);
+}
+
+void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, Body& body) {
+    const JsonNode poses = node["kinematic_poses"].unless_null();
+    if (!poses.elements().empty()) poses.fail(ErrorCode::unsupported, "`kinematic_poses` are not supported yet");
+    const double stop = node["kinematic_max_time"].unless_null().number().value_or(-1);
+    for (int dof = 0; dof < 6; ++dof) {
+        MotionCurve curve;
+        curve.rate = dof < 3 ? body.linear_velocity[dof] : body.angular_velocity[dof - 3];
+        if (fixed[dof]) curve.rate = 0;
+        if (stop >= 0) curve.stop_time = stop;
+        body.prescribed[dof] = curve;
+    }
+    body.reference_point = surface_centre(body.mesh);
+}
+
+void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, Body& body) {
+    body.linear_velocity = fixture_vector(node["linear_velocity"].unless_null()).value_or(Vector3::Zero());
+    body.angular_velocity = radians(1) * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
+    body.force = fixture_vector(node["force"].unless_null()).value_or(Vector3::Zero());
+    const JsonNode torque = node["torque"].unless_null();
+    const bool turned = fixture_vector(torque).value_or(Vector3::Zero()) != Vector3::Zero();
+    if (turned && body.type == BodyType::dynamic_body) torque.fail(ErrorCode::unsupported, "`torque` is not supported yet; `force` is");
+    if (body.type == BodyType::kinematic_body) read_kinematic(node, fixed, body);
+    if (body.type != BodyType::dynamic_body) {
+        body.linear_velocity = body.angular_velocity = body.force = Vector3::Zero();
+    }
+    if (body.type == BodyType::static_body) body.prescribed.fill(MotionCurve{});
+    for (int dof = 0; dof < 6 && body.type == BodyType::dynamic_body; ++dof) {
+        if (fixed[dof]) body.prescribed[dof] = MotionCurve{};
+    }
+}
+
+/// Rows of vertex indices, each `columns` long and below `limit`.
+template <std::size_t columns>
+std::vector<std::array<int, columns>> index_rows(const JsonNode& node, int limit) {
+    std::vector<std::array<int, columns>> rows;
+    for (const JsonNode& row : node.elements()) {
+        const auto entries = row.elements();
+        if (entries.size() != columns) {
+            row.fail(ErrorCode::wrong_type, "a list of " + std::to_string(columns) + " vertex indices is wanted, found " + row.shown());
+            continue;
+        }
+        std::array<int, columns> indices{};
+        for (std::size_t i = 0; i < columns; ++i) indices[i] = entries[i].integer(0, limit - 1).value_or(0);
+        rows.push_back(indices);
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::optional<Vector3> fixture_vector(const JsonNode& node) {
+    const auto found = node.numbers();
+    if (!found) return std::nullopt;
+    if (found->size() < 3) {
+        node.fail(found->size() == 2 ? ErrorCode::unsupported : ErrorCode::wrong_type,
+                  found->size() == 2 ? no_2d : "a list of three numbers is wanted, found " + node.shown());
+        return std::nullopt;
+    }
+    return Vector3((*found)[0], (*found)[1], (*found)[2]);
+}
+
+std::optional<geometry::Mesh> FixtureBodies::mesh_file(const JsonNode& node, const std::string& name) {
+    const auto known = files_.find(name);
+    if (known != files_.end()) return known->second;
+    const auto file = find_mesh_file(name, document_.path(), options_.mesh_dirs, node.where());
+    if (!file) {
+        node.fail(file.errors().front().code, file.errors().front().message);
+        return std::nullopt;
+    }
+    MeshReadOptions options;
+    options.unit = 1;
+    options.weld = true;
+    const auto found = read_mesh(*file, options);
+    if (!found) {
+        for (const auto& error : found.errors()) node.fail(error.code, (error.where.empty() ? "" : error.where + ": ") + error.message);
+        return std::nullopt;
+    }
+    geometry::MeshRequirements requirements;
+    requirements.closed = false;
+    for (const auto& fault : geometry::validate_mesh(*found, requirements, 1)) node.warn(fault.where + ": " + fault.message);
+    return files_[name] = *found;
+}
+
+std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const JsonNode& node) {
+    geometry::Mesh mesh;
+    mesh.name = "inline mesh";
+    const JsonNode vertices = node["vertices"].unless_null();
+    const auto rows = vertices.elements();
+    if (rows.empty()) {
+        node.fail(ErrorCode::missing_key, "a body needs a `mesh` or `vertices`");
+        return std::nullopt;
+    }
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
+    bool good = true;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto vertex = fixture_vector(rows[i]);
+        good = good && vertex.has_value();
+        mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertex.value_or(Vector3::Zero());
+    }
+    const std::size_t faults = document_.errors().size();
+    const int count = static_cast<int>(rows.size());
+    mesh.triangles = index_rows<3>(node["faces"].unless_null(), count);
+    const auto edges = index_rows<2>(node["edges"].unless_null(), count);
+    if (!good || document_.errors().size() > faults) return std::nullopt;
+    build_connectivity(mesh, edges);
+    return weld_exactly(mesh);
+}
+
+std::optional<geometry::Mesh> FixtureBodies::mesh(const JsonNode& node) {
+    const JsonNode file = node["mesh"].unless_null();
+    const auto name = file.string();
+    if (file.exists() && !name) return std::nullopt;
+    return name && !name->empty() ? mesh_file(file, *name) : inline_mesh(node);
+}
+
+std::optional<Body> FixtureBodies::read(const JsonNode& node) {
+    node.warn_of_other_keys(body_keys);
+    if (!node["enabled"].unless_null().boolean().value_or(true)) return std::nullopt;
+    Body body;
+    body.where = node.where();
+    body.mesh_policy = MeshPolicy::lenient;
+    if (node["split_components"].unless_null().boolean().value_or(false)) {
+        node["split_components"].fail(ErrorCode::unsupported, "`split_components` is not supported yet");
+    }
+    const auto mesh = this->mesh(node);
+    if (!mesh) return std::nullopt;
+    body.mesh = *mesh;
+    scale_mesh(body.mesh, scale_factors(node, body.mesh));
+    const JsonNode file = node["mesh"];
+    body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
+    if (body.name.empty()) body.name = "body";
+    std::replace_if(body.name.begin(), body.name.end(), [](char c) { return c == ':' || c == ','; }, '_');
+    const JsonNode rotation = node["rotation"].unless_null();
+    if (rotation.is_number()) rotation.fail(ErrorCode::unsupported, no_2d);
+    if (rotation.exists() && !rotation.is_number()) {
+        body.pose.rotation = rotation_from_degrees(fixture_vector(rotation).value_or(Vector3::Zero()));
+    }
+    body.pose.position = fixture_vector(node["position"].unless_null()).value_or(Vector3::Zero());
+    const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
+    body.type = body_type(node["type"].unless_null(), fixed);
+    const JsonNode density = node["density"].unless_null();
+    body.density = (body.type == BodyType::dynamic_body ? density.number(positive) : density.number()).value_or(1000);
+    body.group = std::max(-1, node["group_id"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(-1));
+    read_motion(node, fixed, body);
+    return body;
+}
+
+}  // namespace fettle::core::scene

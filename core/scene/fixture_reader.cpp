@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/fixture_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "fettle/core/scene/fixture_body.hpp"
+
+namespace fettle::core::scene {
+namespace {
+
+using base::ErrorCode;
+
+/// Keys that change nothing of what we compute: choices of algorithm, a viewer's settings, old solvers.
+const std::vector<std::string_view> top_keys{"scene_type",
+                                             "solver",
+                                             "timestep",
+                                             "max_time",
+                                             "max_iterations",
+                                             "rigid_body_problem",
+                                             "distance_barrier_constraint",
+                                             "ipc_solver",
+                                             "ncp_solver",
+                                             "homotopy_solver",
+                                             "args",
+                                             "volume_constraint",
+                                             "newton_solver",
+                                             "friction_constraints",
+                                             "viewport_bbox",
+                                             "animation",
+                                             "stats"};
+const std::vector<std::string_view> problem_keys{"rigid_bodies",  "gravity",      "coefficient_friction", "coefficient_restitution",
+                                                 "collision_eps", "time_stepper", "do_intersection_check"};
+const std::vector<std::string_view> barrier_keys{"initial_barrier_activation_distance", "minimum_separation_distance", "detection_method",
+                                                 "trajectory_type", "barrier_type"};
+const std::vector<std::string_view> friction_keys{"static_friction_speed_bound", "iterations"};
+const std::vector<std::string_view> solver_keys{
+    "max_iterations",  "convergence_criteria",    "velocity_conv_tol", "is_velocity_conv_tol_abs",
+    "energy_conv_tol", "line_search_lower_bound", "dhat_epsilon",      "min_barrier_stiffness_scale",
+    "linear_solver"};
+
+class FixtureReader {
+public:
+    FixtureReader(JsonDocument& document, const ReadOptions& options) : document_(document), bodies_(document, options) {}
+
+    base::Result<Scene> read() {
+        const JsonNode root = scene_root();
+        root.warn_of_other_keys(top_keys);
+        scene_.path = document_.path();
+        read_scene_type(root["scene_type"].unless_null());
+        read_time(root);
+        const JsonNode problem = root["rigid_body_problem"].unless_null();
+        problem.warn_of_other_keys(problem_keys);
+        scene_.gravity = fixture_vector(problem["gravity"].unless_null()).value_or(Vector3::Zero());
+        read_stepper(problem["time_stepper"].unless_null());
+        read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
+        read_barrier(root["distance_barrier_constraint"].unless_null());
+        for (const JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
+            if (auto body = bodies_.read(node)) scene_.bodies.push_back(std::move(*body));
+        }
+        merge_groups();
+        make_names_unique();
+        read_solver(root["ipc_solver"].unless_null());
+        if (!document_.errors().empty()) return document_.errors();
+        if (scene_.bodies.empty()) return base::Error{ErrorCode::out_of_range, problem["rigid_bodies"].where(), "a scene needs a body"};
+        scene_.warnings = document_.warnings();
+        return std::move(scene_);
+    }
+
+private:
+    /// A saved simulation holds its scene under `args`. Its last state is in coordinates that only the program that wrote it can invert.
+    JsonNode scene_root() {
+        const JsonNode root = document_.root();
+        if (root["rigid_body_problem"].exists()) return root;
+        if (root["animation"].exists())
+            root["animation"].warn("saved states are not used: the scene under `args` starts from its beginning");
+        return root["args"];
+    }
+
+    void read_scene_type(const JsonNode& node) {
+        const auto type = node.choice({"distance_barrier_rb_problem", "split_distance_barrier_rb_problem"});
+        if (type == "split_distance_barrier_rb_problem") {
+            node.fail(ErrorCode::unsupported, "`scene_type` split_distance_barrier_rb_problem (2D, restitution) is not supported");
+        }
+    }
+
+    void read_time(const JsonNode& root) {
+        scene_.timestep = root["timestep"].unless_null().number(positive).value_or(0.01);
+        const double max_time = root["max_time"].unless_null().number().value_or(-1);
+        const int max_iterations = root["max_iterations"].unless_null().integer(-1).value_or(-1);
+        if (max_time >= 0) {
+            scene_.end_time = max_time;
+        } else if (max_iterations >= 0) {
+            scene_.end_time = max_iterations * scene_.timestep;
+        }
+    }
+
+    void read_stepper(const JsonNode& node) {
+        const std::string stepper = node.string().value_or("default");
+        if (stepper == "default" || stepper == "implicit_euler") return;
+        if (stepper == "implicit_newmark" || stepper == "stabilized_newmark") {
+            node.fail(ErrorCode::unsupported, "`time_stepper` " + node.shown() + " is not supported; implicit_euler is");
+        } else {
+            node.warn("unknown `time_stepper` " + node.shown() + "; implicit_euler is used");
+        }
+    }
+
+    void read_friction(const JsonNode& coefficient, const JsonNode& constraints) {
+        constraints.warn_of_other_keys(friction_keys);
+        const double mu = coefficient.number().value_or(0);
+        const bool switched_off = constraints["iterations"].unless_null().integer(-1'000'000).value_or(1) == 0;
+        constraints["static_friction_speed_bound"].unless_null().number(positive);
+        if (mu < 0)
+            coefficient.fail(ErrorCode::out_of_range, "`coefficient_friction` is " + coefficient.shown() + ", it must be at least 0");
+        if (mu > 0 && !switched_off) {
+            coefficient.fail(ErrorCode::unsupported, "`coefficient_friction` " + coefficient.shown() + ": friction is not supported yet");
+        }
+    }
+
+    void read_barrier(const JsonNode& node) {
+        node.warn_of_other_keys(barrier_keys);
+        scene_.dhat = node["initial_barrier_activation_distance"].unless_null().number(positive).value_or(1e-3);
+        scene_.dmin = node["minimum_separation_distance"].unless_null().number(not_negative).value_or(0);
+    }
+
+    void read_solver(const JsonNode& node) {
+        node.warn_of_other_keys(solver_keys);
+        scene_.max_newton_iterations = node["max_iterations"].unless_null().integer(1).value_or(scene_.max_newton_iterations);
+        const JsonNode criterion = node["convergence_criteria"].unless_null();
+        if (criterion.string().value_or("velocity") != "velocity") criterion.warn("only the `velocity` criterion is used");
+        const bool absolute = node["is_velocity_conv_tol_abs"].unless_null().boolean().value_or(false);
+        const double tolerance = node["velocity_conv_tol"].unless_null().number(positive).value_or(1e-2);
+        const double diagonal = bounding_diagonal(scene_);
+        if (absolute || diagonal > 0) scene_.velocity_tolerance = absolute ? tolerance : tolerance * diagonal;
+    }
+
+    /// All bodies that are not dynamic are one group, which a dynamic body joins when it carries the explicit id of one of them.
+    void merge_groups() {
+        std::set<int> fixed_ids;
+        int highest = -1;
+        for (const Body& body : scene_.bodies) {
+            if (body.type != BodyType::dynamic_body) fixed_ids.insert(body.group);
+            highest = std::max(highest, body.group);
+        }
+        fixed_ids.erase(-1);
+        for (Body& body : scene_.bodies) {
+            if (body.type != BodyType::dynamic_body || fixed_ids.contains(body.group)) body.group = highest + 1;
+        }
+    }
+
+    /// "cube" for the only cube, "cube-0", "cube-1", ... for several.
+    void make_names_unique() {
+        std::map<std::string, int> count, next;
+        std::set<std::string> taken;
+        for (const Body& body : scene_.bodies) {
+            if (++count[body.name] == 1) taken.insert(body.name);
+        }
+        for (Body& body : scene_.bodies) {
+            const std::string stem = body.name;
+            if (count[stem] == 1) continue;
+            do body.name = stem + "-" + std::to_string(next[stem]++);
+            while (!taken.insert(body.name).second);
+        }
+    }
+
+    JsonDocument& document_;
+    FixtureBodies bodies_;
+    Scene scene_;
+};
+
+}  // namespace
+
+bool is_fixture(const JsonNode& root) {
+    if (!root.is_object()) return false;
+    if (root["rigid_body_problem"].exists()) return true;
+    const JsonNode args = root["args"];
+    return args.is_object() && args["rigid_body_problem"].exists();
+}
+
+base::Result<Scene> read_fixture(JsonDocument& document, const ReadOptions& options) { return FixtureReader(document, options).read(); }
+
+}  // namespace fettle::core::scene

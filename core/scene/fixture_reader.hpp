@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// Reads the scene files of the source paper (key `rigid_body_problem`), as far as a Scene can hold what they say; what it cannot hold is
+/// an `unsupported` error that names the key. What is done differently from that format's own program, and why: README.md beside this file.
+#pragma once
+
+#include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+
+namespace fettle::core::scene {
+
+/// Is this the root of such a file (or of a saved simulation, which holds its scene under `args`)?
+bool is_fixture(const JsonNode& root);
+
+/// `document` stays the owner of faults and warnings. @return the scene, or every fault.
+base::Result<Scene> read_fixture(JsonDocument& document, const ReadOptions& options);
+
+}  // namespace fettle::core::scene

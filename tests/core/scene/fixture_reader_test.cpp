@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/fixture_reader.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <numbers>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/tests/support/shared_files.hpp"
+
+namespace fettle::core::scene {
+namespace {
+
+using base::ErrorCode;
+constexpr double pi = std::numbers::pi;
+
+/// A tetrahedron, as text to splice into a body.
+const std::string tet =
+    R"("vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "edges": [[0,1],[0,2],[0,3],[1,2],[1,3],[2,3]], "faces": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]])";
+
+base::Result<Scene> read(const std::string& top, const std::string& problem, const std::string& body) {
+    return parse_scene("{" + top + R"("rigid_body_problem": {)" + problem + R"("rigid_bodies": [{)" + tet + body + "}]}}", "/tmp/a.json");
+}
+
+Body body_with(const std::string& keys) {
+    const auto scene = read("", "", keys.empty() ? "" : ", " + keys);
+    REQUIRE(scene);
+    REQUIRE(scene->bodies.size() == 1);
+    return scene->bodies[0];
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_CASE("A fixture's defaults are that format's", "[scene]") {
+    const auto scene = read("", "", "");
+    REQUIRE(scene);
+    CHECK(scene->timestep == 0.01);
+    CHECK_FALSE(scene->end_time);
+    CHECK(scene->dhat == 1e-3);
+    CHECK(scene->dmin == 0);
+    CHECK(scene->velocity_tolerance == Approx(1e-2 * std::sqrt(3.0)));
+    CHECK(scene->gravity == Vector3::Zero());
+    CHECK(scene->warnings.empty());
+    const Body& body = scene->bodies[0];
+    CHECK(body.density == 1000);
+    CHECK(body.type == BodyType::dynamic_body);
+    CHECK(body.mesh_policy == MeshPolicy::lenient);
+    CHECK(body.mesh.triangles.size() == 4);
+    CHECK(body.mesh.edges.size() == 6);
+    CHECK(body.group == -1);
+}
+
+TEST_CASE("A fixture's settings arrive", "[scene]") {
+    const auto scene = read(R"("timestep": 0.02, "max_time": 3, "max_iterations": 7, "#note": 1, "scene_type": null,
+        "distance_barrier_constraint": {"initial_barrier_activation_distance": 1e-4, "minimum_separation_distance": 0.05, "detection_method": "bvh"},
+        "ipc_solver": {"velocity_conv_tol": 1e-3, "is_velocity_conv_tol_abs": true, "max_iterations": 40},)",
+                            R"("gravity": [0, -9.8, 0, 5], "coefficient_friction": 0, "coefficient_restitution": -1,)", "");
+    REQUIRE(scene);
+    CHECK(scene->timestep == 0.02);
+    CHECK(scene->end_time == 3.0);
+    CHECK(scene->gravity == Vector3(0, -9.8, 0));
+    CHECK(scene->dhat == 1e-4);
+    CHECK(scene->dmin == 0.05);
+    CHECK(scene->velocity_tolerance == 1e-3);
+    CHECK(scene->max_newton_iterations == 40);
+    CHECK(scene->warnings.empty());
+    CHECK(read(R"("max_iterations": 7,)", "", "")->end_time == Approx(0.07));
+}
+
+TEST_CASE("Placement: scale or dimensions, then rotation, then position", "[scene]") {
+    const Body body = body_with(R"("scale": [1, 2, 3], "rotation": [90, 0, 90], "position": [5, 6, 7])");
+    CHECK(body.mesh.vertices.rowwise().maxCoeff() == Vector3(1, 2, 3));
+    // x -> y, y -> z, z -> x
+    CHECK((kinematics::world_position(body.pose, Vector3(1, 2, 3)) - Vector3(8, 7, 9)).norm() < 1e-14);
+    CHECK(body_with(R"("scale": 0.1)").mesh.vertices.rowwise().maxCoeff().isApprox(Vector3(0.1, 0.1, 0.1)));
+    CHECK(body_with(R"("scale": 9, "dimensions": [4, 5, 6])").mesh.vertices.rowwise().maxCoeff().isApprox(Vector3(4, 5, 6)));
+    // Mirrored, it stays a solid.
+    scene::Scene mirrored;
+    mirrored.bodies = {body_with(R"("scale": [-1, 1, 1])")};
+    CHECK(model::build_model(mirrored)->bodies[0].moments(3, 3) == Approx(1000.0 / 6));
+}
+
+TEST_CASE("Types, fixed coordinates and scripts", "[scene]") {
+    CHECK(body_with(R"("is_dof_fixed": true)").type == BodyType::static_body);
+    CHECK(body_with(R"("is_dof_fixed": [true, true, true, true, true, true])").type == BodyType::static_body);
+    CHECK(body_with(R"("type": "static", "is_dof_fixed": [false, false, true, true, true, false])").type == BodyType::static_body);
+    CHECK(body_with(R"("type": "static", "density": 0)").type == BodyType::static_body);
+
+    const Body dynamic = body_with(R"("is_dof_fixed": [true, false, false, true, true, false], "linear_velocity": [1, 2, 3],
+                                       "angular_velocity": [0, 0, 90], "force": [4, 5, 6], "density": 7, "group_id": 3)");
+    CHECK(dynamic.type == BodyType::dynamic_body);
+    for (int dof = 0; dof < 6; ++dof) CHECK(dynamic.prescribed[dof].has_value() == (dof == 0 || dof == 3 || dof == 4));
+    CHECK(dynamic.linear_velocity == Vector3(1, 2, 3));
+    CHECK(dynamic.angular_velocity.isApprox(Vector3(0, 0, pi / 2)));
+    CHECK(dynamic.force == Vector3(4, 5, 6));
+    CHECK(dynamic.density == 7);
+    CHECK(dynamic.group == 3);
+
+    const Body kinematic = body_with(R"("type": "kinematic", "linear_velocity": [1, 2, 3], "angular_velocity": [180, 0, 360],
+                                         "is_dof_fixed": [false, true, false, true, false, false], "kinematic_max_time": 2)");
+    CHECK(kinematic.type == BodyType::kinematic_body);
+    const std::array<double, 6> expected{1, 0, 3, 0, 0, 2 * pi};
+    for (int dof = 0; dof < 6; ++dof) {
+        REQUIRE(kinematic.prescribed[dof]);
+        CHECK(motion_value(*kinematic.prescribed[dof], 1) == Approx(expected[dof]));
+        CHECK(motion_value(*kinematic.prescribed[dof], 5) == Approx(2 * expected[dof]));
+    }
+    CHECK(motion_value(*body_with(R"("type": "kinematic", "linear_velocity": [1, 0, 0], "kinematic_max_time": -1)").prescribed[0], 5) == 5);
+}
+
+TEST_CASE("Groups: bodies that are not dynamic share one", "[scene]") {
+    const auto text = [&](const std::string& bodies) { return R"({"rigid_body_problem": {"rigid_bodies": [)" + bodies + "]}}"; };
+    const auto body = [&](const std::string& keys) { return "{" + tet + ", " + keys + "}"; };
+    const auto scene = parse_scene(text(body(R"("type": "static", "group_id": 1, "position": [5, 0, 0])") + "," +
+                                        body(R"("type": "kinematic", "position": [10, 0, 0])") + "," + body(R"("group_id": 1)") + "," +
+                                        body(R"("group_id": 2, "position": [15, 0, 0])") + "," + body(R"("enabled": false)") + "," +
+                                        body(R"("group_id": -1, "position": [20, 0, 0])")),
+                                   "/tmp/a.json");
+    REQUIRE(scene);
+    REQUIRE(scene->bodies.size() == 5);
+    const auto model = model::build_model(*scene);
+    REQUIRE(model);
+    CHECK_FALSE(model::may_collide(*model, 0, 1));
+    CHECK_FALSE(model::may_collide(*model, 0, 2));
+    CHECK_FALSE(model::may_collide(*model, 1, 2));
+    CHECK(model::may_collide(*model, 0, 3));
+    CHECK(model::may_collide(*model, 2, 3));
+    CHECK(model::may_collide(*model, 3, 4));
+    CHECK(scene->bodies[0].name == "body-0");
+    CHECK(scene->bodies[4].name == "body-4");
+}
+
+TEST_CASE("What a Scene cannot hold is refused by name", "[scene]") {
+    const auto code_and_message = [](const base::Result<Scene>& result, const std::string& key) {
+        REQUIRE(result.errors().size() == 1);
+        CHECK(result.errors()[0].code == ErrorCode::unsupported);
+        CHECK(contains(result.errors()[0].where + result.errors()[0].message, key));
+    };
+    code_and_message(read("", R"("coefficient_friction": 0.5,)", ""), "coefficient_friction");
+    CHECK(read(R"("friction_constraints": {"iterations": 0},)", R"("coefficient_friction": 0.5,)", ""));
+    code_and_message(read("", "", R"(, "torque": [0, 300, 0])"), "torque");
+    CHECK(read("", "", R"(, "torque": [0, 0, 0])"));
+    CHECK(read("", "", R"(, "#torque": [0, 1, 0])"));
+    code_and_message(read("", R"("time_stepper": "implicit_newmark",)", ""), "time_stepper");
+    code_and_message(read("", "", R"(, "split_components": true)"), "split_components");
+    code_and_message(read("", "", R"(, "type": "kinematic", "kinematic_poses": [{"position": [0, 1, 0]}])"), "kinematic_poses");
+    code_and_message(read("", "", R"(, "position": [0, 1])"), "2D");
+    code_and_message(read("", "", R"(, "rotation": 45)"), "2D");
+    code_and_message(read(R"("scene_type": "split_distance_barrier_rb_problem",)", "", ""), "scene_type");
+}
+
+TEST_CASE("Faults in a fixture have their place", "[scene]") {
+    const auto fails = [](const base::Result<Scene>& result, ErrorCode code, const std::string& where) {
+        REQUIRE(result.errors().size() == 1);
+        CHECK(static_cast<int>(result.errors()[0].code) == static_cast<int>(code));
+        CHECK(contains(result.errors()[0].where, where));
+    };
+    fails(read("", "", R"(, "density": -1000)"), ErrorCode::out_of_range, "#/rigid_body_problem/rigid_bodies/0/density");
+    fails(read("", "", R"(, "mesh": "no-such.obj")"), ErrorCode::file_not_found, "#/rigid_body_problem/rigid_bodies/0/mesh");
+    fails(read("", "", R"(, "is_dof_fixed": [true, false])"), ErrorCode::wrong_type, "/is_dof_fixed");
+    fails(read(R"("timestep": -1,)", "", ""), ErrorCode::out_of_range, "#/timestep");
+    fails(read("", "", R"(, "position": ["a", 0, 0])"), ErrorCode::wrong_type, "/position/0");
+    fails(parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{"vertices": [[0,0,0]], "faces": [[0,0,3]]}]}})", "a.json"), ErrorCode::out_of_range,
+          "/faces/0/2");
+    fails(parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{}]}})", "a.json"), ErrorCode::missing_key, "/rigid_bodies/0");
+    fails(parse_scene(R"({"rigid_body_problem": {}})", "a.json"), ErrorCode::out_of_range, "/rigid_bodies");
+}
+
+TEST_CASE("Unknown keys of a fixture are warned of", "[scene]") {
+    const auto scene = read(R"("distance_barrier_constraints": {},)", "", R"(, "desnity": 5)");
+    REQUIRE(scene);
+    REQUIRE(scene->warnings.size() == 2);
+    CHECK(contains(scene->warnings[0], "did you mean `distance_barrier_constraint`?"));
+    CHECK(contains(scene->warnings[1], "did you mean `density`?"));
+}
+
+TEST_CASE("A saved simulation starts from its arguments", "[scene]") {
+    const auto scene = parse_scene(R"({"args": {"timestep": 0.5, "rigid_body_problem": {"rigid_bodies": [{)" + tet +
+                                       R"(}]}}, "animation": {"state_sequence": []}, "stats": {}})",
+                                   "a.json");
+    REQUIRE(scene);
+    CHECK(scene->timestep == 0.5);
+    REQUIRE(scene->warnings.size() == 1);
+    CHECK(contains(scene->warnings[0], "saved states"));
+}
+
+TEST_CASE("The paper's scenes load, or say what is missing", "[scene]") {
+    FETTLE_NEEDS_SHARED();
+    namespace fs = std::filesystem;
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(tests::support::shared_file("scenes/fixtures"))) {
+        if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+    }
+    std::sort(files.begin(), files.end());
+    CHECK(files.size() == 46);
+    int loaded = 0;
+    for (const auto& file : files) {
+        CAPTURE(file);
+        const auto scene = read_scene(file);
+        base::Errors errors = scene.errors();
+        if (scene) errors = model::build_model(*scene).errors();
+        if (errors.empty()) ++loaded;
+        for (const auto& error : errors) {
+            CAPTURE(error.where, error.message);
+            CHECK(static_cast<int>(error.code) == static_cast<int>(ErrorCode::unsupported));
+        }
+    }
+    CHECK(loaded >= 31);
+    WARN(loaded << " of " << files.size() << " scenes load");
+}
+
+TEST_CASE("The scenes that must run load with what they say", "[scene]") {
+    FETTLE_NEEDS_SHARED();
+    const auto load = [](const std::string& name) {
+        const auto scene = read_scene(tests::support::shared_file("scenes/fixtures/" + name + ".json"));
+        REQUIRE(scene);
+        const auto model = model::build_model(*scene);
+        REQUIRE(model);
+        return *model;
+    };
+    CHECK(load("unit-tests/5-cubes").bodies.size() == 6);
+    CHECK(load("unit-tests/tet-corner").bodies.size() == 5);
+    CHECK(load("mechanisms/bolt").bodies.size() == 2);
+    const auto press = load("mechanisms/507-movements/140-punching-press");
+    CHECK(press.bodies.size() == 6);
+    const auto pendulum = load("pendulum/pendulum");
+    CHECK(pendulum.dhat == 1e-4);
+    CHECK(pendulum.bodies[0].type == BodyType::static_body);
+    const auto piston = load("mechanisms/507-movements/092-piston");
+    REQUIRE(piston.bodies.size() == 4);
+    CHECK(piston.bodies[0].name == "crank");
+    CHECK(piston.bodies[0].type == BodyType::kinematic_body);
+    CHECK(motion_value(*piston.bodies[0].prescribed[5], 1) == Approx(-2 * pi));
+    CHECK(piston.bodies[1].moments(3, 3) > 0);
+}
+
+}  // namespace
+}  // namespace fettle::core::scene
