@@ -60,16 +60,26 @@ TEST_CASE("The moving plane bounds every point of two triangles, in 50-digit ari
     std::mt19937 random(1);
     std::uniform_real_distribution<double> u(0, 1);
     double tightest = 1e300;
-    for (int trial = 0; trial < 150; ++trial) {
+    for (int trial = 0; trial < 240; ++trial) {
         const double size = std::pow(10.0, -3 + 4 * u(random)), turn = std::pow(10.0, -3 + 4.2 * u(random));
         const double origin = trial % 3 == 0 ? 1e4 : 0;
-        const auto path_a = random_path(random, size, turn, origin);
+        auto path_a = random_path(random, size, turn, origin);
         auto path_b = random_path(random, size, turn, 0);
         path_b.position_t0 += path_a.position_t0;
-        const Matrix3 a = random_corners(random, size), b = random_corners(random, size);
+        Matrix3 a = random_corners(random, size);
+        const Matrix3 b = random_corners(random, size);
+        const bool on_axis = trial % 3 == 1;  // points on the direction of w: they move only because theta0 leans away from it
+        if (on_axis) {
+            const Vector3& w = path_a.rotation_vector_step;
+            path_a.base.setIdentity();
+            path_a.rotation_vector_t0 = w.cross(random_vector(random, 1)).normalized() * (3 * u(random)) - 0.5 * w;
+            path_b.rotation_vector_step.setZero();
+            a = w.normalized() * (size * Vector3(1, trial % 4 == 0 ? 0.5 : -1, 0.3)).transpose();
+        }
         const PairSegment segment = pair_segment(path_a, path_b, size, size);
-        const double h = std::ldexp(1.0, -static_cast<int>(random() % 6)), s0 = h * std::floor(u(random) / h);
-        const Vector3 n0 = unit_direction(random_vector(random, 1)), n1 = unit_direction(n0 + random_vector(random, u(random)));
+        const double h = trial % 3 == 1 ? 1 : std::ldexp(1.0, -static_cast<int>(random() % 6)), s0 = h * std::floor(u(random) / h);
+        const Vector3 n0 = unit_direction(trial % 2 ? random_vector(random, 1) : path_a.rotation_vector_step);
+        const Vector3 n1 = unit_direction(n0 + random_vector(random, trial % 4 < 2 ? 0 : u(random)));
         const MovingPlane plane = moving_plane(instant_at(segment, s0), instant_at(segment, s0 + h), n0, n1);
         const SegmentBound bound = segment_bound(segment, h, plane, corner_coefficients(plane, a, b), corners_reach(segment.a, a),
                                                  corners_reach(segment.b, b));
