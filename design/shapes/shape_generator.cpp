@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/shapes/shape_generator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <utility>
+
+#include "fettle/design/shapes/engine_parts.hpp"
+#include "fettle/design/shapes/simple_shapes.hpp"
+
+namespace fettle::design::shapes {
+namespace {
+
+std::vector<ShapeDefinition> definitions() {
+    return {crank_definition(), rod_definition(), piston_definition(),         block_definition(),
+            box_definition(),   pin_definition(), plate_with_hole_definition()};
+}
+
+int edit_distance(const std::string& a, const std::string& b) {
+    std::vector<int> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        int diagonal = std::exchange(row[0], static_cast<int>(i));
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const int substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+std::string nearest(const std::string& name, const std::vector<std::string>& known) {
+    return *std::min_element(known.begin(), known.end(),
+                             [&](const std::string& a, const std::string& b) { return edit_distance(name, a) < edit_distance(name, b); });
+}
+
+std::string in_millimetres(double metres) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g mm", metres * 1e3);
+    return text;
+}
+
+void check_names(const GeneratorInfo& info, const std::map<std::string, double>& given, Errors& errors) {
+    std::vector<std::string> known;
+    for (const auto& dimension : info.dimensions) known.push_back(dimension.name);
+    for (const auto& [name, value] : given) {
+        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+        errors.push_back({ErrorCode::unknown_key, info.name + "/" + name,
+                          "generator '" + info.name + "' has no dimension '" + name + "'; did you mean '" + nearest(name, known) + "'?"});
+    }
+}
+
+Dimensions read_dimensions(const GeneratorInfo& info, const std::map<std::string, double>& given, Errors& errors) {
+    Dimensions dimensions;
+    const int count = static_cast<int>(info.dimensions.size());
+    for (int k = 0; k < count; ++k) {
+        const DimensionInfo& dimension = info.dimensions[static_cast<std::size_t>(k)];
+        const auto found = given.find(dimension.name);
+        const double value = found == given.end() ? dimension.default_value : found->second;
+        const std::string where = info.name + "/" + dimension.name;
+        if (!std::isfinite(value)) {
+            errors.push_back({ErrorCode::not_finite, where, dimension.name + " is not a finite number; give a length"});
+        } else if (dimension.kind == DimensionKind::length && value <= 0) {
+            errors.push_back({ErrorCode::out_of_range, where, dimension.name + " is " + in_millimetres(value) + "; allowed: above 0 mm"});
+        }
+        dimensions[dimension.name] = DimensionDual::variable(value, k, count);
+    }
+    return dimensions;
+}
+
+void check_relations(const ShapeDefinition& definition, const Dimensions& dimensions, int segments, Errors& errors) {
+    for (const Relation& relation : definition.relations(dimensions, segments)) {
+        if (relation.value < relation.limit) continue;
+        errors.push_back({ErrorCode::out_of_range, definition.info.name + "/" + relation.dimension,
+                          relation.dimension + " is " + in_millimetres(relation.value) + "; allowed: below " +
+                              in_millimetres(relation.limit) + " (" + relation.reason + ")"});
+    }
+}
+
+GeneratedShape shape_of(const GeneratorInfo& info, const ShapeBuilder& builder) {
+    const auto count = static_cast<Eigen::Index>(builder.vertices().size());
+    GeneratedShape shape;
+    Matrix3X vertices(3, count);
+    for (const auto& dimension : info.dimensions) {
+        shape.dimensions.push_back(dimension.name);
+        shape.jacobian.emplace_back(Matrix3X::Zero(3, count));
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const DimensionDual& x = builder.vertices()[static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)];
+            vertices(axis, i) = x.value;
+            for (std::size_t k = 0; k < shape.jacobian.size(); ++k) shape.jacobian[k](axis, i) = x.derivative(static_cast<int>(k));
+        }
+    }
+    shape.mesh = core::geometry::make_mesh(info.name, std::move(vertices), builder.triangles());
+    return shape;
+}
+
+Result<ShapeDefinition> find_definition(const std::string& generator) {
+    std::vector<std::string> known;
+    for (const ShapeDefinition& definition : definitions()) {
+        if (definition.info.name == generator) return definition;
+        known.push_back(definition.info.name);
+    }
+    return Error{ErrorCode::unknown_key, generator,
+                 "there is no generator '" + generator + "'; did you mean '" + nearest(generator, known) + "'?"};
+}
+
+}  // namespace
+
+std::vector<GeneratorInfo> generator_table() {
+    std::vector<GeneratorInfo> table;
+    for (const ShapeDefinition& definition : definitions()) table.push_back(definition.info);
+    return table;
+}
+
+Result<GeneratedShape> generate(const std::string& generator, const std::map<std::string, double>& dimensions,
+                                const ShapeOptions& options) {
+    const Result<ShapeDefinition> definition = find_definition(generator);
+    if (!definition) return definition.errors();
+    Errors errors;
+    if (options.segments < 8 || options.segments > 720 || options.segments % 4 != 0) {
+        errors.push_back({ErrorCode::out_of_range, generator + "/segments",
+                          "segments is " + std::to_string(options.segments) + "; allowed: a multiple of 4 from 8 to 720"});
+    }
+    check_names(definition->info, dimensions, errors);
+    const Dimensions values = read_dimensions(definition->info, dimensions, errors);
+    if (errors.empty()) check_relations(*definition, values, options.segments, errors);
+    if (!errors.empty()) return errors;
+
+    ShapeBuilder builder(options.segments);
+    definition->build(values, builder);
+    return shape_of(definition->info, builder);
+}
+
+}  // namespace fettle::design::shapes
