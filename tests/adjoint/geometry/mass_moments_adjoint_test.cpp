@@ -23,8 +23,8 @@ const Case cases[] = {{"solid", core::geometry::solid_moments, solid_moments_tan
                       {"surface", core::geometry::surface_moments, surface_moments_tangent, surface_moments_adjoint}};
 
 core::geometry::Mesh rough_torus(std::mt19937_64& random) {
-    core::geometry::Mesh mesh = test::torus_mesh(1, 0.4, 6);
-    mesh.vertices += 0.1 * test::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
+    core::geometry::Mesh mesh = tests::torus_mesh(1, 0.4, 6);
+    mesh.vertices += 0.1 * tests::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
     return mesh;
 }
 
@@ -38,7 +38,7 @@ Matrix4 random_bar(std::mt19937_64& random) {
 TEST_CASE("tangent of the moments against central differences, and the Taylor remainder's slope") {
     std::mt19937_64 random(3);
     const auto mesh = rough_torus(random);
-    const Matrix3X direction = test::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
+    const Matrix3X direction = tests::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
     for (const Case& c : cases) {
         INFO(c.name);
         const Matrix4 exact = c.tangent(mesh.vertices, mesh.triangles, direction);
@@ -68,7 +68,7 @@ TEST_CASE("adjoint and tangent of the moments are transposes") {
         INFO(c.name);
         for (int repeat = 0; repeat < 10; ++repeat) {
             const Matrix4 bar = random_bar(random);  // not symmetric
-            const Matrix3X direction = test::random_matrix(n, random);
+            const Matrix3X direction = tests::random_matrix(n, random);
             Matrix3X vertices_bar = Matrix3X::Zero(3, n);
             c.adjoint(mesh.vertices, mesh.triangles, bar, vertices_bar);
             const double forward = bar.cwiseProduct(c.tangent(mesh.vertices, mesh.triangles, direction)).sum();
@@ -80,8 +80,8 @@ TEST_CASE("adjoint and tangent of the moments are transposes") {
 
 TEST_CASE("every component of the moments' gradient, one bar at a time, against central differences") {
     std::mt19937_64 random(5);
-    const auto mesh = test::box_mesh({-0.4, -0.5, -0.3}, {0.6, 0.7, 0.8});
-    Matrix3X x = mesh.vertices + 0.05 * test::random_matrix(8, random);
+    const auto mesh = tests::box_mesh({-0.4, -0.5, -0.3}, {0.6, 0.7, 0.8});
+    Matrix3X x = mesh.vertices + 0.05 * tests::random_matrix(8, random);
     const double step = 1e-5;
     for (const Case& c : cases) {
         for (int entry = 0; entry < 16; ++entry) {

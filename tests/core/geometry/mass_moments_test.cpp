@@ -40,7 +40,7 @@ void check_second_order(MeshOfSize mesh_of_size, MomentsOf moments_of, const Mat
 
 TEST_CASE("solid moments of a box anywhere") {
     const Vector3 low(0.3, -1.2, 2), high(1.1, 0.7, 2.5);
-    const Mesh box = test::box_mesh(low, high);
+    const Mesh box = tests::box_mesh(low, high);
     const Vector3 size = high - low, centre = (low + high) / 2;
     const double volume = size.prod();
     Matrix4 expected;
@@ -53,13 +53,13 @@ TEST_CASE("solid moments of a box anywhere") {
     const Matrix4 moments = solid_moments(box.vertices, box.triangles);
     CHECK((moments - expected).cwiseAbs().maxCoeff() <= 1e-14 * expected.cwiseAbs().maxCoeff());
     CHECK(moments == moments.transpose());
-    const Mesh turned = test::inside_out(box);
+    const Mesh turned = tests::inside_out(box);
     CHECK((solid_moments(turned.vertices, turned.triangles) + expected).cwiseAbs().maxCoeff() <= 1e-14 * expected.cwiseAbs().maxCoeff());
 }
 
 TEST_CASE("surface moments of a box about its centre") {
     const Vector3 half(0.5, 0.7, 1.1);
-    const Mesh box = test::box_mesh(-half, half);
+    const Mesh box = tests::box_mesh(-half, half);
     Matrix4 expected = Matrix4::Zero();
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -73,7 +73,7 @@ TEST_CASE("surface moments of a box about its centre") {
 TEST_CASE("solid moments of an ellipsoid converge with order 2") {
     const Vector3 axes(1, 2, 0.5);
     const double volume = 4 * M_PI / 3 * axes.prod();
-    check_second_order([&](int n) { return test::ellipsoid_mesh(axes, n); }, solid_moments,
+    check_second_order([&](int n) { return tests::ellipsoid_mesh(axes, n); }, solid_moments,
                        diagonal_moments(volume / 5, volume * 4 / 5, volume * 0.25 / 5, volume));
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("surface moments of a sphere converge with order 2") {
     const double r = 1.5, area = 4 * M_PI * r * r, second = area * r * r / 3;
     check_second_order(
         [&](int n) {
-            return test::ellipsoid_mesh({r, r, r}, n);
+            return tests::ellipsoid_mesh({r, r, r}, n);
         },
         surface_moments, diagonal_moments(second, second, second, area));
 }
@@ -89,7 +89,7 @@ TEST_CASE("surface moments of a sphere converge with order 2") {
 TEST_CASE("solid and surface moments of a torus converge with order 2") {
     const double major = 2, minor = 0.6, volume = 2 * M_PI * M_PI * major * minor * minor;
     const double across = volume * (major * major / 2 + 3 * minor * minor / 8);
-    const auto mesh_of_size = [&](int n) { return test::torus_mesh(major, minor, n); };
+    const auto mesh_of_size = [&](int n) { return tests::torus_mesh(major, minor, n); };
     check_second_order(mesh_of_size, solid_moments, diagonal_moments(across, across, volume * minor * minor / 4, volume));
     const double area = 4 * M_PI * M_PI * major * minor;
     // int (major + minor cos v)^3 and int minor^2 sin^2 v (major + minor cos v) over the tube.
@@ -99,8 +99,8 @@ TEST_CASE("solid and surface moments of a torus converge with order 2") {
 
 TEST_CASE("solid moments agree with Monte Carlo") {
     std::mt19937_64 random(1);
-    Mesh mesh = test::torus_mesh(1, 0.4, 7);
-    mesh.vertices += 0.05 * test::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
+    Mesh mesh = tests::torus_mesh(1, 0.4, 7);
+    mesh.vertices += 0.05 * tests::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
     const Vector3 low = mesh.vertices.rowwise().minCoeff(), high = mesh.vertices.rowwise().maxCoeff();
     const double box_volume = (high - low).prod();
     const int count = 40000;
@@ -122,8 +122,8 @@ TEST_CASE("solid moments agree with Monte Carlo") {
 
 TEST_CASE("moments about another origin") {
     std::mt19937_64 random(2);
-    Mesh mesh = test::torus_mesh(1, 0.4, 9);
-    mesh.vertices += 0.05 * test::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
+    Mesh mesh = tests::torus_mesh(1, 0.4, 9);
+    mesh.vertices += 0.05 * tests::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
     const Vector3 shift(0.3, -2, 1.5);
     const Matrix3X moved = mesh.vertices.colwise() - shift;
     for (const auto moments_of : {solid_moments, surface_moments}) {

@@ -28,7 +28,7 @@ Mesh soup_of(const Mesh& mesh) {
 }  // namespace
 
 TEST_CASE("edges of a box appear once, in the order of their first triangle") {
-    const Mesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    const Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     CHECK(box.edges.size() == 18);  // 12 edges and 6 diagonals
     CHECK(box.edges[0] == Edge{0, 2});
     CHECK(box.edges[1] == Edge{2, 3});
@@ -43,7 +43,7 @@ TEST_CASE("edges of a box appear once, in the order of their first triangle") {
 }
 
 TEST_CASE("Euler characteristic of a torus") {
-    const Mesh torus = test::torus_mesh(2, 0.5, 20);
+    const Mesh torus = tests::torus_mesh(2, 0.5, 20);
     CHECK(torus.vertices.cols() - static_cast<int>(torus.edges.size()) + static_cast<int>(torus.triangles.size()) == 0);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("connectivity of indices out of range does not crash") {
 }
 
 TEST_CASE("welding a triangle soup gives the mesh back") {
-    const Mesh torus = test::torus_mesh(2, 0.5, 12);
+    const Mesh torus = tests::torus_mesh(2, 0.5, 12);
     const Mesh soup = soup_of(torus);
     REQUIRE(soup.vertices.cols() == 3 * 288);
     REQUIRE(soup.shell_names.size() == 288);

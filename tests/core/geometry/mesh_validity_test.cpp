@@ -95,7 +95,7 @@ TEST_CASE("overlapping boxes: every pair once, as by brute force") {
     std::mt19937_64 random(1);
     std::vector<Box> boxes;
     for (int i = 0; i < 300; ++i) {
-        const Matrix3X x = test::random_matrix(2, random);
+        const Matrix3X x = tests::random_matrix(2, random);
         const Vector3 half = 0.15 * x.col(1).cwiseAbs();
         boxes.push_back({x.col(0) - half, x.col(0) + half});
     }
@@ -193,8 +193,8 @@ TEST_CASE("triangles with a shared edge intersect only when folded onto each oth
 
 TEST_CASE("self-intersections of a mesh as by brute force over all pairs") {
     std::mt19937_64 random(4);
-    Mesh mesh = test::torus_mesh(1, 0.4, 8);
-    mesh.vertices += 0.3 * test::random_matrix(64, random);
+    Mesh mesh = tests::torus_mesh(1, 0.4, 8);
+    mesh.vertices += 0.3 * tests::random_matrix(64, random);
     const auto pairs = self_intersections(mesh, 100000);
     std::vector<std::pair<int, int>> expected;
     for (int i = 0; i < 128; ++i) {
@@ -211,15 +211,15 @@ TEST_CASE("self-intersections of a mesh as by brute force over all pairs") {
 }
 
 TEST_CASE("valid solids have no faults") {
-    CHECK(validate_mesh(test::box_mesh({0, 0, 0}, {1, 1, 1}), strict).empty());
-    CHECK(validate_mesh(test::torus_mesh(1, 0.3, 12), strict).empty());
-    CHECK(validate_mesh(test::ellipsoid_mesh({1, 2, 3}, 6), strict).empty());
-    CHECK(is_closed(test::torus_mesh(1, 0.3, 12)));
+    CHECK(validate_mesh(tests::box_mesh({0, 0, 0}, {1, 1, 1}), strict).empty());
+    CHECK(validate_mesh(tests::torus_mesh(1, 0.3, 12), strict).empty());
+    CHECK(validate_mesh(tests::ellipsoid_mesh({1, 2, 3}, 6), strict).empty());
+    CHECK(is_closed(tests::torus_mesh(1, 0.3, 12)));
     CHECK_FALSE(is_closed(Mesh{}));
 }
 
 TEST_CASE("open, inconsistently oriented and non-manifold edges") {
-    const Mesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    const Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     const Mesh open = without_triangle(box, 5);
     CHECK_FALSE(is_closed(open));
     const Errors open_errors = validate_mesh(open, strict);
@@ -235,7 +235,7 @@ TEST_CASE("open, inconsistently oriented and non-manifold edges") {
     CHECK(mentions(validate_mesh(turned, strict), "is turned over"));
 
     // Two boxes that touch in an edge: that edge has four triangles.
-    const Mesh touching = weld_exactly(test::joined(box, test::box_mesh({1, 1, 0}, {2, 2, 1})));
+    const Mesh touching = weld_exactly(tests::joined(box, tests::box_mesh({1, 1, 0}, {2, 2, 1})));
     CHECK_FALSE(is_closed(touching));
     CHECK(mentions(validate_mesh(touching, strict), "is shared with 3 triangles"));
 
@@ -250,22 +250,22 @@ TEST_CASE("open, inconsistently oriented and non-manifold edges") {
 }
 
 TEST_CASE("inside-out solids, cavities, solids within solids") {
-    const Mesh outer = test::box_mesh({0, 0, 0}, {5, 5, 5}), inner = test::box_mesh({1, 1, 1}, {4, 4, 4}),
-               core = test::box_mesh({2, 2, 2}, {3, 3, 3}), apart = test::box_mesh({7, 7, 7}, {8, 8, 8});
-    CHECK(mentions(validate_mesh(test::inside_out(outer), strict), "is inside out"));
-    CHECK(mentions(validate_mesh(test::inside_out(outer), {true, false}), "not positive"));
-    CHECK(validate_mesh(test::joined(outer, test::inside_out(inner)), strict).empty());
-    CHECK(validate_mesh(test::joined(test::joined(outer, test::inside_out(inner)), core), strict).empty());
-    CHECK(validate_mesh(test::joined(outer, apart), strict).empty());
-    const Errors alone = validate_mesh(test::joined(outer, test::inside_out(apart)), strict);
+    const Mesh outer = tests::box_mesh({0, 0, 0}, {5, 5, 5}), inner = tests::box_mesh({1, 1, 1}, {4, 4, 4}),
+               core = tests::box_mesh({2, 2, 2}, {3, 3, 3}), apart = tests::box_mesh({7, 7, 7}, {8, 8, 8});
+    CHECK(mentions(validate_mesh(tests::inside_out(outer), strict), "is inside out"));
+    CHECK(mentions(validate_mesh(tests::inside_out(outer), {true, false}), "not positive"));
+    CHECK(validate_mesh(tests::joined(outer, tests::inside_out(inner)), strict).empty());
+    CHECK(validate_mesh(tests::joined(tests::joined(outer, tests::inside_out(inner)), core), strict).empty());
+    CHECK(validate_mesh(tests::joined(outer, apart), strict).empty());
+    const Errors alone = validate_mesh(tests::joined(outer, tests::inside_out(apart)), strict);
     REQUIRE(alone.size() == 1);
     CHECK(mentions(alone, "shell \"joined/1\" is inside out"));
-    CHECK(mentions(validate_mesh(test::joined(outer, inner), strict), "is a solid inside the solid \"joined/0\""));
-    CHECK(mentions(validate_mesh(test::joined(test::inside_out(outer), inner), strict), "shell \"joined/0\" is inside out"));
+    CHECK(mentions(validate_mesh(tests::joined(outer, inner), strict), "is a solid inside the solid \"joined/0\""));
+    CHECK(mentions(validate_mesh(tests::joined(tests::inside_out(outer), inner), strict), "shell \"joined/0\" is inside out"));
 }
 
 TEST_CASE("numbers that are no numbers, indices out of range, triangles without area") {
-    Mesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    Mesh mesh = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     mesh.vertices(1, 3) = std::numeric_limits<double>::quiet_NaN();
     mesh.vertices(0, 5) = std::numeric_limits<double>::infinity();
     const Errors not_finite = validate_mesh(mesh, strict);
@@ -273,7 +273,7 @@ TEST_CASE("numbers that are no numbers, indices out of range, triangles without 
     CHECK(not_finite[0].code == ErrorCode::not_finite);
     CHECK(not_finite[0].where == "box: vertex 3");
 
-    mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    mesh = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     mesh.triangles[2][1] = 8;
     mesh.triangles[7][0] = -1;
     const Errors range = validate_mesh(mesh, strict);
@@ -283,7 +283,7 @@ TEST_CASE("numbers that are no numbers, indices out of range, triangles without 
 
     // A vertex in the middle of an edge, joined by a triangle without area: closed, but not sound. (Across the flat triangle the neighbours
     // touch, which is reported as well when asked for.)
-    mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    mesh = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     mesh.vertices.conservativeResize(3, 9);
     mesh.vertices.col(8) << 0.5, 0, 0;
     mesh.triangles[1] = {8, 3, 1};
@@ -299,7 +299,7 @@ TEST_CASE("numbers that are no numbers, indices out of range, triangles without 
 }
 
 TEST_CASE("self-intersection is reported with both triangles and the place, long lists are cut") {
-    const Mesh cross = test::joined(test::box_mesh({-2, -1, -1}, {2, 1, 1}), test::box_mesh({-1, -2, -0.5}, {1, 2, 0.5}));
+    const Mesh cross = tests::joined(tests::box_mesh({-2, -1, -1}, {2, 1, 1}), tests::box_mesh({-1, -2, -0.5}, {1, 2, 0.5}));
     const Errors errors = validate_mesh(cross, strict, 3);
     REQUIRE(errors.size() == 4);
     CHECK(errors[0].code == ErrorCode::mesh_invalid);
@@ -316,8 +316,8 @@ TEST_CASE("self-intersection is reported with both triangles and the place, long
 
 TEST_CASE("point in solid: rays through vertices, edges and coplanar faces") {
     // Grid points against a box and a torus-like frame whose coordinates are on the same grid: every ray is degenerate.
-    const Mesh box = test::box_mesh({1, 1, 1}, {3, 3, 3});
-    const Mesh shell = test::joined(test::box_mesh({0, 0, 0}, {4, 4, 4}), test::inside_out(box));
+    const Mesh box = tests::box_mesh({1, 1, 1}, {3, 3, 3});
+    const Mesh shell = tests::joined(tests::box_mesh({0, 0, 0}, {4, 4, 4}), tests::inside_out(box));
     for (int i = -2; i <= 10; ++i) {
         for (int j = -2; j <= 10; ++j) {
             for (int k = -2; k <= 10; ++k) {
@@ -337,11 +337,11 @@ TEST_CASE("point in solid: rays through vertices, edges and coplanar faces") {
 
 TEST_CASE("point in solid agrees with the winding angle") {
     std::mt19937_64 random(5);
-    Mesh torus = test::torus_mesh(1, 0.4, 9);
-    torus.vertices += 0.05 * test::random_matrix(81, random);
+    Mesh torus = tests::torus_mesh(1, 0.4, 9);
+    torus.vertices += 0.05 * tests::random_matrix(81, random);
     int inside_count = 0;
     for (int i = 0; i < 3000; ++i) {
-        const Vector3 p = 1.4 * test::random_matrix(1, random).col(0).cwiseProduct(Vector3(1, 1, 0.4));
+        const Vector3 p = 1.4 * tests::random_matrix(1, random).col(0).cwiseProduct(Vector3(1, 1, 0.4));
         double angle = 0;  // solid angle after van Oosterom and Strackee
         for (const Triangle& t : torus.triangles) {
             const Vector3 a = torus.vertices.col(t[0]) - p, b = torus.vertices.col(t[1]) - p, c = torus.vertices.col(t[2]) - p;
@@ -356,7 +356,7 @@ TEST_CASE("point in solid agrees with the winding angle") {
 }
 
 TEST_CASE("validity of fifty thousand triangles", "[slow]") {
-    const Mesh sphere = test::ellipsoid_mesh({1, 1, 2}, 112);
+    const Mesh sphere = tests::ellipsoid_mesh({1, 1, 2}, 112);
     REQUIRE(sphere.triangles.size() > 49000);
     CHECK(validate_mesh(sphere, strict).empty());
 }

@@ -44,7 +44,7 @@ int rational_orient2d(const Vector2& a, const Vector2& b, const Vector2& c) {
     return Rational((rational(b.x()) - ax) * (rational(c.y()) - ay) - (rational(b.y()) - ay) * (rational(c.x()) - ax)).sign();
 }
 
-Vector3 random_vector(std::mt19937_64& random) { return test::random_matrix(1, random).col(0); }
+Vector3 random_vector(std::mt19937_64& random) { return tests::random_matrix(1, random).col(0); }
 
 Vector3 random_grid_vector(std::mt19937_64& random, int largest) {
     std::uniform_int_distribution<int> uniform(0, largest);
@@ -164,16 +164,16 @@ TEST_CASE("one ulp decides") {
 }
 
 TEST_CASE("sign of the volume is exact") {
-    const auto box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    const auto box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     CHECK(volume_sign(box.vertices, box.triangles) == 1);
-    CHECK(volume_sign(box.vertices, test::inside_out(box).triangles) == -1);
+    CHECK(volume_sign(box.vertices, tests::inside_out(box).triangles) == -1);
     CHECK(volume_sign(box.vertices, {}) == 0);
     // A slab one ulp thick far from the origin: rounding in the sum is 1e16 times its volume.
     const double z = 1000;
-    const auto slab = test::box_mesh({1000, 1000, z}, {1001, 1001, std::nextafter(z, 2 * z)});
+    const auto slab = tests::box_mesh({1000, 1000, z}, {1001, 1001, std::nextafter(z, 2 * z)});
     CHECK(volume_sign(slab.vertices, slab.triangles) == 1);
-    CHECK(volume_sign(slab.vertices, test::inside_out(slab).triangles) == -1);
-    const auto flat = test::box_mesh({1000, 1000, z}, {1001, 1001, z});
+    CHECK(volume_sign(slab.vertices, tests::inside_out(slab).triangles) == -1);
+    const auto flat = tests::box_mesh({1000, 1000, z}, {1001, 1001, z});
     CHECK(volume_sign(flat.vertices, flat.triangles) == 0);
 }
 

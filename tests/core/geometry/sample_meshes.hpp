@@ -9,7 +9,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
-namespace fettle::test {
+namespace fettle::tests {
 
 /// Axis-aligned box [low, high], outward oriented, 8 vertices, 12 triangles.
 inline core::geometry::Mesh box_mesh(const Vector3& low, const Vector3& high) {
@@ -99,4 +99,4 @@ inline Matrix3X random_matrix(int columns, std::mt19937_64& random) {
     return result;
 }
 
-}  // namespace fettle::test
+}  // namespace fettle::tests
