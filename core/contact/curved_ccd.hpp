@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// Continuous collision detection of primitives of two rigid bodies on curved paths: the curve of each vertex is replaced by its
 /// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. method.md section 7.
+///
+/// From time s, proven to be clear so far, take the rest of the segment if its deviation is at most 3/4 of the gap (lower bound of the distance
+/// less dmin), else a piece whose deviation is at most 1/8 of it. The linear query with dmin + deviation + rounding either clears
+/// the piece or says up to when it is clear: go on from there. A hit is reported once the gap is at most
+/// min(linear.tolerance, a tenth of the first gap), when nothing can be proven any more, or past max_pieces.
+/// Pairs that cannot meet are dismissed at once: first gap > |dq_a - dq_b| + |w_a| r_a + |w_b| r_b.
+///
+/// Rounding. World positions are taken relative to body b's reference point (differences of positions, so the world's origin does not
+/// matter), and each computed vertex is within rotated_rounding (chord_deviation.hpp) + u (4 |q| + 8 |dq|) of the exact path. Both
+/// bodies' bounds are charged twice: once for the ends of the chord, once for the rounded piece whose deviation is bounded.
+/// For |theta| = 4e5 rad at radius 1 that is 4e-10.
+///
+/// Measured (one thread): wrecking-ball 0.4 us a query by the closed form, 8 us by the interval bound, none reported; kinematic
+/// 9 us and, out of pieces, 40 ms. Hence the default.
 #pragma once
 
 #include <array>
@@ -13,7 +27,7 @@ namespace fettle::core::contact {
 enum class DeviationBound { closed_form, interval };
 
 /// Upper bound (rounding included) of |curve(s) - chord(s)| at equal parameter over the whole segment, for body point X:
-/// the least of B0, B1, B3 (closed form), or the paper's interval bound.
+/// the least of B0, B1, B3 (closed form, chord_deviation.hpp), or the paper's interval bound without what it charges for translation.
 double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X, DeviationBound bound = DeviationBound::closed_form);
 
 struct CurvedCcdOptions {

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Oracle: dense sampling of curve and chord in 200-bit arithmetic (MPFR).
+#include "fettle/core/contact/chord_deviation.hpp"
+
+#include <boost/multiprecision/mpfr.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "fettle/core/contact/curved_ccd.hpp"
+
+using namespace fettle;
+using namespace fettle::core::contact;
+using fettle::core::kinematics::PathSegment;
+
+namespace {
+
+using Real = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<60>, boost::multiprecision::et_off>;
+using RealVector = std::array<Real, 3>;
+
+RealVector cross(const RealVector& a, const RealVector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Real norm(const RealVector& a) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+/// exp([theta + s w]) Y.
+RealVector turned(const Vector3& theta, const Vector3& w, const Real& s, const RealVector& Y) {
+    RealVector t;
+    for (int k = 0; k < 3; ++k) t[k] = Real(theta[k]) + s * Real(w[k]);
+    const Real x = norm(t);
+    if (x == 0) return Y;
+    const RealVector once = cross(t, Y), twice = cross(t, once);
+    const Real a = sin(x) / x, half = sin(x / 2), b = 2 * half * half / (x * x);
+    RealVector r;
+    for (int k = 0; k < 3; ++k) r[k] = Y[k] + a * once[k] + b * twice[k];
+    return r;
+}
+
+RealVector based(const PathSegment& p, const Vector3& X) {
+    RealVector Y;
+    for (int i = 0; i < 3; ++i) {
+        Y[i] = 0;
+        for (int k = 0; k < 3; ++k) Y[i] += Real(p.base(i, k)) * Real(X[k]);
+    }
+    return Y;
+}
+
+/// Largest deviation over `samples` parameters: a lower bound of the truth.
+Real sampled_deviation(const PathSegment& p, const Vector3& X, int samples) {
+    const RealVector Y = based(p, X);
+    const Vector3 &theta = p.rotation_vector_t0, &w = p.rotation_vector_step;
+    const RealVector x0 = turned(theta, w, 0, Y), x1 = turned(theta, w, 1, Y);
+    Real largest = 0;
+    for (int i = 1; i < samples; ++i) {
+        const Real s = Real(i) / samples;
+        RealVector x = turned(theta, w, s, Y);
+        for (int k = 0; k < 3; ++k) x[k] -= (1 - s) * x0[k] + s * x1[k];
+        largest = std::max(largest, norm(x));
+    }
+    return largest;
+}
+
+struct Arc {
+    PathSegment path;
+    Vector3 X;
+};
+
+/// Start turned by up to beyond 4 pi, steps from 1e-8 to 60 rad, arms at every angle to the axis; some aligned exactly.
+Arc random_arc(std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    const auto vector = [&] { return Vector3(normal(random), normal(random), normal(random)); };
+    Arc a;
+    a.path.rotation_vector_step = vector().normalized() * std::pow(10.0, -8 + 9.78 * uniform(random));
+    a.path.rotation_vector_t0 = uniform(random) < 0.3 ? Vector3::Zero() : Vector3(vector().normalized() * 14 * uniform(random));
+    a.path.base = core::kinematics::rotation(vector());
+    a.path.position_step = 10 * vector();
+    a.X = vector() * std::pow(10.0, 6 * uniform(random) - 3);
+    const int kind = static_cast<int>(6 * uniform(random));
+    const Vector3 axis = a.path.base.transpose() * a.path.rotation_vector_step.normalized();
+    if (kind == 0) a.path.rotation_vector_t0 = a.path.rotation_vector_step * uniform(random);
+    if (kind == 1) a.X -= a.X.dot(axis) * axis;
+    if (kind == 2) a.X = axis * a.X.norm() + 1e-6 * uniform(random) * a.X;
+    return a;
+}
+
+using Bound = std::function<double(const Arc&)>;
+
+/// How many of the arcs break each of the bounds.
+std::vector<int> violations(const std::vector<Bound>& bounds, int arcs, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::vector<int> broken(bounds.size(), 0);
+    for (int i = 0; i < arcs; ++i) {
+        const Arc a = random_arc(random);
+        const Real deviation = sampled_deviation(a.path, a.X, 12);
+        for (std::size_t k = 0; k < bounds.size(); ++k) broken[k] += deviation > Real(bounds[k](a));
+    }
+    return broken;
+}
+
+double closed_form(const Arc& a) { return chord_deviation(a.path, a.X, DeviationBound::closed_form); }
+double interval(const Arc& a) { return chord_deviation(a.path, a.X, DeviationBound::interval); }
+Vector3 arm(const Arc& a) { return a.path.base * a.X; }
+
+}  // namespace
+
+TEST_CASE("chord deviation bounds hold on dense samples") {
+    // arc_deviation and its cubic take the computed arm as exact: its rounding is chord_deviation's.
+    const Bound least = [](const Arc& a) { return arc_deviation(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a)) * (1 + 1e-14); };
+    const Bound cubic = [](const Arc& a) {
+        return arc_deviation_cubic(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a)) * (1 + 1e-14);
+    };
+    CHECK(violations({closed_form, interval, least, cubic}, 800, 1) == std::vector<int>{0, 0, 0, 0});
+}
+
+TEST_CASE("chord deviation bounds hold on a hundred thousand dense samples", "[slow]") {
+    CHECK(violations({closed_form, interval}, 100'000, 3) == std::vector<int>{0, 0});
+}
+
+TEST_CASE("the same samples reject bounds that are wrong") {
+    const int arcs = 600;
+    const Bound across_only = [](const Arc& a) {
+        const Vector3& w = a.path.rotation_vector_step;
+        return 0.125 * w.norm() * w.cross(arm(a)).norm();
+    };
+    // The sampling resolves rounding: a part in 1e12 too small is seen.
+    const Bound short_of_b0 = [](const Arc& a) { return 0.125 * a.path.rotation_vector_step.squaredNorm() * arm(a).norm() * (1 - 1e-12); };
+    const Bound middle_only = [](const Arc& a) {
+        const Vector3 &t = a.path.rotation_vector_t0, &w = a.path.rotation_vector_step;
+        return arc_deviation_cubic(t, w, arm(a)) - std::pow(w.norm(), 3) * arm(a).norm() / (72 * std::sqrt(3.0));
+    };
+    const std::vector<int> broken = violations({across_only, short_of_b0, middle_only}, arcs, 2);
+    CHECK(broken[0] > arcs / 10);
+    CHECK(broken[1] > 0);
+    CHECK(broken[2] > 0);
+}
+
+TEST_CASE("the closed form is sharp and the interval bound is not") {
+    PathSegment p;
+    const Vector3 X(1, 0, 0);
+    for (const double w : {1e-6, 1e-4, 0.1, 0.5}) {
+        p.rotation_vector_step = Vector3(0, 0, w);
+        const double truth = 2 * std::pow(std::sin(w / 4), 2);
+        CHECK(chord_deviation(p, X) >= truth * (1 - 1e-9));
+        CHECK(chord_deviation(p, X) <= w * w / 8 * (1 + 1e-12));
+        CHECK(chord_deviation(p, X, DeviationBound::interval) >= truth * (1 - 1e-9));
+    }
+    p.rotation_vector_step = Vector3(0, 0, 1e-4);
+    const double ratio = chord_deviation(p, X, DeviationBound::interval) / chord_deviation(p, X);
+    CHECK(ratio > 1e4);
+    // A point on the axis does not move; nor does translation deviate.
+    CHECK(chord_deviation(p, Vector3(0, 0, 5)) < 1e-22);
+    const double before = chord_deviation(p, X);
+    p.position_step = Vector3(100, -3, 8);
+    CHECK(chord_deviation(p, X) == before);
+    p.rotation_vector_step.setZero();
+    CHECK(chord_deviation(p, X) == 0);
+}
+
+TEST_CASE("B3 wins where the start rotation is skew") {
+    std::mt19937_64 random(9);
+    int won = 0;
+    for (int i = 0; i < 300; ++i) {
+        Arc a = random_arc(random);
+        a.path.rotation_vector_step *= 0.05 / a.path.rotation_vector_step.norm();
+        const double least = arc_deviation(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a));
+        won += closed_form(a) < 0.9 * least;
+    }
+    CHECK(won > 30);
+}
+
+TEST_CASE("rotated_rounding bounds what is computed") {
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    double largest = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Arc a = random_arc(random);
+        if (i % 3 == 0) a.path.rotation_vector_step *= 4e5 * uniform(random) / a.path.rotation_vector_step.norm();
+        const Vector3 &t = a.path.rotation_vector_t0, &w = a.path.rotation_vector_step;
+        const double s = uniform(random), radius = std::max(a.X.norm(), arm(a).norm());
+        const Vector3 x = core::kinematics::rotation(t + s * w) * arm(a);
+        RealVector r = turned(t, w, Real(s), based(a.path, a.X));
+        for (int k = 0; k < 3; ++k) r[k] -= Real(x[k]);
+        largest = std::max(largest, static_cast<double>(norm(r)) / rotated_rounding(t.norm(), w.norm(), s, radius));
+    }
+    CAPTURE(largest);
+    CHECK(largest <= 1);
+    CHECK(largest > 0.005);  // a bound hundreds of times too large would hide a mistake in its derivation
+}
