@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/geometry/distance.hpp"
@@ -58,6 +59,10 @@ public:
                 stack.push_back({i, nb.left});
             }
         }
+        for (auto* list : {&out_.vertex_triangle, &out_.triangle_vertex, &out_.edge_edge})
+            std::sort(list->begin(), list->end(), [](const PrimitivePair& x, const PrimitivePair& y) {
+                return std::tie(x.distance, x.a, x.b) < std::tie(y.distance, y.a, y.b);
+            });
         return std::move(out_);
     }
 
@@ -118,14 +123,14 @@ private:
         if (eb.triangle >= 0)
             for (int k = 0; k < ea.owned_vertex_count; ++k) {
                 const int v = ea.owned_vertices[k];
-                if (geometry::point_triangle_distance_squared(vertex(body_a_, pose_a_, v), cb[0], cb[1], cb[2]) <= bound_squared)
-                    out_.vertex_triangle.push_back({v, eb.triangle});
+                const double d = geometry::point_triangle_distance_squared(vertex(body_a_, pose_a_, v), cb[0], cb[1], cb[2]);
+                if (d <= bound_squared) out_.vertex_triangle.push_back({v, eb.triangle, std::sqrt(d)});
             }
         if (ea.triangle >= 0)
             for (int k = 0; k < eb.owned_vertex_count; ++k) {
                 const int v = eb.owned_vertices[k];
-                if (geometry::point_triangle_distance_squared(vertex(body_b_, pose_b_, v), ca[0], ca[1], ca[2]) <= bound_squared)
-                    out_.triangle_vertex.push_back({ea.triangle, v});
+                const double d = geometry::point_triangle_distance_squared(vertex(body_b_, pose_b_, v), ca[0], ca[1], ca[2]);
+                if (d <= bound_squared) out_.triangle_vertex.push_back({ea.triangle, v, std::sqrt(d)});
             }
         for (int k = 0; k < ea.owned_edge_count; ++k) {
             const auto& edge_a = body_a_.mesh.edges[ea.owned_edges[k]];
@@ -133,8 +138,8 @@ private:
             for (int l = 0; l < eb.owned_edge_count; ++l) {
                 const auto& edge_b = body_b_.mesh.edges[eb.owned_edges[l]];
                 const Vector3 b0 = vertex(body_b_, pose_b_, edge_b[0]), b1 = vertex(body_b_, pose_b_, edge_b[1]);
-                if (geometry::edge_edge_distance_squared(a0, a1, b0, b1) <= bound_squared)
-                    out_.edge_edge.push_back({ea.owned_edges[k], eb.owned_edges[l]});
+                const double d = geometry::edge_edge_distance_squared(a0, a1, b0, b1);
+                if (d <= bound_squared) out_.edge_edge.push_back({ea.owned_edges[k], eb.owned_edges[l], std::sqrt(d)});
             }
         }
     }
@@ -161,15 +166,46 @@ Candidates find_candidates(const model::Model& model, const std::vector<Pose>& p
     return candidates;
 }
 
+namespace {
+
+// |R1 - R2|_F / sqrt 2 bounds |(R1 - R2) X| / |X|.
+MotionAllowance motion_since(const Candidates& candidates, std::size_t body, const Pose& pose) {
+    constexpr double slack = 1 + 1e-12;
+    return {slack * (pose.position - candidates.poses[body].position).norm(),
+            slack * (pose.rotation - candidates.poses[body].rotation).norm() / std::sqrt(2.0)};
+}
+
+MotionAllowance motion_over(const Candidates& candidates, std::size_t body, const kinematics::PathSegment& s) {
+    constexpr double slack = 1 + 1e-12;
+    const MotionAllowance start = motion_since(candidates, body, pose_at(s, 0));
+    return {start.translation + slack * s.position_step.norm(), start.rotation + slack * s.rotation_vector_step.norm()};
+}
+
+// Rounding of world positions is charged too: distances were taken at rounded vertices.
+double displacement(const model::Body& body, const Pose& found_at, const MotionAllowance& motion) {
+    return motion.translation + motion.rotation * body.radius + rounding * (found_at.position.norm() + body.radius);
+}
+
+}  // namespace
+
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
+    std::vector<double> out(poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        out[i] = displacement(model.bodies[i], candidates.poses[i], motion_since(candidates, i, poses[i]));
+    return out;
+}
+
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments) {
+    std::vector<double> out(segments.size());
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        out[i] = displacement(model.bodies[i], candidates.poses[i], motion_over(candidates, i, segments[i]));
+    return out;
+}
+
 bool covers(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments) {
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        const kinematics::PathSegment& s = segments[i];
-        const Pose start = pose_at(s, 0);
-        const double translation = (start.position - candidates.poses[i].position).norm() + s.position_step.norm();
-        // |R1 - R2|_F = 2 sqrt2 sin(angle / 2): bounds the chord, all that a displacement needs.
-        const double rotation = (start.rotation - candidates.poses[i].rotation).norm() / std::sqrt(2.0) + s.rotation_vector_step.norm();
-        const double slack = 1 + 1e-12;
-        if (translation * slack > candidates.allowances[i].translation || rotation * slack > candidates.allowances[i].rotation) return false;
+        const MotionAllowance motion = motion_over(candidates, i, segments[i]), &allowed = candidates.allowances[i];
+        if (motion.translation > allowed.translation || motion.rotation > allowed.rotation) return false;
     }
     return true;
 }

@@ -17,12 +17,18 @@ struct MotionAllowance {
     double rotation = 0;     ///< [rad]
 };
 
-/// Primitives of two bodies, a < b, by index into their meshes.
+/// Two primitives by index into their bodies' meshes, and how far apart they were when found: what has moved less since needs no second look.
+struct PrimitivePair {
+    int a = 0, b = 0;
+    double distance = 0;  ///< [m]
+};
+
+/// Primitives of two bodies, a < b. Each list is sorted by distance.
 struct BodyPairCandidates {
     int a = 0, b = 0;
-    std::vector<std::array<int, 2>> vertex_triangle;  ///< vertex of a, triangle of b
-    std::vector<std::array<int, 2>> triangle_vertex;  ///< triangle of a, vertex of b
-    std::vector<std::array<int, 2>> edge_edge;        ///< edge of a, edge of b
+    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, triangle of b
+    std::vector<PrimitivePair> triangle_vertex;  ///< triangle of a, vertex of b
+    std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
     bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
 };
 
@@ -35,6 +41,12 @@ struct Candidates {
 /// All pairs whose distance is at most dmin + dhat + (allowances of both primitives).
 Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses,
                            const std::vector<MotionAllowance>& allowances);
+
+/// Upper bounds of how far any point of each body is from where the candidates were found, [m].
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+
+/// The same over the whole of each segment.
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 /// Are the candidates complete (up to the activation distance) along the paths? Each body may have moved since they were found, and moves along
 /// `segments` now: completeness holds while both together stay within its allowance.

@@ -11,9 +11,9 @@ using kinematics::Pose;
 
 Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_position(pose, body.mesh.vertices.col(v)); }
 
-// Calls visit(first, second, pair) with vertices filled, for every candidate in order.
+// Calls visit(first, second, pair) with vertices filled, for every candidate in order that was found no farther apart than `reach`.
 template <class Visit>
-void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, const Visit& visit) {
+void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double reach, const Visit& visit) {
     const model::Body &a = model.bodies[list.a], &b = model.bodies[list.b];
     const Pose &pa = poses[list.a], &pb = poses[list.b];
     ContactPair pair;
@@ -23,16 +23,19 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
         pair.x[0] = vertex(vb, vp, v);
         for (int k = 0; k < 3; ++k) pair.x[k + 1] = vertex(tb, tp, corners[k]);
     };
-    for (const auto& [v, t] : list.vertex_triangle) {
+    for (const auto& [v, t, distance] : list.vertex_triangle) {
+        if (distance > reach) break;
         point_triangle(a, pa, v, b, pb, t);
         visit(list.a, list.b, pair);
     }
-    for (const auto& [t, v] : list.triangle_vertex) {
+    for (const auto& [t, v, distance] : list.triangle_vertex) {
+        if (distance > reach) break;
         point_triangle(b, pb, v, a, pa, t);
         visit(list.b, list.a, pair);
     }
     pair.type = PairType::edge_edge;
-    for (const auto& [ea, eb] : list.edge_edge) {
+    for (const auto& [ea, eb, distance] : list.edge_edge) {
+        if (distance > reach) break;
         const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
         pair.edge = {ea, eb};
         pair.vertex = {va[0], va[1], vb[0], vb[1]};
@@ -56,13 +59,14 @@ kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, in
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
     ContactSet set;
     const double activation = model.dmin + model.dhat;
+    const std::vector<double> moved = displacements(model, candidates, poses);
     double least = std::numeric_limits<double>::infinity();
     for (const BodyPairCandidates& list : candidates.pairs) {
         BodyPairContacts forward{list.a, list.b, {}}, backward{list.b, list.a, {}};
-        for_each_pair(model, list, poses, [&](int first, int, ContactPair& pair) {
+        for_each_pair(model, list, poses, activation + moved[list.a] + moved[list.b], [&](int first, int, ContactPair& pair) {
             pair.closest = closest_points(pair.type, pair.x);
-            least = std::min(least, pair.closest.distance_squared);
             if (pair.closest.distance_squared >= activation * activation) return;
+            least = std::min(least, pair.closest.distance_squared);
             (first == list.a ? forward : backward).contacts.push_back(pair);
         });
         for (BodyPairContacts* contacts : {&forward, &backward}) {
@@ -78,10 +82,11 @@ double barrier_potential(const model::Model& model, const Candidates& candidates
                          const BarrierParameters& parameters) {
     const double activation_squared = parameters.activation * parameters.activation;
     const double dmin_squared = parameters.dmin * parameters.dmin;
+    const std::vector<double> moved = displacements(model, candidates, poses);
     double sum = 0;
     for (const BodyPairCandidates& list : candidates.pairs) {
         double pair_sum = 0;
-        for_each_pair(model, list, poses, [&](int, int, ContactPair& pair) {
+        for_each_pair(model, list, poses, parameters.activation + moved[list.a] + moved[list.b], [&](int, int, ContactPair& pair) {
             pair.closest = closest_points(pair.type, pair.x);
             if (pair.closest.distance_squared >= activation_squared) return;
             pair_sum += pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters)

@@ -24,19 +24,24 @@ public:
         for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
     }
 
-    void visit(const BodyPairCandidates& list) {
+    // `moved`: how far apart the pair can have come since the candidates were found, over the whole segments.
+    void visit(const BodyPairCandidates& list, double moved) {
+        const double reach = model_.dmin + limits_.kept_most + moved;
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;
-        for (const auto& [v, t] : list.vertex_triangle) {
+        for (const auto& [v, t, distance] : list.vertex_triangle) {
+            if (distance > reach) break;
             const geometry::Triangle& c = b.mesh.triangles[t];
             check(PairType::point_triangle, list.a, list.b, {va.col(v), vb.col(c[0]), vb.col(c[1]), vb.col(c[2])});
         }
-        for (const auto& [t, v] : list.triangle_vertex) {
+        for (const auto& [t, v, distance] : list.triangle_vertex) {
+            if (distance > reach) break;
             const geometry::Triangle& c = a.mesh.triangles[t];
             check(PairType::point_triangle, list.b, list.a, {vb.col(v), va.col(c[0]), va.col(c[1]), va.col(c[2])});
         }
-        for (const auto& [i, j] : list.edge_edge) {
+        for (const auto& [i, j, distance] : list.edge_edge) {
+            if (distance > reach) break;
             const geometry::Edge &ea = a.mesh.edges[i], &eb = b.mesh.edges[j];
             check(PairType::edge_edge, list.a, list.b, {va.col(ea[0]), va.col(ea[1]), vb.col(eb[0]), vb.col(eb[1])});
         }
@@ -80,14 +85,16 @@ private:
 
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
     StepSearch search(model, segments, {0.1, 0.25 * model.dhat});
-    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list);
+    const std::vector<double> moved = displacements(model, candidates, segments);
+    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list, moved[list.a] + moved[list.b]);
     return search.result();
 }
 
 bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
     StepSearch search(model, segments, {0.01, 0.01 * model.dhat});
+    const std::vector<double> moved = displacements(model, candidates, segments);
     for (const BodyPairCandidates& list : candidates.pairs) {
-        search.visit(list);
+        search.visit(list, moved[list.a] + moved[list.b]);
         if (search.result().fraction < 1) return false;
     }
     return true;

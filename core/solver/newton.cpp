@@ -144,7 +144,7 @@ private:
                 const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model_.bodies[i].radius, 1e-300);
                 square += g * g;
             }
-            magnitude += d.force_magnitude[i];
+            magnitude += d.force_magnitude[i] + model_.bodies[i].moments(3, 3) * model_.velocity_tolerance * model_.timestep;
         }
         return magnitude > 0 ? std::sqrt(square) / magnitude : std::sqrt(square);
     }
