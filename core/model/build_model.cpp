@@ -35,7 +35,8 @@ Errors check_usable(const scene::Body& body, const std::string& where) {
     const auto outside = [&](int v) { return v < 0 || v >= count; };
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (std::none_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), outside)) continue;
-        return {{ErrorCode::mesh_invalid, where, "body `" + body.name + "`: triangle " + std::to_string(t) + " names a vertex that is not there"}};
+        return {{ErrorCode::mesh_invalid, where,
+                 "body `" + body.name + "`: triangle " + std::to_string(t) + " names a vertex that is not there"}};
     }
     return {};
 }
@@ -60,13 +61,16 @@ Errors check_mass(const scene::Body& body, const std::string& where) {
                  name + "the density is " + std::to_string(body.density) + " kg/m^3, it must be greater than 0"}};
     }
     if (body.mesh.triangles.empty() || !geometry::is_closed(body.mesh)) {
-        return {{body.mesh_policy == MeshPolicy::strict ? ErrorCode::mesh_invalid : ErrorCode::unsupported, where + "/mesh",
-                 name + "its mesh is not closed, and a dynamic body without a closed surface is not supported yet; close it or make it static"}};
+        return {
+            {body.mesh_policy == MeshPolicy::strict ? ErrorCode::mesh_invalid : ErrorCode::unsupported, where + "/mesh",
+             name +
+                 "its mesh is not closed, and a dynamic body without a closed surface is not supported yet; close it or make it static"}};
     }
     const double volume = geometry::solid_moments(body.mesh.vertices, body.mesh.triangles)(3, 3);
     if (!(volume > 0) || !std::isfinite(volume)) {
-        return {{ErrorCode::mesh_invalid, where + "/mesh",
-                 name + "its mesh encloses a volume of " + std::to_string(volume) + " m^3; triangles are counter-clockwise seen from outside"}};
+        return {
+            {ErrorCode::mesh_invalid, where + "/mesh",
+             name + "its mesh encloses a volume of " + std::to_string(volume) + " m^3; triangles are counter-clockwise seen from outside"}};
     }
     return {};
 }

@@ -50,9 +50,7 @@ PlacedBody place(const Body& body) {
     return out;
 }
 
-double gap_squared(const Box& a, const Box& b) {
-    return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0).squaredNorm();
-}
+double gap_squared(const Box& a, const Box& b) { return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0).squaredNorm(); }
 
 bool elements_intersect(const Corners& a, int a_count, const Corners& b, int b_count) {
     if (a_count == 3 && b_count == 3) return geometry::triangles_intersect(a, b);
@@ -215,9 +213,10 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
     if (gap_squared(a.box, b.box) > model.dmin * model.dmin) return std::nullopt;
     if (const auto fault = PairSearch(a, b, model.dmin).run()) {
         const std::string elements = shown(*fault->a) + " of `" + a.body->name + "` and " + shown(*fault->b) + " of `" + b.body->name + "`";
-        const std::string what = fault->intersects ? "intersect or touch at the start: " + elements
-                                                   : "are " + messages.length(fault->distance) + " apart at the start, the minimum separation is " +
-                                                         messages.length(model.dmin) + ": " + elements;
+        const std::string what = fault->intersects
+                                     ? "intersect or touch at the start: " + elements
+                                     : "are " + messages.length(fault->distance) + " apart at the start, the minimum separation is " +
+                                           messages.length(model.dmin) + ": " + elements;
         return messages.error(*a.body, *b.body, what, fault->place);
     }
     for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {

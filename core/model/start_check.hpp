@@ -7,8 +7,8 @@
 
 namespace fettle::core::model {
 
-/// For every pair of bodies that may collide: no two elements intersect or touch, none come as close as dmin (judged in floating point), and
-/// neither body lies wholly inside the other's material.
+/// For every pair of bodies that may collide: no two elements intersect or touch, none come as close as dmin (judged in floating point),
+/// and neither body lies wholly inside the other's material.
 /// @return one bodies_intersect error per pair at fault, which names the bodies, two elements (the first intersecting ones found, else the
 ///         closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
 /// Contract: hierarchies built.

@@ -15,11 +15,28 @@ namespace {
 
 using base::ErrorCode;
 
-const std::vector<std::string_view> body_keys{
-    "mesh",           "vertices",        "edges",           "faces",    "density",  "enabled",            "type",
-    "is_dof_fixed",   "position",        "rotation",        "scale",    "dimensions", "linear_velocity",  "angular_velocity",
-    "force",          "torque",          "group_id",        "oriented", "split_components", "kinematic_max_time", "kinematic_poses",
-    "ipc_comparison_enabled"};
+const std::vector<std::string_view> body_keys{"mesh",
+                                              "vertices",
+                                              "edges",
+                                              "faces",
+                                              "density",
+                                              "enabled",
+                                              "type",
+                                              "is_dof_fixed",
+                                              "position",
+                                              "rotation",
+                                              "scale",
+                                              "dimensions",
+                                              "linear_velocity",
+                                              "angular_velocity",
+                                              "force",
+                                              "torque",
+                                              "group_id",
+                                              "oriented",
+                                              "split_components",
+                                              "kinematic_max_time",
+                                              "kinematic_poses",
+                                              "ipc_comparison_enabled"};
 
 constexpr const char* no_2d = "2D scenes are not supported";
 
@@ -198,7 +215,8 @@ std::optional<Body> FixtureBodies::read(const JsonNode& node) {
     const JsonNode file = node["mesh"];
     body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
     if (body.name.empty()) body.name = "body";
-    std::replace_if(body.name.begin(), body.name.end(), [](char c) { return c == ':' || c == ','; }, '_');
+    std::replace_if(
+        body.name.begin(), body.name.end(), [](char c) { return c == ':' || c == ','; }, '_');
     const JsonNode rotation = node["rotation"].unless_null();
     if (rotation.is_number()) rotation.fail(ErrorCode::unsupported, no_2d);
     if (rotation.exists() && !rotation.is_number()) {

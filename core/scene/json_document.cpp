@@ -32,9 +32,12 @@ const json& value_of(const void* value) { return *static_cast<const json*>(value
 std::string escaped(const std::string& key) {
     std::string out;
     for (const char c : key) {
-        if (c == '~') out += "~0";
-        else if (c == '/') out += "~1";
-        else out += c;
+        if (c == '~')
+            out += "~0";
+        else if (c == '/')
+            out += "~1";
+        else
+            out += c;
     }
     return out;
 }

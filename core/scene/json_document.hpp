@@ -60,7 +60,7 @@ public:
     JsonNode require(std::string_view key) const;
     /// This node; absent if it is null (for formats where null means "as if it were not there").
     JsonNode unless_null() const;
-    std::vector<JsonNode> elements() const;                        ///< of an array; wrong_type otherwise; empty if absent
+    std::vector<JsonNode> elements() const;                         ///< of an array; wrong_type otherwise; empty if absent
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
 
     /// unknown_key for every member that is not listed, with the nearest one that is (or all of them if none is near).
@@ -84,8 +84,7 @@ public:
 private:
     friend class JsonDocument;
     struct Context;
-    JsonNode(Context* context, const void* value, std::string pointer)
-        : context_(context), value_(value), pointer_(std::move(pointer)) {}
+    JsonNode(Context* context, const void* value, std::string pointer) : context_(context), value_(value), pointer_(std::move(pointer)) {}
     JsonNode child(const void* value, const std::string& key) const;
     bool check_range(double number, const NumberRange& range, std::string_view unit) const;
     template <class Read>
@@ -107,7 +106,7 @@ public:
 
     const std::string& path() const;
     JsonNode root();
-    const base::Errors& errors() const;                   ///< found so far by reading nodes, in the order of reading
+    const base::Errors& errors() const;  ///< found so far by reading nodes, in the order of reading
     const std::vector<std::string>& warnings() const;
 
 private:

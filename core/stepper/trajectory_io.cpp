@@ -167,7 +167,8 @@ private:
     std::vector<int> indices(const JsonNode& node, std::size_t columns, Eigen::Index limit) {
         std::vector<int> out;
         const auto found = node.numbers().value_or(std::vector<double>{});
-        if (found.size() % columns != 0) node.fail(ErrorCode::inconsistent, "the number of indices is not a multiple of " + std::to_string(columns));
+        if (found.size() % columns != 0)
+            node.fail(ErrorCode::inconsistent, "the number of indices is not a multiple of " + std::to_string(columns));
         for (const double x : found) {
             if (x != std::floor(x) || x < 0 || x >= static_cast<double>(limit)) {
                 node.fail(ErrorCode::out_of_range, "an index is not a whole number from 0 to " + std::to_string(limit - 1));
@@ -183,16 +184,19 @@ private:
         model::Body body;
         body.name = node.require("name").string().value_or("");
         const std::string type = node.require("type").choice(type_names).value_or("dynamic");
-        body.type = type == "static" ? scene::BodyType::static_body : type == "kinematic" ? scene::BodyType::kinematic_body
-                                                                                           : scene::BodyType::dynamic_body;
+        body.type = type == "static"      ? scene::BodyType::static_body
+                    : type == "kinematic" ? scene::BodyType::kinematic_body
+                                          : scene::BodyType::dynamic_body;
         body.group = node.require("group").integer(-1).value_or(-1);
         body.reference_point = node.require("reference_point").vector3().value_or(Vector3::Zero());
         const JsonNode mesh = node.require("mesh");
         body.mesh.name = mesh.require("name").string().value_or("");
         const auto coordinates = mesh.require("vertices").numbers().value_or(std::vector<double>{});
-        if (coordinates.empty() || coordinates.size() % 3 != 0) mesh["vertices"].fail(ErrorCode::inconsistent, "three coordinates per vertex are wanted");
+        if (coordinates.empty() || coordinates.size() % 3 != 0)
+            mesh["vertices"].fail(ErrorCode::inconsistent, "three coordinates per vertex are wanted");
         body.mesh.vertices.resize(3, static_cast<Eigen::Index>(coordinates.size() / 3));
-        for (Eigen::Index i = 0; i < body.mesh.vertices.size(); ++i) body.mesh.vertices.reshaped()[i] = coordinates[static_cast<std::size_t>(i)];
+        for (Eigen::Index i = 0; i < body.mesh.vertices.size(); ++i)
+            body.mesh.vertices.reshaped()[i] = coordinates[static_cast<std::size_t>(i)];
         const auto corners = indices(mesh.require("triangles"), 3, body.mesh.vertices.cols());
         for (std::size_t i = 0; i < corners.size(); i += 3) body.mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
         std::vector<geometry::Edge> edges;
@@ -224,7 +228,8 @@ private:
         for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = (*numbers)[static_cast<std::size_t>(i)];
         for (int i = 0; i < 3; ++i) pose.position[i] = (*numbers)[static_cast<std::size_t>(9 + i)];
         const double defect = (pose.rotation.transpose() * pose.rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
-        if (!(defect <= 1e-9) || !(pose.rotation.determinant() > 0)) node.fail(ErrorCode::out_of_range, "the first nine numbers are not a rotation matrix");
+        if (!(defect <= 1e-9) || !(pose.rotation.determinant() > 0))
+            node.fail(ErrorCode::out_of_range, "the first nine numbers are not a rotation matrix");
         return pose;
     }
 
@@ -270,7 +275,8 @@ private:
                 const double allowed = 1e-9 * (vertices.cwiseAbs().maxCoeff() + before.position.norm() + after.position.norm());
                 const Matrix3 reached = kinematics::rotation(last[b].rotation_vector) * before.rotation;
                 const bool starts = first[b].rotation_vector == Vector3::Zero() && (first[b].position - before.position).norm() <= allowed;
-                const bool ends = (last[b].position - after.position).norm() <= allowed && (reached - after.rotation).cwiseAbs().maxCoeff() <= 1e-9;
+                const bool ends =
+                    (last[b].position - after.position).norm() <= allowed && (reached - after.rotation).cwiseAbs().maxCoeff() <= 1e-9;
                 if (starts && ends) continue;
                 steps[t].fail(ErrorCode::inconsistent, "the path of body `" + trajectory.body_names[b] + "` does not " +
                                                            (starts ? "end at the next pose" : "start at its pose with rotation vector 0"));
@@ -287,7 +293,8 @@ private:
         const auto stored = hash.string();
         const std::string found = hexadecimal(geometry_hash(out_.model));
         if (stored && *stored != found) {
-            hash.fail(ErrorCode::inconsistent, "the meshes are not those that the trajectory was written with (" + found + "): the file was changed");
+            hash.fail(ErrorCode::inconsistent,
+                      "the meshes are not those that the trajectory was written with (" + found + "): the file was changed");
         }
     }
 
@@ -331,23 +338,24 @@ base::Errors write_trajectory(const std::filesystem::path& path, const Trajector
     out.string(scene_path);
     out.key("geometry_hash");
     out.string(hexadecimal(geometry_hash(model)));
-    for (const auto& [name, value] : {std::pair{"length_unit", model.length_unit}, {"dhat", model.dhat}, {"dmin", model.dmin},
-                                      {"time_start", trajectory.time_start}, {"timestep", trajectory.timestep}}) {
+    for (const auto& [name, value] : {std::pair{"length_unit", model.length_unit},
+                                      {"dhat", model.dhat},
+                                      {"dmin", model.dmin},
+                                      {"time_start", trajectory.time_start},
+                                      {"timestep", trajectory.timestep}}) {
         out.key(name);
         out.number(value);
     }
     out.key("bodies");
     out.list(model.bodies.size(), ",\n  ", [&](std::size_t b) { write_body(out, model.bodies[b]); });
     out.key("poses");
-    out.list(trajectory.poses.size(), ",\n  ", [&](std::size_t t) {
-        out.list(model.bodies.size(), ",", [&](std::size_t b) { write_pose(out, trajectory.poses[t][b]); });
-    });
+    out.list(trajectory.poses.size(), ",\n  ",
+             [&](std::size_t t) { out.list(model.bodies.size(), ",", [&](std::size_t b) { write_pose(out, trajectory.poses[t][b]); }); });
     out.key("steps");
     out.list(trajectory.steps.size(), ",\n  ", [&](std::size_t t) {
         const auto& nodes = trajectory.steps[t].nodes;
-        out.list(nodes.size(), ",", [&](std::size_t k) {
-            out.list(model.bodies.size(), ",", [&](std::size_t b) { write_node(out, nodes[k][b]); });
-        });
+        out.list(nodes.size(), ",",
+                 [&](std::size_t k) { out.list(model.bodies.size(), ",", [&](std::size_t b) { write_node(out, nodes[k][b]); }); });
     });
     out.text += "}\n";
     return base::write_file_atomically(path, out.text);

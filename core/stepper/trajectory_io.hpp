@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Trajectories as files that can be certified again without anything else: they hold the bodies' meshes and the continuous path, every
-/// number as the shortest decimal that reads back to the same double, bit for bit. What they do not hold is mass: they cannot be simulated on.
+/// number as the shortest decimal that reads back to the same double, bit for bit. What they do not hold is mass: they cannot be simulated
+/// on.
 ///
 /// One JSON object (*.trajectory.json), lengths in metres, times in seconds, angles in radians:
 ///   fettle_trajectory  1, the version of this format
@@ -9,7 +10,8 @@
 ///                      that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep
-///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mesh { name, vertices, triangles, edges } },
+///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mesh { name, vertices, triangles, edges }
+///   },
 ///           vertices x y z after x y z, relative to the reference point; triangles three indices after three; edges those of no triangle
 ///   poses   [t][body]: 12 numbers, rotation matrix row by row, then the position of the reference point; t = 0 .. number of steps
 ///   steps   [t][node][body]: 6 numbers px py pz rx ry rz. Between two nodes of step t, at s in [0, 1], a body point X is at
@@ -29,9 +31,9 @@ namespace fettle::core::stepper {
 
 struct StoredTrajectory {
     Trajectory trajectory;
-    model::Model model;      ///< geometry, names, groups and contact distances; no density, moments, velocities, prescribed motion or loads
+    model::Model model;  ///< geometry, names, groups and contact distances; no density, moments, velocities, prescribed motion or loads
     std::string scene_path;
-    std::string path;        ///< of the trajectory file
+    std::string path;  ///< of the trajectory file
 };
 
 /// FNV-1a over names, vertices (their bits, relative to the reference point), triangles and edges of all bodies.

@@ -65,7 +65,8 @@ TEST_CASE("The minimum separation holds at the start", "[model]") {
 
 TEST_CASE("One body inside another's material is an overlap, in its cavity it is not", "[model]") {
     const auto outer = body_of("outer", tests::box_mesh({0, 0, 0}, {3, 3, 3}));
-    const auto hollow = body_of("hollow", tests::joined(tests::box_mesh({0, 0, 0}, {3, 3, 3}), tests::inside_out(tests::box_mesh({1, 1, 1}, {2, 2, 2}))));
+    const auto hollow =
+        body_of("hollow", tests::joined(tests::box_mesh({0, 0, 0}, {3, 3, 3}), tests::inside_out(tests::box_mesh({1, 1, 1}, {2, 2, 2}))));
     const auto inner = body_of("inner", tests::box_mesh({1.2, 1.2, 1.2}, {1.8, 1.8, 1.8}));
     for (const auto& order : {std::vector{outer, inner}, std::vector{inner, outer}}) {
         const auto errors = errors_of(order);
@@ -76,7 +77,8 @@ TEST_CASE("One body inside another's material is an overlap, in its cavity it is
     CHECK(errors_of({hollow, inner}).empty());
     CHECK(errors_of({inner, hollow}).empty());
     // Two shells, one outside and one in the material: the second must be found.
-    const auto pair = body_of("pair", tests::joined(tests::box_mesh({5, 5, 5}, {6, 6, 6}), tests::box_mesh({0.2, 0.2, 0.2}, {0.4, 0.4, 0.4})));
+    const auto pair =
+        body_of("pair", tests::joined(tests::box_mesh({5, 5, 5}, {6, 6, 6}), tests::box_mesh({0.2, 0.2, 0.2}, {0.4, 0.4, 0.4})));
     CHECK(errors_of({hollow, pair}).size() == 1);
 }
 

@@ -33,8 +33,8 @@ TEST_CASE("Faults of syntax have a line and a column", "[scene]") {
 }
 
 TEST_CASE("Numbers that are not finite are called so", "[scene]") {
-    for (const std::string text : {"{\"a\": 1,\n \"b\": NaN}", "{\"a\": 1,\n \"b\": -Infinity}", "{\"a\": 1,\n \"b\": nan}", "{\"a\": 1,\n \"b\": 1e999}",
-                                   "{\"a\": 1,\n \"b\": -1e999}"}) {
+    for (const std::string text : {"{\"a\": 1,\n \"b\": NaN}", "{\"a\": 1,\n \"b\": -Infinity}", "{\"a\": 1,\n \"b\": nan}",
+                                   "{\"a\": 1,\n \"b\": 1e999}", "{\"a\": 1,\n \"b\": -1e999}"}) {
         CAPTURE(text);
         const auto error = only_error(JsonDocument::parse(text, "a.json").errors());
         CHECK(error.code == ErrorCode::not_finite);

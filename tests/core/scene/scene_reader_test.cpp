@@ -51,7 +51,9 @@ public:
     fs::path root = fs::temp_directory_path() / ("fettle-scene-" + std::to_string(::getpid()));
 };
 
-json plain() { return json::parse(R"({"fettle_scene": 1, "units": "mm", "bodies": [{"name": "box", "mesh": "near.obj", "density": 1240}]})"); }
+json plain() {
+    return json::parse(R"({"fettle_scene": 1, "units": "mm", "bodies": [{"name": "box", "mesh": "near.obj", "density": 1240}]})");
+}
 
 /// `plain()` with one value replaced or added.
 json with(const std::string& pointer, const json& value) {
@@ -189,9 +191,12 @@ TEST_CASE("Each wrong input gives its message and its place", "[scene]") {
         {with("/bodies/0/fixed", {"pw"}), ErrorCode::out_of_range, "#/bodies/0/fixed/0", "px"},
         {with("/bodies/0/name", "a:b"), ErrorCode::out_of_range, "#/bodies/0/name", "a:b"},
         {with("/bodies/0/mesh_unit", "furlong"), ErrorCode::out_of_range, "#/bodies/0/mesh_unit", "mm"},
-        {with("/bodies/0/prescribed", {{"rz", {{"times", {0, 1}}, {"values", {0}}}}}), ErrorCode::inconsistent, "#/bodies/0/prescribed/rz", "one value"},
-        {with("/bodies/0/prescribed", {{"rz", {{"times", {0, 1, 1}}, {"values", {0, 1, 2}}}}}), ErrorCode::out_of_range, "#/bodies/0/prescribed/rz/times/2", "increase"},
-        {with("/bodies/0/prescribed", {{"rz", {{"times", {0}}, {"values", {5}}}}}), ErrorCode::inconsistent, "#/bodies/0/prescribed/rz/values", "must be 0"},
+        {with("/bodies/0/prescribed", {{"rz", {{"times", {0, 1}}, {"values", {0}}}}}), ErrorCode::inconsistent, "#/bodies/0/prescribed/rz",
+         "one value"},
+        {with("/bodies/0/prescribed", {{"rz", {{"times", {0, 1, 1}}, {"values", {0, 1, 2}}}}}), ErrorCode::out_of_range,
+         "#/bodies/0/prescribed/rz/times/2", "increase"},
+        {with("/bodies/0/prescribed", {{"rz", {{"times", {0}}, {"values", {5}}}}}), ErrorCode::inconsistent,
+         "#/bodies/0/prescribed/rz/values", "must be 0"},
         {with("/bodies/0/prescribed", {{"rw", json::object()}}), ErrorCode::unknown_key, "#/bodies/0/prescribed/rw", "did you mean `rx`?"},
         {with("/bodies/0/shape", {{"generator", "pin"}}), ErrorCode::inconsistent, "#/bodies/0", "either"},
         {with("/units", "inch"), ErrorCode::out_of_range, "#/units", "in"},
@@ -245,7 +250,8 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
     const Workshop shop;
     json text = plain();
     text["bodies"][0].erase("mesh");
-    text["bodies"][0]["shape"] = json::parse(R"({"generator": "pin", "dimensions": {"radius": 2.5, "length": "1cm"}, "counts": {"facets": 32}})");
+    text["bodies"][0]["shape"] =
+        json::parse(R"({"generator": "pin", "dimensions": {"radius": 2.5, "length": "1cm"}, "counts": {"facets": 32}})");
     SECTION("none here") {
         const auto errors = shop.read(text).errors();
         REQUIRE(errors.size() == 1);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/trajectory_io.hpp"
 
+#include <unistd.h>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <random>
-#include <unistd.h>
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
@@ -68,7 +68,8 @@ Trajectory random_path(const model::Model& model, int steps) {
         std::vector<kinematics::Pose> next;
         for (std::size_t b = 0; b < model.bodies.size(); ++b) {
             const auto& last = step.nodes.back()[b];
-            next.push_back({kinematics::orthonormalised(kinematics::rotation(last.rotation_vector) * out.poses.back()[b].rotation), last.position});
+            next.push_back(
+                {kinematics::orthonormalised(kinematics::rotation(last.rotation_vector) * out.poses.back()[b].rotation), last.position});
         }
         out.poses.push_back(next);
         out.steps.push_back(step);
