@@ -202,12 +202,19 @@ std::vector<double> displacements(const model::Model& model, const Candidates& c
     return out;
 }
 
-bool covers(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments) {
+double covered_fraction(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments) {
+    constexpr double slack = 1 + 1e-12;
+    double fraction = 1;
+    const auto limit = [&](double spent, double step, double allowed) {
+        if (spent + step * slack <= allowed) return;
+        fraction = std::min(fraction, spent < allowed ? (allowed - spent) / (step * slack * slack) : 0.0);
+    };
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        const MotionAllowance motion = motion_over(candidates, i, segments[i]), &allowed = candidates.allowances[i];
-        if (motion.translation > allowed.translation || motion.rotation > allowed.rotation) return false;
+        const MotionAllowance spent = motion_since(candidates, i, pose_at(segments[i], 0)), &allowed = candidates.allowances[i];
+        limit(spent.translation, segments[i].position_step.norm(), allowed.translation);
+        limit(spent.rotation, segments[i].rotation_vector_step.norm(), allowed.rotation);
     }
-    return true;
+    return fraction;
 }
 
 }  // namespace fettle::core::contact

@@ -48,8 +48,8 @@ std::vector<double> displacements(const model::Model& model, const Candidates& c
 /// The same over the whole of each segment.
 std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
-/// Are the candidates complete (up to the activation distance) along the paths? Each body may have moved since they were found, and moves along
-/// `segments` now: completeness holds while both together stay within its allowance.
-bool covers(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
+/// Largest fraction of the segments along which the candidates are complete (up to the activation distance). Each body may have moved since
+/// they were found, and moves along its segment now: completeness holds while both together stay within its allowance.
+double covered_fraction(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 }  // namespace fettle::core::contact

@@ -75,21 +75,27 @@ Vector3 combination(const std::array<double, 4>& weight, const PairVertices& x) 
     return weight[0] * x[0] + weight[1] * x[1] + weight[2] * x[2] + weight[3] * x[3];
 }
 
-/// Direction of the closest points' difference. Where it is normal to an edge or a face it is computed as such: the difference itself is off by
-/// u times the size of the pair, which tilts it by much more than u when the distance is small.
-Vector3 separating_direction(PairType type, const PairVertices& x) {
+struct Closest {
+    Vector3 direction;
+    double distance;  ///< computed: neither bound is proven
+};
+
+/// Direction of the closest points' difference. Where it is normal to an edge or a face it is computed as such: the difference itself
+/// is off by u times the size of the pair, which tilts it by much more than u when the distance is small.
+Closest closest(PairType type, const PairVertices& x) {
     const geometry::ClosestPoints c = type == PairType::point_triangle ? geometry::point_triangle_closest(x[0], x[1], x[2], x[3])
                                                                        : geometry::edge_edge_closest(x[0], x[1], x[2], x[3]);
-    if (c.free_count == 0) return c.difference;
+    const double distance = std::sqrt(c.distance_squared);
+    if (c.free_count == 0) return {c.difference, distance};
     const Vector3 e = combination(c.free_weight[0], x);
-    if (c.free_count == 2) return e.cross(combination(c.free_weight[1], x));
+    if (c.free_count == 2) return {e.cross(combination(c.free_weight[1], x)), distance};
     Vector3 r = c.difference;
     const double ee = e.squaredNorm();
     if (ee > 0) {
         r -= (r.dot(e) / ee) * e;
         r -= (r.dot(e) / ee) * e;
     }
-    return r;
+    return {r, distance};
 }
 
 /// Along one unit direction: the header's p and q, and the value that certifies.
@@ -210,8 +216,10 @@ public:
 private:
     Separation direction_at(double t) const {
         const PairVertices x = vertices_at(motion_, t);
-        const Separation s = separation(motion_, separating_direction(motion_.type, x), dmin_, t);
-        return s.gap > threshold_ ? s : best_separation(motion_, x, dmin_, t);
+        const Closest c = closest(motion_.type, x);
+        const Separation s = separation(motion_, c.direction, dmin_, t);
+        const bool unreliable = !(s.gap > threshold_) && !(c.distance <= dmin_ + threshold_);
+        return unreliable ? best_separation(motion_, x, dmin_, t) : s;
     }
 
     Separation better(const Separation& a, const Separation& b) const { return a.gap >= b.gap ? a : b; }
@@ -230,7 +238,7 @@ private:
         s.gap = s.least(time_) - s.limit;
         if (time_ >= 1 || ++steps_ < patience) return true;
         const double ahead = std::min(1.0, from + reach_ * (time_ - from));
-        const Separation turned = direction_at(ahead);
+        const Separation turned = separation(motion_, closest(motion_.type, vertices_at(motion_, ahead)).direction, dmin_, ahead);
         if (turned.gap > threshold_ && separated_by_turning(s, from, turned, ahead)) {
             time_ = ahead;
             s = turned;
@@ -262,8 +270,9 @@ LinearCcdResult conservative_advancement(PairType type, const PairVertices& t0, 
 double distance_lower_bound(PairType type, const PairVertices& x) {
     const RelativeMotion m = relative_motion(type, x, x);
     if (!m.finite) return 0;
-    const Separation s = separation(m, separating_direction(type, vertices_at(m, 0)), 0, 0);
-    return s.gap > 0 ? s.gap : std::max(0.0, best_separation(m, vertices_at(m, 0), 0, 0).gap);
+    const PairVertices at_rest = vertices_at(m, 0);
+    const Separation s = separation(m, closest(type, at_rest).direction, 0, 0);
+    return s.gap > 0 ? s.gap : std::max(0.0, best_separation(m, at_rest, 0, 0).gap);
 }
 
 }  // namespace fettle::core::contact

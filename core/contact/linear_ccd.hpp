@@ -32,7 +32,8 @@ struct LinearCcdResult {
 /// Do the primitives come within `dmin` for some time in [0, 1], the vertices moving from `t0` to `t1`?
 /// toi is 0 only for pairs that start within dmin, as far as doubles can tell (conservative_advancement.hpp). NaN and infinities are hits at 0.
 /// Contract: dmin >= 0. Vertex order: PairVertices.
-/// Measured on the public queries (one thread, -O2): advancement 0 misses, 0.6 us a query; inclusion 0 misses, some 100 to 1000 times as long.
+/// Measured on the public queries (one thread, -O2): advancement 0 misses, 0.23 us a query on sample-queries, 2.6 us on scalable;
+/// inclusion 0 misses, hundreds of times as long.
 LinearCcdResult linear_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
                            const LinearCcdOptions& options = {});
 

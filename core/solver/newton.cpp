@@ -75,8 +75,8 @@ private:
         for (std::size_t i = 0; i < expected.size(); ++i) {
             const model::Body& body = model_.bodies[i];
             if (body.type == scene::BodyType::static_body) continue;
-            allowances[i].translation = 2 * expected[i].translation + 0.25 * model_.dhat;
-            allowances[i].rotation = 2 * expected[i].rotation + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
+            allowances[i].translation = 1.25 * expected[i].translation + 0.25 * model_.dhat;
+            allowances[i].rotation = 1.25 * expected[i].rotation + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
         }
         candidates_ = contact::find_candidates(model_, result_.poses, allowances);
     }
@@ -219,18 +219,35 @@ private:
         return out;
     }
 
-    // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
-    double search(const Direction& direction) {
-        const std::vector<ChartPoint> end = moved(direction, 1);
+    std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
         std::vector<PathSegment> segments(points_.size());
         for (std::size_t i = 0; i < points_.size(); ++i) segments[i] = path_between(problem_.poses_t0[i].rotation, points_[i], end[i]);
-        if (!contact::covers(candidates_, segments)) {
+        return segments;
+    }
+
+    // Where contact stops the step within what the candidates cover, no wider search is needed: long first steps are common.
+    contact::SafeStep safe_step(const Direction& direction) {
+        const std::vector<PathSegment> segments = segments_to(moved(direction, 1));
+        const double covered = contact::covered_fraction(candidates_, segments);
+        if (covered > 0 && covered < 1) {
+            std::vector<PathSegment> part = segments;
+            for (PathSegment& s : part) s = sub_segment(s, 0, covered);
+            contact::SafeStep safe = contact::longest_safe_step(model_, candidates_, part);
+            safe.fraction *= covered;
+            if (safe.fraction < covered) return safe;
+        }
+        if (covered < 1) {
             std::vector<MotionAllowance> expected(points_.size());
             for (std::size_t i = 0; i < points_.size(); ++i)
                 expected[i] = {segments[i].position_step.norm(), segments[i].rotation_vector_step.norm()};
             find_candidates(expected);
         }
-        const contact::SafeStep safe = contact::longest_safe_step(model_, candidates_, segments);
+        return contact::longest_safe_step(model_, candidates_, segments);
+    }
+
+    // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
+    double search(const Direction& direction) {
+        const contact::SafeStep safe = safe_step(direction);
         limiting_ = safe;
         const double remaining = direction.remaining_norm;
         if (remaining > 0) penalty_ = std::max(penalty_, direction.slope > 0 ? 2 * direction.slope / remaining : 0.0);
