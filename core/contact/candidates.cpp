@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
-#include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/contact/contact_pair.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -16,39 +16,47 @@ using kinematics::Pose;
 // Rounding of the separating-axis sums, relative to the sizes that enter them: some thirty operations of relative error 2^-53.
 constexpr double rounding = 1e-14;
 
-// Pose of b's frame in a's frame.
-struct RelativePose {
-    Matrix3 rotation, absolute;
-    Vector3 translation;
+// A body at the two ends of its segment, and how far its points may leave their chords in between.
+struct SweptBody {
+    const model::Body* body;
+    Pose start, end;
+    double turn;  // |w|
+    double deviation(double radius) const { return 0.125 * turn * turn * radius * (1 + 1e-12); }
 };
 
-RelativePose relative_pose(const Pose& a, const Pose& b) {
-    RelativePose r;
-    r.rotation = a.rotation.transpose() * b.rotation;
-    r.absolute = r.rotation.cwiseAbs();
-    r.translation = a.rotation.transpose() * (b.position - a.position);
-    return r;
+SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& segment) {
+    return {&body, pose_at(segment, 0), pose_at(segment, 1), segment.rotation_vector_step.norm()};
 }
+
+// One separating direction, in the frames of both bodies at both ends.
+struct Axis {
+    std::array<Vector3, 2> a, b;       // the direction in the body's frame at the start and at the end
+    std::array<Vector3, 2> abs_a, abs_b;
+    std::array<double, 2> offset;      // n . (q_b - q_a)
+};
 
 class PairSearch {
 public:
-    PairSearch(const model::Model& model, const std::vector<Pose>& poses, const std::vector<MotionAllowance>& allowances, int a, int b)
-        : body_a_(model.bodies[a]), body_b_(model.bodies[b]), pose_a_(poses[a]), pose_b_(poses[b]), allow_a_(allowances[a]),
-          allow_b_(allowances[b]), activation_(model.dmin + model.dhat), relative_(relative_pose(pose_a_, pose_b_)) {
-        out_.a = a;
-        out_.b = b;
+    PairSearch(const SweptBody& a, const SweptBody& b, double activation, const MotionAllowance& allow_a, const MotionAllowance& allow_b)
+        : a_(a), b_(b), allow_a_(allow_a), allow_b_(allow_b), activation_(activation) {
+        for (int k = 0; k < 3; ++k) {
+            axes_[k] = axis(a_.start.rotation.col(k));
+            axes_[k + 3] = axis(b_.start.rotation.col(k));
+        }
+        reach_ = (b_.start.position - a_.start.position).norm() + (b_.end.position - a_.end.position).norm();
+        world_size_ = a_.start.position.norm() + a_.end.position.norm() + b_.start.position.norm() + b_.end.position.norm() + a_.body->radius +
+                      b_.body->radius;
     }
 
     BodyPairCandidates run() {
-        const auto& nodes_a = body_a_.hierarchy->nodes();
-        const auto& nodes_b = body_b_.hierarchy->nodes();
+        const auto& nodes_a = a_.body->hierarchy->nodes();
+        const auto& nodes_b = b_.body->hierarchy->nodes();
         std::vector<std::array<int, 2>> stack{{0, 0}};
         while (!stack.empty()) {
             const auto [i, j] = stack.back();
             stack.pop_back();
             const HierarchyNode &na = nodes_a[i], &nb = nodes_b[j];
-            const double margin = margin_of(na.radius, nb.radius);
-            if (separated(na, nb, margin)) continue;
+            if (separated(na, nb, margin_of(na.radius, nb.radius))) continue;
             if (na.is_leaf() && nb.is_leaf()) {
                 visit_leaves(na, nb);
             } else if (nb.is_leaf() || (!na.is_leaf() && na.half_extent.sum() >= nb.half_extent.sum())) {
@@ -67,103 +75,163 @@ public:
     }
 
 private:
+    Axis axis(const Vector3& n) const {
+        Axis x;
+        x.a = {a_.start.rotation.transpose() * n, a_.end.rotation.transpose() * n};
+        x.b = {b_.start.rotation.transpose() * n, b_.end.rotation.transpose() * n};
+        for (int e = 0; e < 2; ++e) {
+            x.abs_a[e] = x.a[e].cwiseAbs();
+            x.abs_b[e] = x.b[e].cwiseAbs();
+        }
+        x.offset = {n.dot(b_.start.position - a_.start.position), n.dot(b_.end.position - a_.end.position)};
+        return x;
+    }
+
+    // Activation distance, allowances and chord deviations.
     double margin_of(double radius_a, double radius_b) const {
-        return activation_ + allow_a_.translation + allow_a_.rotation * radius_a + allow_b_.translation + allow_b_.rotation * radius_b;
+        return activation_ + allow_a_.translation + allow_a_.rotation * radius_a + allow_b_.translation + allow_b_.rotation * radius_b +
+               a_.deviation(radius_a) + b_.deviation(radius_b);
     }
 
-    // Separating axes: the face normals of both boxes. True only if the boxes are farther apart than the margin.
+    // True only if the boxes stay farther apart than the margin.
     bool separated(const HierarchyNode& na, const HierarchyNode& nb, double margin) const {
-        const Vector3 t = relative_.rotation * nb.center + relative_.translation - na.center;
-        const Vector3 extent_b_in_a = relative_.absolute * nb.half_extent;
-        const double size = t.cwiseAbs().sum() + na.half_extent.sum() + nb.half_extent.sum() + nb.radius + na.radius +
-                            relative_.translation.cwiseAbs().sum();
-        const double bound = margin + rounding * size;
-        if (((t.cwiseAbs() - na.half_extent - extent_b_in_a).array() > bound).any()) return true;
-        const Vector3 t_b = (relative_.rotation.transpose() * t).cwiseAbs();
-        const Vector3 extent_a_in_b = relative_.absolute.transpose() * na.half_extent;
-        return ((t_b - nb.half_extent - extent_a_in_b).array() > bound).any();
+        const double bound = margin + rounding * (reach_ + 4 * (na.radius + nb.radius + na.half_extent.sum() + nb.half_extent.sum()));
+        for (const Axis& n : axes_) {
+            const double t0 = n.offset[0] + n.b[0].dot(nb.center) - n.a[0].dot(na.center);
+            const double e0 = n.abs_a[0].dot(na.half_extent) + n.abs_b[0].dot(nb.half_extent);
+            if (std::abs(t0) - e0 <= bound) continue;
+            const double t1 = n.offset[1] + n.b[1].dot(nb.center) - n.a[1].dot(na.center);
+            const double e1 = n.abs_a[1].dot(na.half_extent) + n.abs_b[1].dot(nb.half_extent);
+            if (std::copysign(1.0, t0) * t1 - e1 > bound) return true;
+        }
+        return false;
     }
 
-    using Corners = std::array<Vector3, 3>;
-    static Corners corners(const model::Body& body, const Pose& pose, const HierarchyElement& e) {
+    // Vertices of a primitive at both ends.
+    using Ends = std::array<Vector3, 2>;
+    static Ends ends(const SweptBody& s, int v) {
+        const Vector3 X = s.body->mesh.vertices.col(v);
+        return {world_position(s.start, X), world_position(s.end, X)};
+    }
+    using Corners = std::array<Ends, 3>;
+    static Corners corners(const SweptBody& s, const HierarchyElement& e) {
         Corners c;
-        for (int k = 0; k < e.vertex_count; ++k) c[k] = world_position(pose, body.mesh.vertices.col(e.vertices[k]));
+        for (int k = 0; k < e.vertex_count; ++k) c[k] = ends(s, e.vertices[k]);
         return c;
     }
-    static Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_position(pose, body.mesh.vertices.col(v)); }
 
     void visit_leaves(const HierarchyNode& na, const HierarchyNode& nb) {
+        margin_ = margin_of(na.radius, nb.radius) + rounding * world_size_;
+        lost_ = a_.deviation(na.radius) + b_.deviation(nb.radius) + rounding * world_size_;
         for (int i = na.first; i < na.first + na.count; ++i) {
-            const HierarchyElement& ea = body_a_.hierarchy->elements()[i];
-            const Corners ca = corners(body_a_, pose_a_, ea);
-            for (int j = nb.first; j < nb.first + nb.count; ++j)
-                visit_elements(ea, ca, body_b_.hierarchy->elements()[j], margin_of(na.radius, nb.radius));
+            const HierarchyElement& ea = a_.body->hierarchy->elements()[i];
+            const Corners ca = corners(a_, ea);
+            for (int j = nb.first; j < nb.first + nb.count; ++j) visit_elements(ea, ca, b_.body->hierarchy->elements()[j]);
         }
     }
 
-    static bool boxes_apart(const Corners& a, int count_a, const Corners& b, int count_b, double margin) {
-        Vector3 low_a = a[0], high_a = a[0], low_b = b[0], high_b = b[0];
-        for (int k = 1; k < count_a; ++k) {
-            low_a = low_a.cwiseMin(a[k]);
-            high_a = high_a.cwiseMax(a[k]);
+    bool boxes_apart(const Corners& a, int count_a, const Corners& b, int count_b) const {
+        Vector3 low_a = a[0][0], high_a = low_a, low_b = b[0][0], high_b = low_b;
+        for (int e = 0; e < 2; ++e) {
+            for (int k = 0; k < count_a; ++k) {
+                low_a = low_a.cwiseMin(a[k][e]);
+                high_a = high_a.cwiseMax(a[k][e]);
+            }
+            for (int k = 0; k < count_b; ++k) {
+                low_b = low_b.cwiseMin(b[k][e]);
+                high_b = high_b.cwiseMax(b[k][e]);
+            }
         }
-        for (int k = 1; k < count_b; ++k) {
-            low_b = low_b.cwiseMin(b[k]);
-            high_b = high_b.cwiseMax(b[k]);
-        }
-        return ((low_a - high_b).array() > margin).any() || ((low_b - high_a).array() > margin).any();
+        return ((low_a - high_b).array() > margin_).any() || ((low_b - high_a).array() > margin_).any();
     }
 
-    void visit_elements(const HierarchyElement& ea, const Corners& ca, const HierarchyElement& eb, double margin) {
-        const Corners cb = corners(body_b_, pose_b_, eb);
-        const double size = pose_a_.position.cwiseAbs().sum() + pose_b_.position.cwiseAbs().sum() + body_a_.radius + body_b_.radius;
-        const double bound = margin + rounding * size;
-        if (boxes_apart(ca, ea.vertex_count, cb, eb.vertex_count, bound)) return;
-        const double bound_squared = bound * bound * (1 + rounding);
+    // Least separation, at the other end, along the direction of the closest points at this one.
+    static double separation(const Vector3& n, const std::array<Ends, 4>& x, int first_count, int end) {
+        double low = n.dot(x[0][end]), high = n.dot(x[3][end]);
+        for (int i = 1; i < first_count; ++i) low = std::min(low, n.dot(x[i][end]));
+        for (int i = first_count; i < 3; ++i) high = std::max(high, n.dot(x[i][end]));
+        return low - high;
+    }
+
+    // Lower bound of the distance over the segments, deviations included.
+    double least_distance(PairType type, const std::array<Ends, 4>& x) const {
+        double best = 0;
+        const int n = first_count(type);
+        const bool still = a_.turn == 0 && b_.turn == 0 && x[0][0] == x[0][1] && x[3][0] == x[3][1];
+        for (int end = 0; end < (still ? 1 : 2); ++end) {
+            const geometry::ClosestPoints c = closest_points(type, {x[0][end], x[1][end], x[2][end], x[3][end]});
+            const double d = std::sqrt(c.distance_squared);
+            if (still || d == 0) return d - lost_;
+            best = std::max(best, std::min(d, separation(c.difference / d, x, n, 1 - end)));
+            if (best - lost_ > margin_) break;
+        }
+        return best - lost_;
+    }
+
+    void add(std::vector<PrimitivePair>& list, int i, int j, PairType type, const std::array<Ends, 4>& x) const {
+        const double d = least_distance(type, x);
+        if (d + lost_ <= margin_) list.push_back({i, j, d});
+    }
+
+    void visit_elements(const HierarchyElement& ea, const Corners& ca, const HierarchyElement& eb) {
+        const Corners cb = corners(b_, eb);
+        if (boxes_apart(ca, ea.vertex_count, cb, eb.vertex_count)) return;
         if (eb.triangle >= 0)
             for (int k = 0; k < ea.owned_vertex_count; ++k) {
                 const int v = ea.owned_vertices[k];
-                const double d = geometry::point_triangle_distance_squared(vertex(body_a_, pose_a_, v), cb[0], cb[1], cb[2]);
-                if (d <= bound_squared) out_.vertex_triangle.push_back({v, eb.triangle, std::sqrt(d)});
+                add(out_.vertex_triangle, v, eb.triangle, PairType::point_triangle, {ends(a_, v), cb[0], cb[1], cb[2]});
             }
         if (ea.triangle >= 0)
             for (int k = 0; k < eb.owned_vertex_count; ++k) {
                 const int v = eb.owned_vertices[k];
-                const double d = geometry::point_triangle_distance_squared(vertex(body_b_, pose_b_, v), ca[0], ca[1], ca[2]);
-                if (d <= bound_squared) out_.triangle_vertex.push_back({ea.triangle, v, std::sqrt(d)});
+                add(out_.triangle_vertex, ea.triangle, v, PairType::point_triangle, {ends(b_, v), ca[0], ca[1], ca[2]});
             }
         for (int k = 0; k < ea.owned_edge_count; ++k) {
-            const auto& edge_a = body_a_.mesh.edges[ea.owned_edges[k]];
-            const Vector3 a0 = vertex(body_a_, pose_a_, edge_a[0]), a1 = vertex(body_a_, pose_a_, edge_a[1]);
+            const auto& edge_a = a_.body->mesh.edges[ea.owned_edges[k]];
+            const Ends a0 = ends(a_, edge_a[0]), a1 = ends(a_, edge_a[1]);
             for (int l = 0; l < eb.owned_edge_count; ++l) {
-                const auto& edge_b = body_b_.mesh.edges[eb.owned_edges[l]];
-                const Vector3 b0 = vertex(body_b_, pose_b_, edge_b[0]), b1 = vertex(body_b_, pose_b_, edge_b[1]);
-                const double d = geometry::edge_edge_distance_squared(a0, a1, b0, b1);
-                if (d <= bound_squared) out_.edge_edge.push_back({ea.owned_edges[k], eb.owned_edges[l], std::sqrt(d)});
+                const auto& edge_b = b_.body->mesh.edges[eb.owned_edges[l]];
+                add(out_.edge_edge, ea.owned_edges[k], eb.owned_edges[l], PairType::edge_edge, {a0, a1, ends(b_, edge_b[0]), ends(b_, edge_b[1])});
             }
         }
     }
 
-    const model::Body &body_a_, &body_b_;
-    const Pose &pose_a_, &pose_b_;
+    const SweptBody &a_, &b_;
     const MotionAllowance &allow_a_, &allow_b_;
     const double activation_;
-    const RelativePose relative_;
+    std::array<Axis, 6> axes_;
+    double reach_ = 0, world_size_ = 0;
+    double margin_ = 0, lost_ = 0;  // of the pair of leaves being visited
     BodyPairCandidates out_;
 };
 
 }  // namespace
 
-Candidates find_candidates(const model::Model& model, const std::vector<Pose>& poses, const std::vector<MotionAllowance>& allowances) {
-    Candidates candidates{{}, poses, allowances};
+Candidates find_candidates(const model::Model& model, const std::vector<kinematics::PathSegment>& segments,
+                           const std::vector<MotionAllowance>& allowances) {
+    Candidates candidates{{}, {}, allowances};
+    std::vector<SweptBody> swept;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        swept.push_back(swept_body(model.bodies[i], segments[i]));
+        candidates.poses.push_back(swept.back().start);
+    }
     const int n = static_cast<int>(model.bodies.size());
     for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b) {
             if (!model::may_collide(model, a, b)) continue;
-            BodyPairCandidates pair = PairSearch(model, poses, allowances, a, b).run();
-            if (!pair.empty()) candidates.pairs.push_back(std::move(pair));
+            BodyPairCandidates pair = PairSearch(swept[a], swept[b], model.dmin + model.dhat, allowances[a], allowances[b]).run();
+            if (pair.empty()) continue;
+            pair.a = a;
+            pair.b = b;
+            candidates.pairs.push_back(std::move(pair));
         }
     return candidates;
+}
+
+Candidates find_candidates(const model::Model& model, const std::vector<Pose>& poses, const std::vector<MotionAllowance>& allowances) {
+    std::vector<kinematics::PathSegment> segments(poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) segments[i] = {poses[i].rotation, Vector3::Zero(), Vector3::Zero(), poses[i].position, Vector3::Zero()};
+    return find_candidates(model, segments, allowances);
 }
 
 namespace {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Broad phase: every pair of primitives of different bodies that could come within the activation distance while the bodies move no
-/// more than an allowance from where the candidates were found. Found by descending the bodies' hierarchies two at a time.
+/// Broad phase: every pair of primitives of different bodies that could come within the activation distance while the bodies move along
+/// given path segments, and no more than an allowance away from them. Found by descending the bodies' hierarchies two at a time.
+///
+/// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
+/// (method.md section 7, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that move straight is
+/// concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay apart.
 #pragma once
 
 #include <array>
@@ -17,7 +21,8 @@ struct MotionAllowance {
     double rotation = 0;     ///< [rad]
 };
 
-/// Two primitives by index into their bodies' meshes, and how far apart they were when found: what has moved less since needs no second look.
+/// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left those by
+/// less, the pair needs no second look.
 struct PrimitivePair {
     int a = 0, b = 0;
     double distance = 0;  ///< [m]
@@ -34,22 +39,27 @@ struct BodyPairCandidates {
 
 struct Candidates {
     std::vector<BodyPairCandidates> pairs;            ///< sorted by (a, b)
-    std::vector<kinematics::Pose> poses;              ///< where they were found
+    std::vector<kinematics::Pose> poses;              ///< a configuration on the segments that they were found along (at first, the start).
+                                                      ///< Whoever moves along the segments may move it too: allowances count from here
     std::vector<MotionAllowance> allowances;          ///< per body
 };
 
-/// All pairs whose distance is at most dmin + dhat + (allowances of both primitives).
+/// All pairs whose distance, somewhere along the segments, is at most dmin + dhat + (allowances of both primitives).
+Candidates find_candidates(const model::Model& model, const std::vector<kinematics::PathSegment>& segments,
+                           const std::vector<MotionAllowance>& allowances);
+
+/// The same at a configuration.
 Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses,
                            const std::vector<MotionAllowance>& allowances);
 
-/// Upper bounds of how far any point of each body is from where the candidates were found, [m].
+/// Upper bounds of how far any point of each body is from candidates.poses, [m].
 std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
 /// The same over the whole of each segment.
 std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
-/// Largest fraction of the segments along which the candidates are complete (up to the activation distance). Each body may have moved since
-/// they were found, and moves along its segment now: completeness holds while both together stay within its allowance.
+/// Largest fraction of the segments along which the candidates are complete (up to the activation distance): while each body stays within its
+/// allowance of candidates.poses.
 double covered_fraction(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 }  // namespace fettle::core::contact

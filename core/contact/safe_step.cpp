@@ -24,7 +24,7 @@ public:
         for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
     }
 
-    // `moved`: how far apart the pair can have come since the candidates were found, over the whole segments.
+    // `moved`: how far apart the pair can be from where the candidates were found, over the whole segments.
     void visit(const BodyPairCandidates& list, double moved) {
         const double reach = model_.dmin + limits_.kept_most + moved;
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
@@ -83,18 +83,18 @@ private:
 
 }  // namespace
 
-SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
+SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments,
+                           const std::vector<double>& moved) {
     StepSearch search(model, segments, {0.1, 0.25 * model.dhat});
-    const std::vector<double> moved = displacements(model, candidates, segments);
     for (const BodyPairCandidates& list : candidates.pairs) search.visit(list, moved[list.a] + moved[list.b]);
     return search.result();
 }
 
-bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
+bool is_path_clear(const model::Model& model, const std::vector<PathSegment>& segments) {
+    const Candidates candidates = find_candidates(model, segments, std::vector<MotionAllowance>(segments.size()));
     StepSearch search(model, segments, {0.01, 0.01 * model.dhat});
-    const std::vector<double> moved = displacements(model, candidates, segments);
     for (const BodyPairCandidates& list : candidates.pairs) {
-        search.visit(list, moved[list.a] + moved[list.b]);
+        search.visit(list, 0);
         if (search.result().fraction < 1) return false;
     }
     return true;

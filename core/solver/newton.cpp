@@ -53,8 +53,8 @@ public:
         result_.path.push_back(points_);
     }
 
-    NewtonResult run(const std::vector<MotionAllowance>& expected_motion) {
-        find_candidates(expected_motion);
+    NewtonResult run() {
+        find_candidates(segments_to(points_));
         value_ = energy::incremental_potential(problem_, result_.poses, candidates_);
         while (iterate()) {
         }
@@ -70,15 +70,16 @@ private:
         return false;
     }
 
-    void find_candidates(const std::vector<MotionAllowance>& expected) {
-        std::vector<MotionAllowance> allowances(expected.size());
-        for (std::size_t i = 0; i < expected.size(); ++i) {
+    // The allowance lets later, shorter steps do without a new search.
+    void find_candidates(const std::vector<PathSegment>& segments) {
+        std::vector<MotionAllowance> allowances(segments.size());
+        for (std::size_t i = 0; i < segments.size(); ++i) {
             const model::Body& body = model_.bodies[i];
             if (body.type == scene::BodyType::static_body) continue;
-            allowances[i].translation = 1.25 * expected[i].translation + 0.25 * model_.dhat;
-            allowances[i].rotation = 1.25 * expected[i].rotation + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
+            allowances[i].translation = 0.1 * segments[i].position_step.norm() + 0.25 * model_.dhat;
+            allowances[i].rotation = 0.1 * segments[i].rotation_vector_step.norm() + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
         }
-        candidates_ = contact::find_candidates(model_, result_.poses, allowances);
+        candidates_ = contact::find_candidates(model_, segments, allowances);
     }
 
     // One Newton iteration. @return whether to go on.
@@ -225,24 +226,13 @@ private:
         return segments;
     }
 
-    // Where contact stops the step within what the candidates cover, no wider search is needed: long first steps are common.
+    // How far all bodies may go. Candidates are searched for anew, along the whole segments, when those at hand do not cover them.
     contact::SafeStep safe_step(const Direction& direction) {
         const std::vector<PathSegment> segments = segments_to(moved(direction, 1));
-        const double covered = contact::covered_fraction(candidates_, segments);
-        if (covered > 0 && covered < 1) {
-            std::vector<PathSegment> part = segments;
-            for (PathSegment& s : part) s = sub_segment(s, 0, covered);
-            contact::SafeStep safe = contact::longest_safe_step(model_, candidates_, part);
-            safe.fraction *= covered;
-            if (safe.fraction < covered) return safe;
-        }
-        if (covered < 1) {
-            std::vector<MotionAllowance> expected(points_.size());
-            for (std::size_t i = 0; i < points_.size(); ++i)
-                expected[i] = {segments[i].position_step.norm(), segments[i].rotation_vector_step.norm()};
-            find_candidates(expected);
-        }
-        return contact::longest_safe_step(model_, candidates_, segments);
+        on_segments_ = contact::covered_fraction(candidates_, segments) < 1;
+        if (on_segments_) find_candidates(segments);
+        return contact::longest_safe_step(model_, candidates_, segments,
+                                          on_segments_ ? std::vector<double>(segments.size(), 0) : displacements(model_, candidates_, segments));
     }
 
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
@@ -255,6 +245,7 @@ private:
         for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
             std::vector<ChartPoint> trial = moved(direction, fraction);
             std::vector<Pose> poses = poses_of(problem_, trial);
+            if (on_segments_) candidates_.poses = poses;
             const double value = energy::incremental_potential(problem_, poses, candidates_);
             const double change = value - value_ - penalty_ * fraction * remaining;
             if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
@@ -264,6 +255,7 @@ private:
             result_.path.push_back(points_);
             return fraction;
         }
+        if (on_segments_) candidates_.poses = result_.poses;
         return 0;
     }
 
@@ -328,6 +320,7 @@ private:
     std::vector<ChartPoint> points_;
     contact::Candidates candidates_;
     contact::ContactSet contacts_;
+    bool on_segments_ = false;  // were the candidates found along the segments of this search?
     contact::SafeStep limiting_;
     double value_ = 0;
     double penalty_ = 0;
@@ -340,9 +333,8 @@ private:
 
 }  // namespace
 
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const std::vector<MotionAllowance>& expected_motion,
-                      const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options) {
-    return Minimiser(problem, targets, dofs, linear, options).run(expected_motion);
+NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options) {
+    return Minimiser(problem, targets, dofs, linear, options).run();
 }
 
 }  // namespace fettle::core::solver

@@ -39,7 +39,6 @@ struct NewtonResult {
 
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
 /// @param linear   kept by the caller from step to step (its symbolic factor is reused).
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const std::vector<contact::MotionAllowance>& expected_motion,
-                      const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options);
+NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options);
 
 }  // namespace fettle::core::solver

@@ -6,29 +6,8 @@
 namespace fettle::core::stepper {
 namespace {
 
-using contact::MotionAllowance;
 using kinematics::ChartPoint;
 using kinematics::PathSegment;
-
-// How far the bodies are likely to go: what they would do without contact.
-std::vector<MotionAllowance> expected_motion(const model::Model& model, const StepState& state, const std::vector<Vector6>& targets) {
-    const double h = model.timestep;
-    std::vector<MotionAllowance> out(model.bodies.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const model::Body& body = model.bodies[i];
-        Vector3 translation = h * state.velocities[i].col(3) + h * h * model.gravity;
-        Vector3 rotation = Vector3::Zero();
-        const Matrix3 spin = h * state.velocities[i].leftCols<3>() * state.poses[i].rotation.transpose();
-        rotation << 0.5 * (spin(2, 1) - spin(1, 2)), 0.5 * (spin(0, 2) - spin(2, 0)), 0.5 * (spin(1, 0) - spin(0, 1));
-        for (int k = 0; k < 6; ++k) {
-            if (model::is_free(body, k)) continue;
-            if (k < 3) translation[k] = targets[i][k] - state.poses[i].position[k];
-            else rotation[k - 3] = targets[i][k];
-        }
-        out[i] = {translation.norm(), rotation.norm()};
-    }
-    return out;
-}
 
 std::vector<PathSegment> straight_segments(const model::Model& model, const StepState& state, const std::vector<ChartPoint>& start,
                                            const std::vector<ChartPoint>& end) {
@@ -45,13 +24,7 @@ TrajectoryStep stored_path(const model::Model& model, const StepState& state, co
         std::size_t to = accepted.size() - 1;
         for (; to > from + 1; to = from + 1 + (to - from - 1) / 2) {
             const std::vector<PathSegment> segments = straight_segments(model, state, accepted[from], accepted[to]);
-            std::vector<kinematics::Pose> poses;
-            std::vector<MotionAllowance> allowances;
-            for (const PathSegment& s : segments) {
-                poses.push_back(pose_at(s, 0));
-                allowances.push_back({s.position_step.norm() * (1 + 1e-9), s.rotation_vector_step.norm() * (1 + 1e-9)});
-            }
-            if (contact::is_path_clear(model, contact::find_candidates(model, poses, allowances), segments)) break;
+            if (contact::is_path_clear(model, segments)) break;
         }
         out.nodes.push_back(accepted[to]);
         from = to;
@@ -101,7 +74,7 @@ StepResult step(const model::Model& model, const StepState& state, StepWorkspace
     newton.to_rounding = options.for_gradient;
     newton.should_stop = options.should_stop;
     const solver::NewtonResult solved =
-        solver::minimise(problem, targets, expected_motion(model, state, targets), workspace.dofs, workspace.linear, newton);
+        solver::minimise(problem, targets, workspace.dofs, workspace.linear, newton);
 
     StepResult result;
     result.status = simulation_status(solved.status);
