@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// The broad phase against all pairs of primitives: nothing that comes within the activation distance is missing, and stored distances are bounds.
+#include "fettle/core/contact/candidates.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/contact/contact_pair.hpp"
+
+using namespace fettle;
+using namespace fettle::core;
+using namespace fettle::core::contact;
+
+namespace {
+
+using Key = std::tuple<int, int, int>;  // kind, primitive of a, primitive of b
+
+geometry::Mesh random_blob(std::mt19937& random, int vertices, double size) {
+    std::uniform_real_distribution<double> u(-1, 1);
+    std::uniform_int_distribution<int> index(0, vertices - 1);
+    Matrix3X x(3, vertices);
+    for (int i = 0; i < vertices; ++i) x.col(i) = size * Vector3(u(random), u(random), u(random));
+    std::vector<geometry::Triangle> triangles;
+    for (int i = 0; i + 2 < vertices; ++i) triangles.push_back({i, i + 1, i + 2});
+    return geometry::make_mesh("blob", x, triangles);
+}
+
+model::Model two_bodies(std::mt19937& random, double dhat) {
+    model::Model model;
+    model.dhat = dhat;
+    for (const char* name : {"a", "b"}) {
+        model::Body body;
+        body.name = name;
+        body.mesh = random_blob(random, 14, 0.3);
+        for (int i = 0; i < body.mesh.vertices.cols(); ++i) body.radius = std::max(body.radius, body.mesh.vertices.col(i).norm());
+        body.hierarchy = std::make_shared<BodyHierarchy>(body.mesh);
+        model.bodies.push_back(body);
+    }
+    return model;
+}
+
+// Distance of every pair of primitives at two poses.
+std::map<Key, double> all_distances(const model::Model& m, const std::vector<kinematics::Pose>& poses) {
+    std::map<Key, double> out;
+    const auto &a = m.bodies[0].mesh, &b = m.bodies[1].mesh;
+    const auto at_a = [&](int v) { return world_position(poses[0], a.vertices.col(v)); };
+    const auto at_b = [&](int v) { return world_position(poses[1], b.vertices.col(v)); };
+    for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t)
+        for (int v = 0; v < a.vertices.cols(); ++v)
+            out[{0, v, t}] = std::sqrt(geometry::point_triangle_distance_squared(at_a(v), at_b(b.triangles[t][0]), at_b(b.triangles[t][1]), at_b(b.triangles[t][2])));
+    for (int t = 0; t < static_cast<int>(a.triangles.size()); ++t)
+        for (int v = 0; v < b.vertices.cols(); ++v)
+            out[{1, t, v}] = std::sqrt(geometry::point_triangle_distance_squared(at_b(v), at_a(a.triangles[t][0]), at_a(a.triangles[t][1]), at_a(a.triangles[t][2])));
+    for (int i = 0; i < static_cast<int>(a.edges.size()); ++i)
+        for (int j = 0; j < static_cast<int>(b.edges.size()); ++j)
+            out[{2, i, j}] = std::sqrt(geometry::edge_edge_distance_squared(at_a(a.edges[i][0]), at_a(a.edges[i][1]), at_b(b.edges[j][0]), at_b(b.edges[j][1])));
+    return out;
+}
+
+std::map<Key, double> listed(const Candidates& candidates) {
+    std::map<Key, double> out;
+    for (const BodyPairCandidates& pair : candidates.pairs) {
+        const std::vector<PrimitivePair>* lists[] = {&pair.vertex_triangle, &pair.triangle_vertex, &pair.edge_edge};
+        for (int kind = 0; kind < 3; ++kind)
+            for (const PrimitivePair& p : *lists[kind]) {
+                CHECK(out.count({kind, p.a, p.b}) == 0);
+                out[{kind, p.a, p.b}] = p.distance;
+            }
+    }
+    return out;
+}
+
+kinematics::PathSegment random_segment(std::mt19937& random, double apart, double travel, double turn) {
+    std::normal_distribution<double> n;
+    const auto v = [&] { return Vector3(n(random), n(random), n(random)); };
+    return {kinematics::rotation(v()), 0.2 * v(), turn * v(), apart * v().normalized(), travel * v()};
+}
+
+}  // namespace
+
+TEST_CASE("no pair that comes close along the segments is missing", "[candidates]") {
+    std::mt19937 random(11);
+    int close = 0, dropped = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        const model::Model model = two_bodies(random, 0.05);
+        const double turn = trial % 3 == 0 ? 0 : 0.3 * (trial % 5);
+        const std::vector<kinematics::PathSegment> segments{random_segment(random, 0.3, 0.2, turn), random_segment(random, 0.4, 0.2, turn)};
+        const std::vector<MotionAllowance> allowances{{0.02, 0.03}, {0.01, 0.0}};
+        const std::map<Key, double> found = listed(find_candidates(model, segments, allowances));
+        for (int k = 0; k <= 40; ++k) {
+            const double s = k / 40.0;
+            const auto distances = all_distances(model, {pose_at(segments[0], s), pose_at(segments[1], s)});
+            for (const auto& [key, d] : distances) {
+                const auto at = found.find(key);
+                if (d <= model.dhat + 0.03) {
+                    ++close;
+                    REQUIRE(at != found.end());
+                }
+                if (at != found.end()) REQUIRE(at->second <= d);
+                dropped += at == found.end();
+            }
+        }
+    }
+    CHECK(close > 1000);
+    CHECK(dropped > 1000);  // the search does prune
+}
+
+TEST_CASE("candidates at a configuration hold the true distances", "[candidates]") {
+    std::mt19937 random(5);
+    const model::Model model = two_bodies(random, 0.2);
+    const std::vector<kinematics::Pose> poses{pose_at(random_segment(random, 0.3, 0, 0), 0), pose_at(random_segment(random, 0.3, 0, 0), 0)};
+    const Candidates candidates = find_candidates(model, poses, {{0, 0}, {0, 0}});
+    const auto found = listed(candidates);
+    int expected = 0;
+    for (const auto& [key, d] : all_distances(model, poses)) {
+        if (d > model.dhat) continue;
+        ++expected;
+        REQUIRE(found.count(key) == 1);
+        CHECK(found.at(key) == Approx(d).margin(1e-12));
+    }
+    CHECK(expected == static_cast<int>(found.size()));
+}
+
+TEST_CASE("coverage ends where a body leaves its allowance", "[candidates]") {
+    std::mt19937 random(3);
+    const model::Model model = two_bodies(random, 0.2);
+    const kinematics::Pose here{Matrix3::Identity(), Vector3(0.1, 0, 0)};
+    const Candidates candidates = find_candidates(model, std::vector<kinematics::Pose>{here, here}, {{0.1, 0.1}, {0, 0}});
+    const auto segment = [&](double travel, double turn) {
+        return std::vector<kinematics::PathSegment>{{here.rotation, Vector3::Zero(), Vector3(0, turn, 0), here.position, Vector3(travel, 0, 0)},
+                                                    {here.rotation, Vector3::Zero(), Vector3::Zero(), here.position, Vector3::Zero()}};
+    };
+    CHECK(covered_fraction(candidates, segment(0.09, 0.09)) == 1);
+    CHECK(covered_fraction(candidates, segment(0.2, 0)) == Approx(0.5));
+    CHECK(covered_fraction(candidates, segment(0.05, 0.4)) == Approx(0.25));
+}
