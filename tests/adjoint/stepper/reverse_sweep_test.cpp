@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+namespace fettle::tests::adjoint {
+namespace {
+
+using fettle::adjoint::reverse_sweep;
+using fettle::adjoint::tangent_sweep;
+
+core::stepper::Trajectory trajectory_of(const SweepScene& scene) {
+    core::stepper::SimulationOptions options;
+    options.steps = scene.steps;
+    options.for_gradient = true;
+    core::stepper::Simulation simulation = core::stepper::simulate(scene.model, options);
+    INFO(scene.name << ": " << simulation.report.message);
+    REQUIRE(simulation.report.status == core::stepper::SimulationStatus::ok);
+    return std::move(simulation.trajectory);
+}
+
+// Position component `axis` of `body` at the end.
+TrajectoryGradient end_position(const SweepScene& scene, int body, int axis) {
+    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, static_cast<int>(scene.model.bodies.size()));
+    seed.pose_bar.back()[body](axis, 3) = 1;
+    return seed;
+}
+
+}  // namespace
+
+TEST_CASE("the scenes reach every kind of contact", "[adjoint][stepper]") {
+    ContactCount sum;
+    for (const SweepScene& scene : all_scenes()) {
+        const ContactCount count = count_contacts(scene.model, trajectory_of(scene));
+        if (scene.name == "twisted pair") CHECK(count.mollified >= 20);
+        sum.vertex_face += count.vertex_face;
+        sum.edge_edge += count.edge_edge;
+        sum.mollified += count.mollified;
+    }
+    CHECK(sum.vertex_face > 300);
+    CHECK(sum.edge_edge > 300);
+    CHECK(sum.mollified > 30);
+}
+
+TEST_CASE("backwards and forwards agree", "[adjoint][stepper]") {
+    for (const SweepScene& scene : all_scenes()) {
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        std::mt19937_64 random(17);
+        std::vector<TrajectoryGradient> seeds;
+        for (int s = 0; s < 4; ++s) seeds.push_back(random_seed(scene, random));
+        const auto gradients = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(gradients);
+        for (const ParameterKind kind : all_kinds)
+            for (int trial = 0; trial < 3; ++trial) {
+                const ModelTangent direction = random_direction(scene, kind, random);
+                const auto tangents = tangent_sweep(scene.model, trajectory, direction);
+                REQUIRE(tangents);
+                Eigen::Vector4d backwards, forwards;
+                for (int s = 0; s < 4; ++s) {
+                    backwards[s] = pairing(scene, (*gradients)[s], direction);
+                    forwards[s] = pairing(seeds[s], trajectory, *tangents);
+                }
+                CAPTURE(scene.name, to_string(kind), backwards.transpose(), forwards.transpose());
+                CHECK((backwards - forwards).norm() <= 1e-10 * forwards.norm());
+                if (kind != ParameterKind::increments || scene.name != "free flight") CHECK(forwards.norm() > 0);
+            }
+        const ModelTangent direction = vertex_gradient_direction(scene, (*gradients)[0]);
+        const auto tangents = tangent_sweep(scene.model, trajectory, direction);
+        REQUIRE(tangents);
+        CAPTURE(scene.name);
+        CHECK(pairing(scene, (*gradients)[0], direction) == Approx(pairing(seeds[0], trajectory, *tangents)).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("many seeds give what each gives alone", "[adjoint][stepper]") {
+    const SweepScene scene = tilting_motor();
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    std::mt19937_64 random(2);
+    const std::vector<TrajectoryGradient> seeds{random_seed(scene, random), random_seed(scene, random)};
+    const auto together = reverse_sweep(scene.model, trajectory, seeds);
+    REQUIRE(together);
+    for (int s = 0; s < 2; ++s) {
+        const auto alone = reverse_sweep(scene.model, trajectory, {seeds[s]});
+        REQUIRE(alone);
+        for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
+            const auto &a = (*together)[s].bodies[i], &b = (*alone)[0].bodies[i];
+            CHECK((a.vertices_bar - b.vertices_bar).norm() <= 1e-12 * b.vertices_bar.norm());
+            CHECK((a.pose_start_bar - b.pose_start_bar).norm() <= 1e-12 * b.pose_start_bar.norm());
+        }
+    }
+    CHECK(reverse_sweep(scene.model, trajectory, {})->empty());
+}
+
+TEST_CASE("free fall has the derivatives of its closed form", "[adjoint][stepper]") {
+    // z_T = z_0 + v T + (g + f/m) h^2 N (N + 1)/2 for implicit Euler; the body is centred, so that it does not turn.
+    SweepScene scene{"fall", {}, 30};
+    scene.model.gravity = {0, 0, -9.81};
+    scene.model.timestep = 0.01;
+    scene.model.velocity_tolerance = 1e-6;
+    scene.model.kappa = 1e4;
+    scene.model.bodies.push_back(support::make_body("ball", support::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}), support::make_pose({0, 0, 0}, {1, 2, 30})));
+    support::set_velocity(scene.model.bodies[0], {0, 0, 3}, {0, 0, 0});
+    scene.model.bodies[0].force = {0, 0, 7};
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    const auto gradients = reverse_sweep(scene.model, trajectory, {end_position(scene, 0, 2)});
+    REQUIRE(gradients);
+    const fettle::adjoint::BodyGradient& bar = (*gradients)[0].bodies[0];
+    const double h = 0.01, n = scene.steps, time = n * h, fall = h * h * n * (n + 1) / 2, mass = 8;
+    CHECK(trajectory.poses.back()[0].position.z() == Approx(30 + 3 * time + (7 / mass - 9.81) * fall).epsilon(1e-12));
+    CHECK(bar.pose_start_bar(2, 3) == Approx(1).epsilon(1e-12));
+    CHECK(bar.velocity_start_bar(2, 3) == Approx(time).epsilon(1e-12));
+    CHECK((*gradients)[0].gravity_bar.z() == Approx(fall).epsilon(1e-12));
+    CHECK(bar.force_bar.z() == Approx(fall / mass).epsilon(1e-12));
+    // From P - P_hat, of size h^2 f/m = 1e-4 m at z = 30 m: ten digits.
+    CHECK(bar.density_bar == Approx(-fall * 7 / mass / 1000).epsilon(1e-9));
+    CHECK(std::abs((*gradients)[0].gravity_bar.x()) < 1e-14);
+}
+
+TEST_CASE("a scripted body has the derivatives of its script", "[adjoint][stepper]") {
+    SweepScene scene{"script", {}, 10};
+    scene.model.timestep = 0.1;
+    scene.model.kappa = 1e4;
+    scene.model.bodies.push_back(support::make_body("crank", support::box_mesh({0, 0, 0}, {1, 0.1, 0.1}), support::make_pose({0, 0, 0.3}, {1, 0, 0}),
+                                                    core::scene::BodyType::kinematic_body));
+    support::prescribe(scene.model.bodies[0], 1, 0.5);
+    support::prescribe(scene.model.bodies[0], 5, 2);
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    // J = height of the tip (1, 0, 0) over y: 0.5 T + sin(0.3 + 2 T).
+    TrajectoryGradient seed = end_position(scene, 0, 1);
+    seed.pose_bar.back()[0](1, 0) = 1;
+    const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
+    REQUIRE(gradients);
+    for (const Vector6& bar : (*gradients)[0].bodies[0].increment_bar) {
+        CHECK(bar[1] == Approx(1).epsilon(1e-13));
+        CHECK(bar[5] == Approx(std::cos(2.3)).epsilon(1e-12));
+    }
+    CHECK((*gradients)[0].bodies[0].pose_start_bar(1, 3) == Approx(1).epsilon(1e-13));
+}
+
+TEST_CASE("moving everything moves the result as much", "[adjoint][stepper]") {
+    const SweepScene scene = stack();
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    const Vector3 shift(0.3, -0.2, 0.5), turn(0.4, 0.7, -0.2);
+    ModelTangent direction = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    direction.gravity_dot = turn.cross(scene.model.gravity);
+    for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
+        const core::model::Body& body = scene.model.bodies[i];
+        direction.bodies[i].pose_start_dot << shift + turn.cross(body.pose_start.position), turn;
+        direction.bodies[i].velocity_start_dot = cross_matrix(turn) * body.velocity_start;
+        direction.bodies[i].force_dot = turn.cross(body.force);
+    }
+    const auto tangents = tangent_sweep(scene.model, trajectory, direction);
+    REQUIRE(tangents);
+    for (std::size_t t = 0; t < trajectory.poses.size(); ++t)
+        for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
+            Vector6 expected;
+            expected << shift + turn.cross(trajectory.poses[t][i].position), turn;
+            CAPTURE(t, i);
+            CHECK(((*tangents)[t][i] - expected).norm() < 1e-9);
+        }
+    std::mt19937_64 random(5);
+    const TrajectoryGradient seed = random_seed(scene, random);
+    const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
+    REQUIRE(gradients);
+    CHECK(pairing(scene, (*gradients)[0], direction) == Approx(pairing(seed, trajectory, *tangents)).epsilon(1e-10));
+}
+
+TEST_CASE("another frame for a body's shape is the same body", "[adjoint][stepper]") {
+    // Vertices move by c, the start pose by - R c, the start velocity by - Rdot c: the world sees nothing.
+    SweepScene scene = stack();
+    const int body = 3;
+    scene.model.bodies[body].force.setZero();  // it acts at the reference point
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    const Vector3 c(0.02, -0.01, 0.03);
+    ModelTangent direction = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    direction.bodies[body].vertices_dot.colwise() += c;
+    direction.bodies[body].pose_start_dot.head<3>() = -scene.model.bodies[body].pose_start.rotation * c;
+    direction.bodies[body].velocity_start_dot.col(3) = -scene.model.bodies[body].velocity_start.leftCols<3>() * c;
+    const auto tangents = tangent_sweep(scene.model, trajectory, direction);
+    REQUIRE(tangents);
+    for (std::size_t t = 0; t < trajectory.poses.size(); ++t)
+        for (int i = 0; i < static_cast<int>(scene.model.bodies.size()); ++i) {
+            Vector6 expected = Vector6::Zero();
+            if (i == body) expected.head<3>() = -trajectory.poses[t][i].rotation * c;
+            CAPTURE(t, i);
+            CHECK(((*tangents)[t][i] - expected).norm() < 1e-9 * c.norm());
+        }
+}
+
+TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper]") {
+    SweepScene scene = free_flight();
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    const std::vector<TrajectoryGradient> seeds{end_position(scene, 0, 0)};
+    SECTION("mass from elsewhere") {
+        scene.model.bodies[0].moments(3, 3) *= 1.1;
+        const auto result = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE_FALSE(result);
+        CHECK(result.errors()[0].code == core::base::ErrorCode::unsupported);
+        CHECK(result.errors()[0].message.find("brick") != std::string::npos);
+        CHECK_FALSE(tangent_sweep(scene.model, trajectory, fettle::adjoint::zero_model_tangent(scene.model, scene.steps)));
+    }
+    SECTION("a full turn in one step") {
+        core::stepper::Trajectory fast = trajectory;
+        fast.steps[3].nodes.back()[0].rotation_vector = {0, 6.3, 0};
+        const auto result = reverse_sweep(scene.model, fast, seeds);
+        REQUIRE_FALSE(result);
+        CHECK(result.errors()[0].code == core::base::ErrorCode::out_of_range);
+        CHECK(result.errors()[0].where == "step 3");
+    }
+    SECTION("a body without mass") {
+        scene.model.bodies[0].density = 0;
+        support::refresh(scene.model.bodies[0]);
+        const auto result = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE_FALSE(result);
+        CHECK(result.errors()[0].message.find("singular") != std::string::npos);
+    }
+}
+
+}  // namespace fettle::tests::adjoint

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+
+#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "fettle/core/contact/contact_set.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+namespace fettle::tests::adjoint {
+namespace {
+
+using core::kinematics::Pose;
+using core::model::Body;
+using core::model::Model;
+using core::scene::BodyType;
+using support::box_mesh;
+using support::make_body;
+using support::make_pose;
+using support::prescribe;
+
+constexpr double size = 0.05;  // of the parts in these scenes [m]
+
+Model base_model() {
+    Model model;
+    model.gravity = {0.3, -0.2, -9.81};
+    model.timestep = 0.01;
+    model.dhat = 2e-3;
+    model.kappa = 2e4;
+    model.velocity_tolerance = 1e-6;
+    model.diagonal = 1;
+    return model;
+}
+
+Matrix34 velocity_matrix(const Vector6& tangent, const Matrix3& rotation) {
+    Matrix34 p;
+    p << cross_matrix(tangent.tail<3>()) * rotation, tangent.head<3>();
+    return p;
+}
+
+}  // namespace
+
+SweepScene free_flight() {
+    SweepScene scene{"free flight", base_model(), 12};
+    scene.model.bodies.push_back(make_body("brick", box_mesh({-0.02, -0.05, 0.01}, {0.06, 0.03, 0.04}), make_pose({0.3, -0.4, 0.8}, {0, 0, 1})));
+    support::set_velocity(scene.model.bodies[0], {1, 0.5, 2}, {4, -3, 7});
+    scene.model.bodies[0].force = {0.3, 0.1, -0.2};
+    return scene;
+}
+
+SweepScene stack() {
+    SweepScene scene{"stack", base_model(), 16};
+    auto& bodies = scene.model.bodies;
+    bodies.push_back(support::ground_plate());
+    bodies.push_back(make_body("lower", box_mesh({-0.05, -0.04, -0.03}, {0.05, 0.04, 0.05}), make_pose({0.02, 0.01, 0.1}, {0, 0, 0.035})));
+    bodies.push_back(make_body("upper", box_mesh({-0.03, -0.05, -0.02}, {0.04, 0.03, 0.03}), make_pose({0.3, 0.5, 0.4}, {0.015, 0.01, 0.135})));
+    bodies.push_back(make_body("side", box_mesh({-0.02, -0.03, -0.03}, {0.03, 0.03, 0.03}), make_pose({0.01, -0.02, 0.11}, {0.0885, 0.01, 0.034})));
+    support::set_velocity(bodies[2], {0.2, 0.1, -0.4}, {1, -2, 0.5});
+    support::set_velocity(bodies[3], {-0.3, 0, 0}, {0, 0, 0});
+    bodies[2].force = {0.2, -0.1, 0.1};
+    return scene;
+}
+
+SweepScene twisted_pair() {
+    SweepScene scene{"twisted pair", base_model(), 15};
+    auto& bodies = scene.model.bodies;
+    bodies.push_back(make_body("lower", box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}), {}, BodyType::static_body));
+    bodies.push_back(make_body("upper", box_mesh({-0.0503, -0.0496, 0.001}, {0.0494, 0.0505, 0.06}), make_pose({0.003, -0.002, 0.011}, {0, 0, 0.0008})));
+    support::set_velocity(bodies[1], {0.01, -0.005, -0.05}, {0, 0, -0.15});
+    return scene;
+}
+
+SweepScene tilting_motor() {
+    SweepScene scene{"tilting motor", base_model(), 20};
+    auto& bodies = scene.model.bodies;
+    bodies.push_back(support::ground_plate());
+    bodies.push_back(make_body("paddle", box_mesh({-0.02, -0.01, -0.02}, {0.12, 0.012, 0.02}), make_pose({0.05, -0.03, 0.2}, {0, 0, 0.032})));
+    bodies.push_back(make_body("box", box_mesh({-0.02, -0.02, -0.021}, {0.02, 0.025, 0.03}), make_pose({0, 0, 0.3}, {0.07, 0.075, 0.0222})));
+    prescribe(bodies[1], 5, 6.0);
+    support::set_velocity(bodies[1], {0, 0, -0.1}, {0.5, 0.2, 6});
+    return scene;
+}
+
+SweepScene double_motor() {
+    SweepScene scene{"double motor", base_model(), 20};
+    auto& bodies = scene.model.bodies;
+    bodies.push_back(support::ground_plate());
+    bodies.push_back(make_body("rocker", box_mesh({-0.06, -0.03, -0.02}, {0.08, 0.02, 0.03}), make_pose({0.1, 0.2, -0.3}, {0, 0, 0.0404})));
+    bodies.push_back(make_body("rider", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.1, 0.25, 0.3}, {0.01, 0, 0.0982})));
+    prescribe(bodies[1], 3, -1.5);
+    prescribe(bodies[1], 5, 4.0);
+    return scene;
+}
+
+SweepScene pusher() {
+    SweepScene scene{"pusher", base_model(), 20};
+    auto& bodies = scene.model.bodies;
+    bodies.push_back(make_body("pusher", box_mesh({-0.03, -0.04, -0.02}, {0.03, 0.04, 0.02}), make_pose({0, 0, 0.1}, {0, 0, 0.04}), BodyType::kinematic_body));
+    bodies.push_back(make_body("slider", box_mesh({-0.02, -0.03, -0.02}, {0.03, 0.03, 0.025}), make_pose({0.1, 0.05, -0.1}, {0.062, 0.005, 0.04})));
+    bodies.push_back(make_body("last", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.4, 0.3, 0.5}, {0.13, 0.01, 0.045})));
+    prescribe(bodies[0], 0, 0.5);
+    prescribe(bodies[0], 3, 1.0);
+    prescribe(bodies[0], 5, 1.2);
+    prescribe(bodies[1], 2);
+    prescribe(bodies[1], 4);
+    prescribe(bodies[2], 2, -0.02);
+    return scene;
+}
+
+std::vector<SweepScene> all_scenes() { return {free_flight(), stack(), twisted_pair(), tilting_motor(), double_motor(), pusher()}; }
+
+ContactCount count_contacts(const Model& model, const core::stepper::Trajectory& trajectory) {
+    ContactCount count;
+    for (std::size_t t = 1; t < trajectory.poses.size(); ++t) {
+        const auto candidates = core::contact::find_candidates(model, trajectory.poses[t], std::vector<core::contact::MotionAllowance>(model.bodies.size()));
+        for (const auto& list : core::contact::find_contacts(model, candidates, trajectory.poses[t]).pairs)
+            for (const core::contact::ContactPair& pair : list.contacts) {
+                if (pair.type == core::contact::PairType::point_triangle) ++count.vertex_face;
+                else if (fettle::adjoint::contact::is_mollified(pair)) ++count.mollified;
+                else ++count.edge_edge;
+            }
+    }
+    return count;
+}
+
+const char* to_string(ParameterKind kind) {
+    switch (kind) {
+        case ParameterKind::vertices: return "vertices";
+        case ParameterKind::pose_start: return "pose_start";
+        case ParameterKind::velocity_start: return "velocity_start";
+        case ParameterKind::density: return "density";
+        case ParameterKind::gravity: return "gravity";
+        case ParameterKind::force: return "force";
+        case ParameterKind::increments: return "increments";
+    }
+    return "unknown";
+}
+
+ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto vector = [&](double scale) { return Vector3(scale * Vector3::NullaryExpr([&] { return uniform(random); })); };
+    ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    if (kind == ParameterKind::gravity) d.gravity_dot = vector(10);
+    for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+        const Body& body = scene.model.bodies[i];
+        fettle::adjoint::BodyTangent& dot = d.bodies[i];
+        if (kind == ParameterKind::vertices)
+            for (Eigen::Index j = 0; j < dot.vertices_dot.cols(); ++j) dot.vertices_dot.col(j) = vector(size);
+        if (kind == ParameterKind::pose_start) dot.pose_start_dot << vector(size), vector(1);
+        if (kind == ParameterKind::velocity_start) {
+            Vector6 velocity;
+            velocity << vector(1), vector(10);
+            dot.velocity_start_dot = velocity_matrix(velocity, body.pose_start.rotation);
+        }
+        if (kind == ParameterKind::density) dot.density_dot = 1000 * uniform(random);
+        if (kind == ParameterKind::force) dot.force_dot = vector(1);
+        if (kind != ParameterKind::increments) continue;
+        for (Vector6& increment : dot.increment_dot)
+            for (int k = 0; k < 6; ++k)
+                if (!is_free(body, k)) increment[k] = (k < 3 ? 0.1 * size : 0.1) * uniform(random);
+    }
+    return d;
+}
+
+ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradient& gradient) {
+    ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    double largest = 0;
+    for (const auto& body : gradient.bodies) largest = std::max(largest, body.vertices_bar.cwiseAbs().maxCoeff());
+    for (std::size_t i = 0; i < d.bodies.size(); ++i) d.bodies[i].vertices_dot = (size / largest) * gradient.bodies[i].vertices_bar;
+    return d;
+}
+
+Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
+    Model model = scene.model;
+    model.gravity += s * direction.gravity_dot;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        Body& body = model.bodies[i];
+        const fettle::adjoint::BodyTangent& dot = direction.bodies[i];
+        body.mesh.vertices += s * dot.vertices_dot;
+        body.density += s * dot.density_dot;
+        body.force += s * dot.force_dot;
+        body.velocity_start += s * dot.velocity_start_dot;
+        body.pose_start.position += s * dot.pose_start_dot.head<3>();
+        body.pose_start.rotation = core::kinematics::rotation(s * dot.pose_start_dot.tail<3>()) * body.pose_start.rotation;
+        support::refresh(body);
+        for (int k = 0; k < 6; ++k) {
+            if (is_free(body, k)) continue;
+            core::scene::MotionCurve curve;
+            double sum = 0;
+            for (int t = 0; t <= scene.steps; ++t) {
+                curve.times.push_back(t * model.timestep);
+                curve.values.push_back(core::scene::motion_value(*scene.model.bodies[i].prescribed[k], t * model.timestep) + s * sum);
+                if (t < scene.steps) sum += dot.increment_dot[t][k];
+            }
+            body.prescribed[k] = curve;
+        }
+    }
+    return model;
+}
+
+double pairing(const SweepScene& scene, const ModelGradient& gradient, const ModelTangent& direction) {
+    double sum = gradient.gravity_bar.dot(direction.gravity_dot);
+    for (std::size_t i = 0; i < direction.bodies.size(); ++i) {
+        const fettle::adjoint::BodyGradient& bar = gradient.bodies[i];
+        const fettle::adjoint::BodyTangent& dot = direction.bodies[i];
+        sum += bar.vertices_bar.cwiseProduct(dot.vertices_dot).sum() + bar.density_bar * dot.density_dot + bar.force_bar.dot(dot.force_dot);
+        sum += bar.pose_start_bar.cwiseProduct(velocity_matrix(dot.pose_start_dot, scene.model.bodies[i].pose_start.rotation)).sum();
+        sum += bar.velocity_start_bar.cwiseProduct(dot.velocity_start_dot).sum();
+        for (int t = 0; t < scene.steps; ++t) sum += bar.increment_bar[t].dot(dot.increment_dot[t]);
+    }
+    return sum;
+}
+
+TrajectoryGradient random_seed(const SweepScene& scene, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, static_cast<int>(scene.model.bodies.size()));
+    for (auto& bodies : seed.pose_bar)
+        for (Matrix34& bar : bodies) {
+            bar = Matrix34::NullaryExpr([&] { return uniform(random); });
+            bar.col(3) /= size;
+        }
+    return seed;
+}
+
+double objective(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory) {
+    double sum = 0;
+    for (std::size_t t = 0; t < trajectory.poses.size(); ++t)
+        for (std::size_t i = 0; i < trajectory.poses[t].size(); ++i)
+            sum += weights.pose_bar[t][i].cwiseProduct(pose_matrix(trajectory.poses[t][i])).sum();
+    return sum;
+}
+
+double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory, const std::vector<std::vector<Vector6>>& tangents) {
+    double sum = 0;
+    for (std::size_t t = 0; t < tangents.size(); ++t)
+        for (std::size_t i = 0; i < tangents[t].size(); ++i)
+            sum += weights.pose_bar[t][i].cwiseProduct(velocity_matrix(tangents[t][i], trajectory.poses[t][i].rotation)).sum();
+    return sum;
+}
+
+}  // namespace fettle::tests::adjoint
