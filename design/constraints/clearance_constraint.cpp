@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/constraints/clearance_constraint.hpp"
 
+#include <algorithm>
+
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
 
 namespace fettle::design::constraints {
@@ -21,7 +23,7 @@ core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int fi
 
 std::pair<int, int> window_steps(int steps, int window, int windows) {
     const auto edge = [&](int w) { return static_cast<int>(static_cast<long>(w) * steps / windows); };
-    return {edge(window), edge(window + 1)};
+    return {edge(window), std::max(edge(window + 1), edge(window) + 1)};
 }
 
 objectives::Quantity ClearanceConstraint::value(const objectives::Simulated& s) const {

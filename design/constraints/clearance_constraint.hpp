@@ -29,7 +29,7 @@ private:
     ClearanceRequirement requirement_;
 };
 
-/// Steps [first, last) of window w of n: [floor(w steps / n), floor((w + 1) steps / n)).
+/// Steps [first, last) of window w of n: [floor(w steps / n), floor((w + 1) steps / n)), and one step where that is empty (n > steps).
 std::pair<int, int> window_steps(int steps, int window, int windows);
 
 }  // namespace fettle::design::constraints

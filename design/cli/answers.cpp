@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/answers.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::design::cli {
+
+using core::clearance::PairClearance;
+using core::clearance::PairStatus;
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json pair_json(const PairClearance& pair, const std::vector<std::string>& names) {
+    Json json;
+    json["a"] = names[static_cast<size_t>(pair.a)];
+    json["b"] = names[static_cast<size_t>(pair.b)];
+    json["minimum"] = pair.minimum;
+    json["lower"] = pair.lower;
+    json["upper"] = pair.upper;
+    json["status"] = core::clearance::to_string(pair.status);
+    json["time"] = pair.witness.time;
+    json["point_a"] = vector_json(pair.witness.point_a);
+    json["point_b"] = vector_json(pair.witness.point_b);
+    return json;
+}
+
+PairStatus overall_status(const std::vector<PairClearance>& pairs) {
+    PairStatus status = PairStatus::clear;
+    for (const PairClearance& pair : pairs) {
+        if (pair.status == PairStatus::violated) return PairStatus::violated;
+        if (pair.status == PairStatus::undecided) status = PairStatus::undecided;
+    }
+    return status;
+}
+
+Json clearance_json(const std::vector<PairClearance>& pairs, const std::vector<std::string>& names) {
+    Json json;
+    double minimum = std::numeric_limits<double>::infinity(), least = minimum;
+    json["status"] = core::clearance::to_string(overall_status(pairs));
+    Json list = Json::array();
+    for (const PairClearance& pair : pairs) {
+        minimum = std::min(minimum, pair.minimum);
+        least = std::min(least, pair.lower);
+        list.push_back(pair_json(pair, names));
+    }
+    json["minimum"] = pairs.empty() ? Json() : Json(minimum);
+    json["least"] = pairs.empty() ? Json() : Json(least);
+    json["pairs"] = list;
+    return json;
+}
+
+std::string clearance_text(const std::vector<PairClearance>& pairs, const std::vector<std::string>& names, const std::string& unit,
+                           const Console& console) {
+    const double factor = 1 / core::base::metres_per_unit(unit).value();
+    std::string text = formatted("%-32s %12s %12s %12s   %-10s %9s   (%s, s)\n", "pair", "required", "at least", "at most", "status",
+                                 "time", unit.c_str());
+    for (const PairClearance& pair : pairs) {
+        const std::string name = names[static_cast<size_t>(pair.a)] + ":" + names[static_cast<size_t>(pair.b)];
+        const std::string status = formatted("%-10s", core::clearance::to_string(pair.status));
+        text += formatted("%-32s %12.6g %12.6g %12.6g   %s %9.4g\n", name.c_str(), pair.minimum * factor, pair.lower * factor,
+                          pair.upper * factor, console.coloured(status, pair.status == PairStatus::clear).c_str(), pair.witness.time);
+    }
+    return text;
+}
+
+Json parameters_json(const Design& design, const VectorX& values) {
+    Json json = Json::object();
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        json[design.parameters[k].name] = from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
+    }
+    return json;
+}
+
+Json units_json(const Design& design) {
+    Json json = Json::object();
+    for (const Parameter& parameter : design.parameters) json[parameter.name] = parameter.unit.name;
+    return json;
+}
+
+Json gradient_json(const Design& design, const VectorX& gradient) {
+    Json json = Json::object();
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        json[design.parameters[k].name] = gradient[static_cast<Eigen::Index>(k)] * design.parameters[k].unit.factor;
+    }
+    return json;
+}
+
+std::vector<std::string> body_names(const core::model::Model& model) {
+    std::vector<std::string> names;
+    for (const core::model::Body& body : model.bodies) names.push_back(body.name);
+    return names;
+}
+
+std::string unit_name(double length_unit) {
+    for (const char* name : {"um", "mm", "cm", "m", "in", "ft"}) {
+        if (core::base::metres_per_unit(name).value() == length_unit) return name;
+    }
+    return "m";
+}
+
+long peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss * 1024L;
+}
+
+std::string formatted(const char* format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    const int length = std::vsnprintf(nullptr, 0, format, arguments);
+    va_end(arguments);
+    std::string text(static_cast<size_t>(std::max(0, length)) + 1, '\0');
+    std::vsnprintf(text.data(), text.size(), format, again);
+    va_end(again);
+    text.pop_back();
+    return text;
+}
+
+}  // namespace fettle::design::cli

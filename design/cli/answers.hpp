@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// Parts of answers that several commands share. All numbers SI unless a key says otherwise.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/design/cli/console.hpp"
+#include "fettle/design/design.hpp"
+
+namespace fettle::design::cli {
+
+nlohmann::ordered_json vector_json(const Vector3& v);
+
+/// {a, b, minimum, lower, upper, status, time, point_a, point_b}
+nlohmann::ordered_json pair_json(const core::clearance::PairClearance& pair, const std::vector<std::string>& body_names);
+
+/// violated if one is; else undecided if one is; else clear.
+core::clearance::PairStatus overall_status(const std::vector<core::clearance::PairClearance>& pairs);
+
+/// {minimum, least, status, pairs}: the (smallest) required minimum, and the smallest proven bound.
+nlohmann::ordered_json clearance_json(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names);
+
+/// A table of pairs for people, lengths in `unit`.
+std::string clearance_text(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names,
+                           const std::string& unit, const Console& console);
+
+/// Values by parameter name, in the parameters' own units.
+nlohmann::ordered_json parameters_json(const Design& design, const VectorX& values);
+/// Unit by parameter name.
+nlohmann::ordered_json units_json(const Design& design);
+/// Derivatives by parameter name, per unit of the parameter as the file has it.
+nlohmann::ordered_json gradient_json(const Design& design, const VectorX& gradient);
+
+std::vector<std::string> body_names(const core::model::Model& model);
+
+/// The unit that `length_unit` [m] is: "mm"; "m" if it is none that we know.
+std::string unit_name(double length_unit);
+
+/// Largest resident memory of this process so far [bytes].
+long peak_memory_bytes();
+
+/// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/console.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Text from files can hold bytes that are no UTF-8: they must not break the one JSON object.
+std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+bool no_color() {
+    const char* value = std::getenv("NO_COLOR");
+    return value != nullptr && *value != '\0';
+}
+
+}  // namespace
+
+Console::Console(const ConsoleOptions& options) : options_(options) {
+    terminal_ = ::isatty(STDERR_FILENO) != 0;
+    colours_ = ::isatty(STDOUT_FILENO) != 0 && !no_color();
+}
+
+void Console::narrate(const std::string& line) {
+    if (options_.quiet) return;
+    end_progress();
+    std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void Console::progress(const std::string& what, int done, int of) {
+    if (options_.quiet || !terminal_ || of <= 0) return;
+    const int permille = static_cast<int>(1000.0 * done / of);
+    if (permille == bar_permille_ && done < of) return;
+    bar_permille_ = permille;
+    constexpr int width = 30;
+    const int filled = width * done / of;
+    std::fprintf(stderr, "\r%s [%s%s] %d/%d \033[K", what.c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
+                 std::string(static_cast<size_t>(width - filled), '.').c_str(), done, of);
+    std::fflush(stderr);
+    bar_shown_ = true;
+    if (done >= of) end_progress();
+}
+
+void Console::end_progress() {
+    if (bar_shown_) std::fprintf(stderr, "\r\033[K");
+    bar_shown_ = false;
+    bar_permille_ = -1;
+}
+
+void Console::result(const Json& json, const std::string& text) {
+    end_progress();
+    const std::string out = options_.json ? dumped(json) + "\n" : text;
+    std::fwrite(out.data(), 1, out.size(), stdout);
+    std::fflush(stdout);
+}
+
+int Console::input_errors(const Errors& errors) {
+    end_progress();
+    if (options_.json) {
+        Json json;
+        json["status"] = "error";
+        json["errors"] = Json::array();
+        for (const Error& error : errors) {
+            json["errors"].push_back({{"code", to_string(error.code)}, {"where", error.where}, {"message", error.message}});
+        }
+        result(json, "");
+    } else {
+        for (const Error& error : errors) {
+            std::fprintf(stderr, "error: %s%s%s [%s]\n", error.where.c_str(), error.where.empty() ? "" : ": ", error.message.c_str(),
+                         to_string(error.code));
+        }
+    }
+    return exit_bad_input;
+}
+
+int Console::internal_error(const std::string& message) {
+    end_progress();
+    if (options_.json) {
+        Json json;
+        json["status"] = "error";
+        json["errors"] = Json::array({{{"code", "internal"}, {"where", ""}, {"message", message}}});
+        result(json, "");
+    } else {
+        std::fprintf(stderr, "fettle: internal error, please report it: %s\n", message.c_str());
+    }
+    return exit_internal;
+}
+
+std::string Console::coloured(const std::string& text, bool good) const {
+    if (!colours_) return text;
+    return std::string(good ? "\033[32m" : "\033[31m") + text + "\033[0m";
+}
+
+const char* to_string(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::file_not_found:
+            return "file_not_found";
+        case ErrorCode::file_unreadable:
+            return "file_unreadable";
+        case ErrorCode::parse:
+            return "parse";
+        case ErrorCode::unknown_key:
+            return "unknown_key";
+        case ErrorCode::missing_key:
+            return "missing_key";
+        case ErrorCode::wrong_type:
+            return "wrong_type";
+        case ErrorCode::out_of_range:
+            return "out_of_range";
+        case ErrorCode::not_finite:
+            return "not_finite";
+        case ErrorCode::mesh_invalid:
+            return "mesh_invalid";
+        case ErrorCode::bodies_intersect:
+            return "bodies_intersect";
+        case ErrorCode::inconsistent:
+            return "inconsistent";
+        case ErrorCode::unsupported:
+            return "unsupported";
+    }
+    return "unknown";
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/inputs.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/design/design_file.hpp"
+#include "fettle/design/design_problem.hpp"
+#include "fettle/design/scene_shapes.hpp"
+
+namespace fettle::design::cli {
+
+FileKind file_kind(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const char* mesh : {".stl", ".obj", ".off", ".ply", ".3mf"}) {
+        if (extension == mesh) return FileKind::mesh;
+    }
+    if (core::stepper::is_trajectory_file(path)) return FileKind::trajectory;
+    return is_design_file(path) ? FileKind::design : FileKind::scene;
+}
+
+Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common) {
+    LoadedModel loaded;
+    if (is_design_file(path)) {
+        Result<Design> design = read_design(path, {common.mesh_dirs});
+        if (!design) return design.errors();
+        loaded.scene_path = design->scene_path;
+        loaded.steps = design->steps;
+        loaded.warnings = design->warnings;
+        const VectorX values = values_of(design->parameters);
+        const Result<DesignProblem> problem = DesignProblem::create(std::move(design).value());
+        if (!problem) return problem.errors();
+        Result<core::model::Model> model = problem->model_at(values);
+        if (!model) return model.errors();
+        loaded.model = std::move(model).value();
+        return loaded;
+    }
+    const Result<core::scene::Scene> scene = core::scene::read_scene(path, scene_read_options(common.mesh_dirs));
+    if (!scene) return scene.errors();
+    loaded.scene_path = path;
+    loaded.warnings = scene->warnings;
+    Result<core::model::Model> model = core::model::build_model(*scene);
+    if (!model) return model.errors();
+    loaded.model = std::move(model).value();
+    return loaded;
+}
+
+void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) console.narrate("warning: " + warning);
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+/// fettle optimise DESIGN: tunes the parameters, and certifies the final design.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/atomic_file.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/design_file.hpp"
+#include "fettle/design/optimise_design.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using optimisers::OptimiserStatus;
+
+struct Options {
+    std::string path, optimiser, out;
+    bool resume = false;
+};
+
+Json constraints_json(const Design& design, const DesignEvaluation& final) {
+    Json list = Json::array();
+    for (size_t i = 0; i < final.constraints.size(); ++i) {
+        const constraints::Constraint& constraint = *design.constraints[i];
+        const objectives::Quantity& q = final.constraints[i];
+        list.push_back({{"name", constraint.name()},
+                        {"value", q.value},
+                        {"lower", q.lower},
+                        {"upper", q.upper},
+                        {"met", constraint.violation(q) <= 0}});
+    }
+    return list;
+}
+
+Json terms_json(const Design& design, const DesignEvaluation& final) {
+    Json list = Json::array();
+    for (size_t k = 0; k < final.terms.size(); ++k) list.push_back({{"name", design.objective[k].name}, {"value", final.terms[k].value}});
+    return list;
+}
+
+Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, const std::string& out) {
+    const Design& design = problem.design();
+    const optimisers::OptimiserReport& report = outcome.report;
+    Json json;
+    json["status"] = optimisers::to_string(report.status);
+    json["message"] = report.message;
+    json["objective_start"] = report.start.usable ? Json(report.start.objective) : Json();
+    json["objective"] = report.best.usable ? Json(report.best.objective) : Json();
+    json["parameters"] = parameters_json(design, report.point);
+    json["units"] = units_json(design);
+    json["evaluations"] = report.evaluations;
+    json["failed_evaluations"] = report.failures;
+    json["replayed_evaluations"] = outcome.replayed;
+    json["iterations"] = report.iterations;
+    json["optimality"] = report.best.usable ? Json(report.optimality) : Json();
+    json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
+    json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
+    json["terms"] = terms_json(design, outcome.final);
+    json["constraints"] = constraints_json(design, outcome.final);
+    std::vector<std::string> names;
+    for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
+    json["clearance"] = clearance_json(outcome.clearance, names);
+    if (!outcome.limits.empty()) json["limits"] = outcome.limits;
+    json["out"] = out;
+    return json;
+}
+
+int exit_code(OptimiserStatus status) {
+    switch (status) {
+        case OptimiserStatus::converged:
+            return exit_done;
+        case OptimiserStatus::infeasible:
+        case OptimiserStatus::infeasible_budget:
+            return exit_violated;
+        default:
+            return exit_undecided;
+    }
+}
+
+std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, const Console& console, const std::string& out) {
+    const optimisers::OptimiserReport& report = outcome.report;
+    const bool good = report.status == OptimiserStatus::converged;
+    std::string text = console.coloured(optimisers::to_string(report.status), good) + ": " + report.message + "\n";
+    if (!report.best.usable) return text;
+    text +=
+        formatted("objective %.8g, from %.8g at the start; %d evaluations (%d failed), %d iterations, optimality %.2g\n",
+                  report.best.objective, report.start.objective, report.evaluations, report.failures, report.iterations, report.optimality);
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        const Parameter& p = design.parameters[k];
+        text += formatted("  %-24s %12.7g -> %12.7g %s\n", p.name.c_str(), from_si(p.value, p.unit),
+                          from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), p.unit.name.c_str());
+    }
+    for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
+        const constraints::Constraint& constraint = *design.constraints[i];
+        const objectives::Quantity& q = outcome.final.constraints[i];
+        const double unit = constraint.bounds().unit;
+        const bool met = constraint.violation(q) <= 0;
+        text += formatted("  %-40s proven [%.7g, %.7g], required [%g, %g]: ", constraint.name().c_str(), q.lower / unit, q.upper / unit,
+                          constraint.bounds().lower / unit, constraint.bounds().upper / unit) +
+                console.coloured(met ? "met" : "VIOLATED", met) + "\n";
+    }
+    for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
+    return text + "written to " + out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
+}
+
+std::string output_folder(const Options& options, const Design& design) {
+    if (!options.out.empty()) return options.out;
+    if (!design.output.empty()) return design.output;
+    return std::filesystem::path(options.path).stem().stem().string() + ".out";
+}
+
+int run_optimise(const Options& options, const CommonOptions& common, Console& console) {
+    Result<Design> read = read_design(options.path, {common.mesh_dirs});
+    if (!read) return console.input_errors(read.errors());
+    tell_warnings(console, read->warnings);
+    const Result<DesignProblem> problem = DesignProblem::create(std::move(read).value());
+    if (!problem) return console.input_errors(problem.errors());
+    OptimiseOptions optimise;
+    optimise.directory = output_folder(options, problem->design());
+    optimise.resume = options.resume;
+    optimise.optimiser = options.optimiser;
+    optimise.should_stop = interrupted;
+    optimise.narrate = [&](const std::string& line) { console.narrate(line); };
+    optimise.on_step = [&](const core::stepper::Progress& p) { console.progress("      simulating", p.step, p.steps); };
+    const Result<OptimiseOutcome> outcome = optimise_design(*problem, optimise);
+    if (!outcome) return console.input_errors(outcome.errors());
+    if (!outcome->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + outcome->history_kept_as);
+    const Json json = outcome_json(*problem, *outcome, optimise.directory);
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const Errors errors = core::base::write_file_atomically(std::filesystem::path(optimise.directory) / "result.json", text);
+    if (!errors.empty()) return console.input_errors(errors);
+    console.result(json, outcome_text(problem->design(), *outcome, console, optimise.directory));
+    return exit_code(outcome->report.status);
+}
+
+}  // namespace
+
+Command add_optimise(CLI::App& program, const CommonOptions& common) {
+    CLI::App* app = program.add_subcommand("optimise", "Tunes a design's parameters under its requirements, and certifies the result");
+    app->alias("optimize");
+    auto options = std::make_shared<Options>();
+    app->add_option("DESIGN", options->path, "Design to start from")->required();
+    app->add_option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp or cobyla (default: what the design says)")
+        ->check(CLI::IsMember(optimisers::optimiser_names()));
+    app->add_option("--out", options->out, "Folder for the result (default: the design's `output`)");
+    app->add_flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
+    app->footer("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
+    return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }};
+}
+
+}  // namespace fettle::design::cli

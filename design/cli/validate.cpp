@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// fettle validate FILE: is this scene, design, trajectory or mesh usable? Every fault, by name and place.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/scene/mesh_reader.hpp"
+#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/design_file.hpp"
+#include "fettle/design/design_problem.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Verdict {
+    Errors errors;
+    std::vector<std::string> warnings;
+    Json facts = Json::object();
+};
+
+Verdict validate_mesh_file(const std::string& path) {
+    Verdict verdict;
+    const Result<core::geometry::Mesh> mesh = core::scene::read_mesh(path);
+    if (!mesh) {
+        verdict.errors = mesh.errors();
+        return verdict;
+    }
+    verdict.errors = core::geometry::validate_mesh(*mesh, {});
+    verdict.facts["vertices"] = mesh->vertices.cols();
+    verdict.facts["triangles"] = mesh->triangles.size();
+    verdict.facts["shells"] = mesh->shell_names;
+    return verdict;
+}
+
+Verdict validate_trajectory(const std::string& path) {
+    Verdict verdict;
+    const Result<core::stepper::StoredTrajectory> stored = core::stepper::read_trajectory(path);
+    if (!stored) {
+        verdict.errors = stored.errors();
+        return verdict;
+    }
+    verdict.facts["bodies"] = stored->trajectory.body_names;
+    verdict.facts["steps"] = stored->trajectory.steps.size();
+    return verdict;
+}
+
+Verdict validate_model(const std::string& path, FileKind kind, const CommonOptions& common) {
+    Verdict verdict;
+    const Result<LoadedModel> loaded = load_model(path, common);
+    if (!loaded) {
+        verdict.errors = loaded.errors();
+        return verdict;
+    }
+    verdict.warnings = loaded->warnings;
+    verdict.facts["bodies"] = body_names(loaded->model);
+    if (kind != FileKind::design) return verdict;
+    const Result<Design> design = read_design(path, {common.mesh_dirs});
+    if (!design) return verdict;
+    verdict.facts["parameters"] = parameters_json(*design, values_of(design->parameters));
+    Json names = Json::array();
+    for (const auto& constraint : design->constraints) names.push_back(constraint->name());
+    verdict.facts["constraints"] = names;
+    return verdict;
+}
+
+int run_validate(const std::string& path, const CommonOptions& common, Console& console) {
+    const FileKind kind = file_kind(path);
+    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path)
+                            : kind == FileKind::trajectory ? validate_trajectory(path)
+                                                           : validate_model(path, kind, common);
+    if (!verdict.errors.empty()) return console.input_errors(verdict.errors);
+    const char* kinds[] = {"scene", "design", "trajectory", "mesh"};
+    Json json;
+    json["status"] = "ok";
+    json["kind"] = kinds[static_cast<int>(kind)];
+    json.update(verdict.facts);
+    json["warnings"] = verdict.warnings;
+    tell_warnings(console, verdict.warnings);
+    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + "\n");
+    return exit_done;
+}
+
+}  // namespace
+
+Command add_validate(CLI::App& program, const CommonOptions& common) {
+    CLI::App* app = program.add_subcommand("validate", "Is this scene, design, trajectory or mesh usable? Every fault, by name and place");
+    auto path = std::make_shared<std::string>();
+    app->add_option("FILE", *path, "Scene, design, trajectory (.json) or mesh (.stl .obj .off .ply .3mf)")->required();
+    app->footer("Example:  fettle validate examples/slider_crank/slider_crank.design.json");
+    return {app, [path, &common](Console& console) { return run_validate(*path, common, console); }};
+}
+
+}  // namespace fettle::design::cli
