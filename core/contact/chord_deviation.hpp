@@ -4,8 +4,8 @@
 ///
 /// Bounds, for exact arithmetic (method.md section 7):
 ///   B0 = |w|^2 |Y| / 8,   because |x''| <= |w|^2 |Y|;
-///   B1 = |w| (|w x Y| + |theta x w| |Y| / 3) / 8: x'' = 2 int e^{aM} w x (e^{bM} (w x e^{cM} Y)) over a + b + c = 1, M = [theta + s w], and
-///        |w x e^{cM} Y| = |e^{-cM} w x Y| <= |w x Y| + c |theta x w| |Y|, with c of mean 1/3;
+///   B1 = |w| (|w x Y| + |theta x w| |Y| / 3) / 8: x'' = 2 int e^{aM} w x (e^{bM} (w x e^{cM} Y)) over a + b + c = 1, M = [theta + s w],
+///        and |w x e^{cM} Y| = |e^{-cM} w x Y| <= |w x Y| + c |theta x w| |Y|, with c of mean 1/3;
 ///   B3 = |x(1/2) - (x(0) + x(1))/2| + |w|^3 |Y| / (72 sqrt 3): the parabola through the three points, and the remainder of
 ///        cubic interpolation with |x'''| <= |w|^3 |Y|.
 /// Rounding, u = 2^-53. Products and norms carry relative errors below 16 u: all is multiplied by 1 + 32 u. Cross products cancel: their
@@ -28,9 +28,9 @@ double arc_deviation_interval(const Vector3& theta, const Vector3& w, const Vect
 
 /// Bound of |computed - exact| for rotation(theta + s w) * (base * X), |X| <= radius and base orthonormal to 1e-6, s <= s_end in [0, 1]:
 ///   u radius (80 + 4 |theta| + 6 s_end |w|).
-/// Parts, times radius: rounding of theta + s w, at most u (s|w| + |theta + s w|), since R is 1-Lipschitz; of |theta|^2 and its square root, 2.5u
-/// relative, so 2.5u |theta + s w| in the angle; sine, cosine (1 ulp) and the sums and products of the entries, 44u; products with base
-/// and X, 6u each, their sum with a translation 1u of its size (charged by the caller), and headroom.
+/// Parts, times radius: rounding of theta + s w, at most u (s|w| + |theta + s w|), since R is 1-Lipschitz; of |theta|^2 and its square
+/// root, 2.5u relative, so 2.5u |theta + s w| in the angle; sine, cosine (1 ulp) and the sums and products of the entries, 44u; products
+/// with base and X, 6u each, their sum with a translation 1u of its size (charged by the caller), and headroom.
 double rotated_rounding(double theta_norm, double w_norm, double s_end, double radius);
 
 }  // namespace fettle::core::contact

@@ -17,9 +17,9 @@
 ///  - With D_k = max over pairs of |d_ij,k|, |e_ij,k| and S = sum_k |n_k| D_k: p_ij = fl(n . d_ij) and q_ij = fl(n . e_ij) are off by
 ///    at most (1 + u) u S + 3u S(1 + ...) <= 4.01 u S (difference, product, two sums).
 ///  - fl((1 - t) p + t q) adds at most 3.01 u S. In all 7.02 u S; the code charges E = 8 u fl(S) + 1e-290 (the last for underflow).
-///  - L_ij is linear in exact arithmetic: if its computed values at both ends of a step exceed dmin (1 + 16 u) + 1.01 E, then the exact L_ij
-///    exceeds |n| dmin all along the step. Likewise for the three coefficients of a turning plane: |n| is convex along it, and the mean
-///    of two values adds at most u S.
+///  - L_ij is linear in exact arithmetic: if its computed values at both ends of a step exceed dmin (1 + 16 u) + 1.01 E, then the
+///    exact L_ij exceeds |n| dmin all along the step. Likewise for the three coefficients of a turning plane: |n| is convex along it, and
+///    the mean of two values adds at most u S.
 /// So a query is decided to within 8u times the size of the pair's relative coordinates, the motion included. Coordinates whose squares
 /// overflow or underflow (beyond 1e150, or differences below 1e-150) give conservative hits; so do infinities and NaN.
 ///

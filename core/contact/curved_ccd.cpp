@@ -73,7 +73,8 @@ private:
 
 class CurvedQuery {
 public:
-    CurvedQuery(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin, const CurvedCcdOptions& options)
+    CurvedQuery(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin,
+                const CurvedCcdOptions& options)
         : type_(type),
           first_count_(type == PairType::point_triangle ? 1 : 2),
           a_(a, X.data(), first_count_),

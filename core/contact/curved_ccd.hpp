@@ -2,8 +2,8 @@
 /// Continuous collision detection of primitives of two rigid bodies on curved paths: the curve of each vertex is replaced by its
 /// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. method.md section 7.
 ///
-/// From time s, proven to be clear so far, take the rest of the segment if its deviation is at most 3/4 of the gap (lower bound of the distance
-/// less dmin), else a piece whose deviation is at most 1/8 of it. The linear query with dmin + deviation + rounding either clears
+/// From time s, proven to be clear so far, take the rest of the segment if its deviation is at most 3/4 of the gap (lower bound of the
+/// distance less dmin), else a piece whose deviation is at most 1/8 of it. The linear query with dmin + deviation + rounding either clears
 /// the piece or says up to when it is clear: go on from there. A hit is reported once the gap is at most
 /// min(linear.tolerance, a tenth of the first gap), when nothing can be proven any more, or past max_pieces.
 /// Pairs that cannot meet are dismissed at once: first gap > |dq_a - dq_b| + |w_a| r_a + |w_b| r_b.
@@ -33,12 +33,12 @@ double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X,
 struct CurvedCcdOptions {
     DeviationBound deviation = DeviationBound::closed_form;
     LinearCcdOptions linear;
-    int max_pieces = 1024;   ///< of the bisection in time; past it the answer is a conservative hit
+    int max_pieces = 1024;  ///< of the bisection in time; past it the answer is a conservative hit
 };
 
 struct CurvedCcdResult {
-    bool hit = false;   ///< may come within dmin; false is a proof that it does not
-    double toi = 1;     ///< proven: distance > dmin on [0, toi)
+    bool hit = false;  ///< may come within dmin; false is a proof that it does not
+    double toi = 1;    ///< proven: distance > dmin on [0, toi)
 };
 
 /// `X`: the pair's vertices in their bodies' frames. point_triangle: X[0] on body a, X[1..3] on body b; edge_edge: X[0..1] on a,

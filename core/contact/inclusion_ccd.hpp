@@ -8,8 +8,8 @@
 /// a hit at its first time: everything earlier has been excluded.
 /// dmin is applied per axis, so a reported distance is within sqrt(3) (tolerance + dmin).
 ///
-/// Rounding. u = 2^-53. Vertices are shifted to vertex 0 at t0 (relative error u per coordinate: half an ulp of the difference) and scaled by
-/// the power of two that brings them to |x| <= 1 (exact), so that delta = 1 in the source's err = c delta^3. Directly, with |x| <= 1:
+/// Rounding. u = 2^-53. Vertices are shifted to vertex 0 at t0 (relative error u per coordinate: half an ulp of the difference) and scaled
+/// by the power of two that brings them to |x| <= 1 (exact), so that delta = 1 in the source's err = c delta^3. Directly, with |x| <= 1:
 ///   x_t = x_t0 + t (x_t1 - x_t0)      off by 2u + 2u + u = 5u
 ///   edge-edge      (a1 - a0) u + a0   off by (5 + 5 + 2) + 2 + 5 + 1 = 20u;   minus the same, + 2u:   42u
 ///   point-triangle (c1 - c0) u + (c2 - c0) v + c0   off by 14 + 14 + 4 + 5 + 5 = 42u;   minus p, + 5u + 6u:   53u
@@ -22,6 +22,7 @@
 namespace fettle::core::contact {
 
 /// As linear_ccd; `options.method` is ignored. Past options.max_iterations boxes the answer is a hit at the time proven so far.
-LinearCcdResult inclusion_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin, const LinearCcdOptions& options = {});
+LinearCcdResult inclusion_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
+                              const LinearCcdOptions& options = {});
 
 }  // namespace fettle::core::contact

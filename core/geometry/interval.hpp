@@ -3,8 +3,8 @@
 ///
 /// Rounding is outward without switching the processor's rounding mode (which costs more than the arithmetic). With rounding to
 /// nearest the exact result lies within half an ulp of the computed one, x, and lower(x) = x - (|x| 2^-52 + 2^-1074) is at most the
-/// next double below x: |x| 2^-52 is at least one ulp of a normal x, and the last term steps down a subnormal one. So bounds are at most two
-/// ulps wider per operation than the best. Elementary functions of the C library are trusted to 2 ulps (glibc 2.36 documents at
+/// next double below x: |x| 2^-52 is at least one ulp of a normal x, and the last term steps down a subnormal one. So bounds are at most
+/// two ulps wider per operation than the best. Elementary functions of the C library are trusted to 2 ulps (glibc 2.36 documents at
 /// most 1) and widened by as much. Infinite bounds are allowed, NaN is not.
 #pragma once
 
@@ -60,8 +60,8 @@ inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.
 /// Contract of sin: finite.
 Interval sin(const Interval& a);
 
-/// sin(x)/x: even, and falling on [0, 4.4934094579], where end points give the range; the plain quotient beyond. Source: Ferguson et al. 2021,
-/// Intersection-free Rigid Body Dynamics, Appendix A.3.
+/// sin(x)/x: even, and falling on [0, 4.4934094579], where end points give the range; the plain quotient beyond. Source: Ferguson et al.
+/// 2021, Intersection-free Rigid Body Dynamics, Appendix A.3.
 Interval sinc(const Interval& a);
 
 using Interval3 = std::array<Interval, 3>;

@@ -50,7 +50,8 @@ Vector3 point_of(const std::string& line, std::optional<bool>& truth) {
         at = *end == ',' ? end + 1 : end;
     }
     if (*at == '0' || *at == '1') truth = *at == '1';
-    return {static_cast<double>(number[0] / number[1]), static_cast<double>(number[2] / number[3]), static_cast<double>(number[4] / number[5])};
+    return {static_cast<double>(number[0] / number[1]), static_cast<double>(number[2] / number[3]),
+            static_cast<double>(number[4] / number[5])};
 }
 
 }  // namespace

@@ -198,7 +198,8 @@ bool vertex_meets_edge(const Point& p, const Point& a, const Point& b) {
 bool keeps_sign(const Polynomial& f) {
     std::array<Number, 4> c{};
     std::copy(f.c.begin(), f.c.end(), c.begin());
-    const std::array<int, 4> s{sign_of(c[0]), sign_of(3 * c[0] + c[1]), sign_of(3 * c[0] + 2 * c[1] + c[2]), sign_of(c[0] + c[1] + c[2] + c[3])};
+    const std::array<int, 4> s{sign_of(c[0]), sign_of(3 * c[0] + c[1]), sign_of(3 * c[0] + 2 * c[1] + c[2]),
+                               sign_of(c[0] + c[1] + c[2] + c[3])};
     return s[0] != 0 && s[1] == s[0] && s[2] == s[0] && s[3] == s[0];
 }
 
@@ -211,7 +212,8 @@ bool vertex_meets_triangle(const std::array<Point, 4>& x) {
         const Point &a = x[1 + i], &b = x[1 + (i + 1) % 3];
         face.inequalities.push_back(dot(n, cross(b - a, x[0] - a)));
     }
-    return face.has_solution() || vertex_meets_edge(x[0], x[1], x[2]) || vertex_meets_edge(x[0], x[2], x[3]) || vertex_meets_edge(x[0], x[3], x[1]);
+    return face.has_solution() || vertex_meets_edge(x[0], x[1], x[2]) || vertex_meets_edge(x[0], x[2], x[3]) ||
+           vertex_meets_edge(x[0], x[3], x[1]);
 }
 
 bool edges_meet(const std::array<Point, 4>& x) {
@@ -254,7 +256,8 @@ Number distance_squared(PairType type, const std::array<Fixed, 4>& x) {
         bool inside = nn > 0;
         for (std::size_t i = 0; i < 3; ++i) inside = inside && dot(n, cross(x[1 + (i + 1) % 3] - x[1 + i], x[0] - x[1 + i])) >= 0;
         if (inside) return off * off / nn;
-        return std::min({vertex_edge_squared(x[0], x[1], x[2]), vertex_edge_squared(x[0], x[2], x[3]), vertex_edge_squared(x[0], x[3], x[1])});
+        return std::min(
+            {vertex_edge_squared(x[0], x[1], x[2]), vertex_edge_squared(x[0], x[2], x[3]), vertex_edge_squared(x[0], x[3], x[1])});
     }
     const Fixed p = x[1] - x[0], q = x[3] - x[2], w = x[2] - x[0], n = cross(p, q);
     const Number nn = dot(n, n), s = dot(cross(w, q), n), t = dot(cross(w, p), n), off = dot(n, w);

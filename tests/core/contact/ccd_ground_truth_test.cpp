@@ -34,7 +34,8 @@ double microseconds(F&& f) {
     return thread_microseconds() - start;
 }
 
-/// Runs every query of the folder; `far` counts false positives beyond sqrt(3) (tolerance + dmin), `zero` tois of 0 of pairs that start apart.
+/// Runs every query of the folder; `far` counts false positives beyond sqrt(3) (tolerance + dmin), `zero` tois of 0 of pairs that start
+/// apart.
 Tally run(const std::string& folder, const LinearCcdOptions& options, double dmin) {
     Tally t;
     for (const auto& file : files_below(support::shared_file("ccd/" + folder), ".csv")) {
@@ -126,8 +127,8 @@ TEST_CASE("curved CCD on the public rigid queries") {
                 hits += r.hit;
                 zero += r.hit && r.toi == 0;
             }
-            WARN((closed ? "closed form, " : "interval, ") << folder << ": " << hits << " of " << queries << " hit, mean "
-                                                           << total / static_cast<double>(queries) << " us");
+            WARN((closed ? "closed form, " : "interval, ")
+                 << folder << ": " << hits << " of " << queries << " hit, mean " << total / static_cast<double>(queries) << " us");
             CHECK(zero == 0);
             // No wrecking-ball query touches; every kinematic one comes within 1e-9.
             CHECK(hits == (folder == "kinematic" ? queries : 0));

@@ -108,7 +108,9 @@ Vector3 arm(const Arc& a) { return a.path.base * a.X; }
 
 TEST_CASE("chord deviation bounds hold on dense samples") {
     // arc_deviation and its cubic take the computed arm as exact: its rounding is chord_deviation's.
-    const Bound least = [](const Arc& a) { return arc_deviation(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a)) * (1 + 1e-14); };
+    const Bound least = [](const Arc& a) {
+        return arc_deviation(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a)) * (1 + 1e-14);
+    };
     const Bound cubic = [](const Arc& a) {
         return arc_deviation_cubic(a.path.rotation_vector_t0, a.path.rotation_vector_step, arm(a)) * (1 + 1e-14);
     };

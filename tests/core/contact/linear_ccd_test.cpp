@@ -46,7 +46,8 @@ public:
         for (Vector3& x : q.t1) x = point(range);
         return q;
     }
-    /// On the integer grid, with whatever makes trouble: coplanar, parallel, coincident vertices, no motion, common motion, touching at an end.
+    /// On the integer grid, with whatever makes trouble: coplanar, parallel, coincident vertices, no motion, common motion, touching at an
+    /// end.
     Query degenerate(int range) {
         Query q = grid(range);
         const int axis = integer(0, 2);
@@ -54,7 +55,9 @@ public:
             case 0:
                 for (std::size_t i = 0; i < 4; ++i) q.t0[i][axis] = q.t1[i][axis] = 0;
                 break;
-            case 1: q.t1 = q.t0; break;
+            case 1:
+                q.t1 = q.t0;
+                break;
             case 2:
                 for (std::size_t i = 0; i < 4; ++i) q.t1[i] = q.t0[i] + Vector3(1, -2, axis);
                 break;
@@ -72,7 +75,9 @@ public:
                     q.t1[i] = q.t1[i][axis] * Vector3(1, 1, 1);
                 }
                 break;
-            case 6: q.t0[0] = q.t0[static_cast<std::size_t>(integer(1, 3))]; break;
+            case 6:
+                q.t0[0] = q.t0[static_cast<std::size_t>(integer(1, 3))];
+                break;
             default:
                 q.t1[0] = q.t1[3];
                 q.t1[2] = q.t0[2];

@@ -19,7 +19,9 @@ bool contains(const Interval& a, const Real& x) { return Real(a.low) <= x && x <
 class Generator {
 public:
     explicit Generator(unsigned seed) : random_(seed) {}
-    double number() { return std::ldexp(std::uniform_real_distribution<double>(-1, 1)(random_), std::uniform_int_distribution<int>(-30, 12)(random_)); }
+    double number() {
+        return std::ldexp(std::uniform_real_distribution<double>(-1, 1)(random_), std::uniform_int_distribution<int>(-30, 12)(random_));
+    }
     Interval interval() {
         const double a = number(), b = std::uniform_int_distribution<int>(0, 3)(random_) == 0 ? a : a + number();
         return {std::min(a, b), std::max(a, b)};

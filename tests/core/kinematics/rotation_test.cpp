@@ -29,7 +29,8 @@ RealMatrix multiply(const RealMatrix& a, const RealMatrix& b) {
 /// exp([theta]) by scaling and squaring of the Taylor series: no closed form in common with the code under test.
 RealMatrix reference_rotation(const RealVector& t) {
     const Real scale = Real(1) / 256;
-    const RealMatrix w{{{Real(0), -t[2] * scale, t[1] * scale}, {t[2] * scale, Real(0), -t[0] * scale}, {-t[1] * scale, t[0] * scale, Real(0)}}};
+    const RealMatrix w{
+        {{Real(0), -t[2] * scale, t[1] * scale}, {t[2] * scale, Real(0), -t[0] * scale}, {-t[1] * scale, t[0] * scale, Real(0)}}};
     RealMatrix sum{}, power{};
     for (int i = 0; i < 3; ++i) sum[i][i] = power[i][i] = 1;
     for (int n = 1; n < 30; ++n) {
@@ -89,15 +90,15 @@ std::vector<Vector3> sample_vectors(int per_magnitude) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform(0, 4 * M_PI);
-    std::vector<double> magnitudes{0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 1e-3, 0.01, 0.1, 0.5, 0.999999, 1, 1.000001, 1.5, 1.999999, 2, 2.000001, 3};
+    std::vector<double> magnitudes{0,   1e-300,   1e-160, 1e-12,    1e-8, 1e-4,     1e-3, 0.01,     0.1,
+                                   0.5, 0.999999, 1,      1.000001, 1.5,  1.999999, 2,    2.000001, 3};
     for (const double k : {1.0, 2.0, 3.0, 4.0})
         for (const double d : {-0.1, -1e-4, -1e-8, 0.0, 1e-8, 1e-4}) magnitudes.push_back(k * M_PI + d);
     for (int i = 0; i < 20; ++i) magnitudes.push_back(uniform(random));
     std::vector<Vector3> vectors;
     for (const double m : magnitudes) {
         vectors.push_back(m * Vector3::UnitY());
-        for (int i = 0; i < per_magnitude; ++i)
-            vectors.push_back(m * Vector3(normal(random), normal(random), normal(random)).normalized());
+        for (int i = 0; i < per_magnitude; ++i) vectors.push_back(m * Vector3(normal(random), normal(random), normal(random)).normalized());
     }
     return vectors;
 }
