@@ -82,9 +82,8 @@ void clearance_adjoint(const core::model::Model& model, const Trajectory& trajec
         arms[i] = (on_a ? pose_a : pose_b).rotation * model.bodies[vertices[i].body].mesh.vertices.col(vertices[i].vertex);
         x[i] = on_a ? Vector3(arms[i] + offset) : arms[i];
     }
-    const core::geometry::ClosestPoints closest = pair.witness.edge_edge
-                                                      ? core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3])
-                                                      : core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3]);
+    const core::geometry::ClosestPoints closest = pair.witness.edge_edge ? core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3])
+                                                                         : core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3]);
     const double distance = closest.difference.norm();
     if (!(pair.upper > 0 && distance > 0)) return;
     const Vector3 n = closest.difference * (scale / distance);

@@ -28,8 +28,8 @@ std::vector<PairSegment> pair_segments(const stepper::Trajectory& trajectory, co
     }
     for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t) {
         for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) {
-            segments.push_back(pair_segment(stepper::path_segment(trajectory, t, k, pair.a), stepper::path_segment(trajectory, t, k, pair.b),
-                                            radius_a, radius_b));
+            segments.push_back(pair_segment(stepper::path_segment(trajectory, t, k, pair.a),
+                                            stepper::path_segment(trajectory, t, k, pair.b), radius_a, radius_b));
             segments.back().step = t;
             segments.back().segment = k;
         }
@@ -57,8 +57,8 @@ PairClearance certify_pair(const model::Model& model, const stepper::Trajectory&
     const model::Body &a = model.bodies[request.a], &b = model.bodies[request.b];
     const auto segments =
         pair_segments(trajectory, request, a.hierarchy->nodes()[0].radius, b.hierarchy->nodes()[0].radius, options.motion);
-    const SearchResult found = search_pair({&a.mesh, a.hierarchy.get()}, {&b.mesh, b.hierarchy.get()}, segments,
-                                           {options.tolerance, options.max_evaluations, 1});
+    const SearchResult found =
+        search_pair({&a.mesh, a.hierarchy.get()}, {&b.mesh, b.hierarchy.get()}, segments, {options.tolerance, options.max_evaluations, 1});
     PairClearance result;
     result.a = request.a;
     result.b = request.b;
@@ -75,17 +75,22 @@ PairClearance certify_pair(const model::Model& model, const stepper::Trajectory&
 
 const char* to_string(PairStatus status) {
     switch (status) {
-        case PairStatus::clear: return "clear";
-        case PairStatus::violated: return "violated";
-        case PairStatus::undecided: return "undecided";
-        case PairStatus::contact: return "contact";
+        case PairStatus::clear:
+            return "clear";
+        case PairStatus::violated:
+            return "violated";
+        case PairStatus::undecided:
+            return "undecided";
+        case PairStatus::contact:
+            return "contact";
     }
     return "unknown";
 }
 
 std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
-    FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(), "a trajectory of the model's bodies");
+    FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
+                  "a trajectory of the model's bodies");
     const auto count = static_cast<int>(pairs.size());
     std::vector<PairClearance> results(pairs.size());
     std::mutex report;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/clearance/pair_search.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,7 +24,7 @@ constexpr int max_halvings = 48;  // so that every parameter is a double exactly
 // A dyadic part of a segment; parts are made when first needed and shared by all pieces.
 struct Interval {
     int segment = 0;
-    int start = 0, end = 0;       // indices of instants
+    int start = 0, end = 0;  // indices of instants
     int first_half = -1, second_half = -1;
     int halvings = 0;
 };
@@ -30,11 +32,11 @@ struct Interval {
 // Pieces are nodes, or (both at once) triangles: elements of the hierarchies.
 struct Entry {
     double lower = 0;
-    std::int64_t order = 0;       // of making: breaks ties the same way on every run
+    std::int64_t order = 0;  // of making: breaks ties the same way on every run
     int interval = 0;
     int a = 0, b = 0;
     bool triangles = false;
-    bool halve = false;           // in time, else in space
+    bool halve = false;                                  // in time, else in space; of triangles: their closest points are known
     Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();  // triangles: directions of the closest points at the ends
 };
 
@@ -167,17 +169,45 @@ private:
         return length(interval) * (drift + s.a.speed * a.radius + s.b.speed * b.radius);
     }
 
-    // n0, n1: any directions; replaced by those of the closest points if they do not settle the matter.
-    void try_triangles_from_boxes(int interval_index, int a, int b, const Vector3& n0, const Vector3& n1) {
-        const Interval interval = intervals_[interval_index];
-        const double quick = triangles_bound(interval, a, b, n0, n1).lower;
-        if (quick >= result_.upper - options_.tolerance) {
-            aside_ = std::min(aside_, quick);
-            return;
+    // A first bound of two triangles from directions at hand: the gap of their boxes and their own normals. Most pairs need no more,
+    // and closest points cost ten times as much.
+    void try_triangles_quickly(int interval_index, int a, int b, const Vector3& gap0, const Vector3& gap1) {
+        const Interval& interval = intervals_[interval_index];
+        const Instant &start = instants_[interval.start], &end = instants_[interval.end];
+        const Vector3 normal_a = normal(a_, a), normal_b = normal(b_, b);
+        const auto towards_a = [](const Vector3& n, const Vector3& d) { return d.dot(n) < 0 ? Vector3(-n) : n; };
+        Entry entry;
+        entry.lower = triangles_bound(interval, a, b, gap0, gap1).lower;
+        for (const bool of_a : {true, false}) {
+            if (entry.lower >= result_.upper - options_.tolerance) break;
+            const Vector3 n0 = of_a ? start.rotation_a * normal_a : start.rotation_b * normal_b;
+            const Vector3 n1 = of_a ? end.rotation_a * normal_a : end.rotation_b * normal_b;
+            const Vector3 d = center_difference(start, a, b);
+            entry.lower = std::max(entry.lower, triangles_bound(interval, a, b, unit_direction(towards_a(n0, d)),
+                                                                unit_direction(towards_a(n1, center_difference(end, a, b))))
+                                                    .lower);
         }
-        const Vector3 closest0 = closest_direction(interval.segment, interval.start, a, b);
-        const Vector3 closest1 = interval.start == interval.end ? closest0 : closest_direction(interval.segment, interval.end, a, b);
-        try_triangles(interval_index, a, b, closest0, closest1);
+        entry.interval = interval_index;
+        entry.a = a;
+        entry.b = b;
+        entry.triangles = true;
+        keep(entry, true);
+    }
+
+    static Vector3 normal(const SearchBody& body, int element) {
+        const Matrix3 x = corners(body, element);
+        return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
+    }
+
+    Vector3 center_difference(const Instant& at, int a, int b) const {
+        return at.offset + (at.rotation_a * corners(a_, a).rowwise().sum() - at.rotation_b * corners(b_, b).rowwise().sum()) / 3;
+    }
+
+    void measure_triangles(const Entry& entry) {
+        const Interval interval = intervals_[entry.interval];
+        const Vector3 n0 = closest_direction(interval.segment, interval.start, entry.a, entry.b);
+        const Vector3 n1 = interval.start == interval.end ? n0 : closest_direction(interval.segment, interval.end, entry.a, entry.b);
+        try_triangles(entry.interval, entry.a, entry.b, n0, n1);
     }
 
     SegmentBound triangles_bound(const Interval& interval, int a, int b, const Vector3& n0, const Vector3& n1) {
@@ -257,6 +287,8 @@ private:
     void split(const Entry& entry) {
         if (entry.halve) {
             halve(entry);
+        } else if (entry.triangles) {
+            measure_triangles(entry);
         } else if (node_a(entry.a).is_leaf() && node_b(entry.b).is_leaf()) {
             split_leaves(entry);
         } else if (open_a(entry.a, entry.b)) {
@@ -274,7 +306,7 @@ private:
         const Vector3 n0 = box_gap(instants_[interval.start], leaf_a, leaf_b).direction;
         const Vector3 n1 = box_gap(instants_[interval.end], leaf_a, leaf_b).direction;
         for (int i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i)
-            for (int j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) try_triangles_from_boxes(entry.interval, i, j, n0, n1);
+            for (int j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) try_triangles_quickly(entry.interval, i, j, n0, n1);
     }
 
     void halve(const Entry& entry) {
@@ -336,8 +368,8 @@ private:
     SearchOptions options_;
     std::vector<Instant> instants_;
     std::vector<Interval> intervals_;
-    std::vector<Entry> queue_;    // a heap
-    double aside_ = infinity;     // least bound of the entries that are not in the queue any more and were not split
+    std::vector<Entry> queue_;  // a heap
+    double aside_ = infinity;   // least bound of the entries that are not in the queue any more and were not split
     std::int64_t made_ = 0;
     int witness_segment_ = 0, witness_a_ = 0, witness_b_ = 0;  // elements
     geometry::Edge edge_a_{}, edge_b_{};

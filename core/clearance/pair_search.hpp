@@ -23,7 +23,7 @@ struct SearchBody {
 struct SearchOptions {
     double tolerance = 1e-6;
     long max_evaluations = 50'000'000;
-    double deviation_scale = 1;   ///< less than 1 breaks the proof: for tests that must notice
+    double deviation_scale = 1;  ///< less than 1 breaks the proof: for tests that must notice
 };
 
 struct SearchResult {

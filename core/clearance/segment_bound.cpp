@@ -50,9 +50,10 @@ PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::Pat
     pair.b = body_segment(b);
     const double ra = 2 * radius_a * pair.a.base_norm, rb = 2 * radius_b * pair.b.base_norm;
     const double p = a.position_t0.norm() + a.position_step.norm() + b.position_t0.norm() + b.position_step.norm();
-    pair.slack = ((pose_error(pair.a) + 32 * unit_roundoff) * ra + (pose_error(pair.b) + 32 * unit_roundoff) * rb + 24 * unit_roundoff * p) *
-                     rounded_up +
-                 std::numeric_limits<double>::min();
+    pair.slack =
+        ((pose_error(pair.a) + 32 * unit_roundoff) * ra + (pose_error(pair.b) + 32 * unit_roundoff) * rb + 24 * unit_roundoff * p) *
+            rounded_up +
+        std::numeric_limits<double>::min();
     return pair;
 }
 
@@ -110,8 +111,8 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
     return c;
 }
 
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a, const Reach& b,
-                           double deviation_scale) {
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a,
+                           const Reach& b, double deviation_scale) {
     const double bend_a = std::max(bending(segment.a, plane.n0, a), bending(segment.a, plane.n1, a));
     const double bend_b = std::max(bending(segment.b, plane.n0, b), bending(segment.b, plane.n1, b));
     const double deviation = deviation_scale * h * h * (bend_a + bend_b);

@@ -20,9 +20,12 @@
 /// |[w] e^{-a phi} n| <= |n x w| + a k and |[w] e^{c phi} Y| <= |w x Y| + c k |Y|. So
 ///   |n.x''| <= |n x w||w x Y| + k(|w x Y| + |n x w||Y|)/3 + k^2 |Y|/12,   and   |n.x''| <= |w|^2 |Y|,   Y = base X.
 ///
-/// Rounding (u = 2^-53; norms; r = twice the body's radius, which bounds the corners of its boxes; P = sum of |q_t0| + |q_step| of both bodies):
-///   pose: phi = theta0 + s w is off by <= 3u(|theta0| + |w|); rotation() by (90 + 38|phi|)u (half-angle sine and cosine to an ulp, x = |phi| to
-///     2.5 ulp, three terms an entry, nine entries); the product with the base by 9u; in all (160 + 48(|theta0| + |w|))u on R, and 4uP on q_a - q_b;
+/// Rounding (u = 2^-53; norms; r = twice the body's radius, which bounds the corners of its boxes; P = sum of |q_t0| + |q_step| of both
+/// bodies):
+///   pose: phi = theta0 + s w is off by <= 3u(|theta0| + |w|); rotation() by (90 + 38|phi|)u (half-angle sine and cosine to an ulp, x =
+///   |phi| to
+///     2.5 ulp, three terms an entry, nine entries); the product with the base by 9u; in all (160 + 48(|theta0| + |w|))u on R, and 4uP on
+///     q_a - q_b;
 ///   functionals R^T n and their dot products with X: 16u r a body; with q_a - q_b: 4uP; sums of coefficients and the least value of the
 ///     quadratic: 16u(r_a + r_b + P).
 /// PairSegment::slack is the sum of all that, and of the like terms of a distance evaluated from rounded vertices.
@@ -38,26 +41,26 @@ namespace fettle::core::clearance {
 /// A body on one path segment, with what its bounds need.
 struct BodySegment {
     kinematics::PathSegment path;
-    Matrix3 sweep = Matrix3::Zero();   ///< [w] base: |w x base X| = |sweep X|
+    Matrix3 sweep = Matrix3::Zero();          ///< [w] base: |w x base X| = |sweep X|
     Vector3 sweep_columns = Vector3::Zero();  ///< norms of its columns
-    double speed = 0;                  ///< |w|, rounded up
-    double twist = 0;                  ///< k = |theta0 x w|, rounded up
-    double base_norm = 1;              ///< >= the norm of the stored base, which is a rotation up to rounding only
+    double speed = 0;                         ///< |w|, rounded up
+    double twist = 0;                         ///< k = |theta0 x w|, rounded up
+    double base_norm = 1;                     ///< >= the norm of the stored base, which is a rotation up to rounding only
 };
 
 /// A pair of bodies on one path segment.
 struct PairSegment {
-    int step = -1, segment = 0;        ///< -1: the start pose, held
+    int step = -1, segment = 0;  ///< -1: the start pose, held
     BodySegment a, b;
-    double slack = 0;                  ///< [m] see the top of the file
+    double slack = 0;  ///< [m] see the top of the file
 };
 
 /// Both bodies at one parameter, relative to body b's reference point.
 struct Instant {
     double s = 0;
     Matrix3 rotation_a, rotation_b;
-    Matrix3 relative_rotation;         ///< rotation_a^T rotation_b
-    Vector3 offset;                    ///< q_a - q_b
+    Matrix3 relative_rotation;  ///< rotation_a^T rotation_b
+    Vector3 offset;             ///< q_a - q_b
 };
 
 PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b);
@@ -90,12 +93,12 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
 /// A lower bound, and its value if the bodies' curves were straight and the plane parallel to itself: the difference is what halving
 /// the interval can win.
 struct SegmentBound {
-    double lower = 0;       ///< may be negative: no information but the order of a search
-    double at_ends = 0;     ///< min(c0, c2)
+    double lower = 0;    ///< may be negative: no information but the order of a search
+    double at_ends = 0;  ///< min(c0, c2)
 };
 
 /// `h`: length of the interval. `deviation_scale` is 1 but in tests that show that a bound without deviation is found out.
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a, const Reach& b,
-                           double deviation_scale = 1);
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a,
+                           const Reach& b, double deviation_scale = 1);
 
 }  // namespace fettle::core::clearance

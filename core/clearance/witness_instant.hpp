@@ -13,7 +13,8 @@ TrianglePairDistance placed_distance(const Instant& at, const Matrix3& corners_a
 /// Its derivative in s: n.(velocity of a's closest point - that of b's), n from b to a. Zero at distance 0.
 double distance_rate(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s);
 
-/// The local minimum of the distance next to `s`, by bisection of its derivative, in [0, 1]: an end, or a place where the rate changes sign.
+/// The local minimum of the distance next to `s`, by bisection of its derivative, in [0, 1]: an end, or a place where the rate changes
+/// sign.
 double least_distance_near(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s);
 
 }  // namespace fettle::core::clearance

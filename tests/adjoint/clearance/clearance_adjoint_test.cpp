@@ -48,7 +48,8 @@ adjoint::TrajectoryGradient zero_like(const core::stepper::Trajectory& trajector
 adjoint::ModelGradient zero_like(const core::model::Model& model) {
     adjoint::ModelGradient bar;
     bar.bodies.resize(model.bodies.size());
-    for (std::size_t i = 0; i < model.bodies.size(); ++i) bar.bodies[i].vertices_bar = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());
+    for (std::size_t i = 0; i < model.bodies.size(); ++i)
+        bar.bodies[i].vertices_bar = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());
     return bar;
 }
 
@@ -61,7 +62,8 @@ struct Case {
         core::clearance::ClearanceOptions options;
         options.tolerance = 1e-12;
         options.motion = motion;
-        return certify_clearance(model, through(poses), {swapped ? core::clearance::PairRequest{1, 0, 0} : core::clearance::PairRequest{0, 1, 0}}, options)[0];
+        return certify_clearance(model, through(poses),
+                                 {swapped ? core::clearance::PairRequest{1, 0, 0} : core::clearance::PairRequest{0, 1, 0}}, options)[0];
     }
 };
 
@@ -144,7 +146,8 @@ TEST_CASE("Clearance's derivative by poses and vertices agrees with differences 
         sweep.largest = 1e-4;
         sweep.count = 3;
         const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
-        CAPTURE(i, pair.upper, pair.witness.step, pair.witness.s, pair.witness.edge_edge, check.row, check.analytic, check.difference, check.step);
+        CAPTURE(i, pair.upper, pair.witness.step, pair.witness.s, pair.witness.edge_edge, check.row, check.analytic, check.difference,
+                check.step);
         CHECK((upper(VectorX::Zero(gradient.size())) == pair.upper));
         CHECK(check.relative_error < 1e-8);
         CHECK((gradient_of(c, pair, -3) + 3 * gradient).norm() < 1e-12);

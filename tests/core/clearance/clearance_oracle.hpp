@@ -59,8 +59,20 @@ inline Solid prism(int n, double radius, double height) {
 
 inline Solid box(const Vector3& half) {
     Matrix3X x(3, 8);
-    for (int i = 0; i < 8; ++i) x.col(i) << ((i & 1) ? half.x() : -half.x()), ((i & 2) ? half.y() : -half.y()), ((i & 4) ? half.z() : -half.z());
-    return make_solid(x, {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}});
+    for (int i = 0; i < 8; ++i)
+        x.col(i) << ((i & 1) ? half.x() : -half.x()), ((i & 2) ? half.y() : -half.y()), ((i & 4) ? half.z() : -half.z());
+    return make_solid(x, {{0, 2, 1},
+                          {1, 2, 3},
+                          {4, 5, 6},
+                          {5, 7, 6},
+                          {0, 1, 4},
+                          {1, 5, 4},
+                          {2, 6, 3},
+                          {3, 6, 7},
+                          {0, 4, 2},
+                          {2, 4, 6},
+                          {1, 3, 5},
+                          {3, 7, 5}});
 }
 
 inline Solid tetrahedron(std::mt19937& random, double size) {
@@ -190,10 +202,14 @@ inline Vector3 random_vector(std::mt19937& random, double size) {
 inline Solid random_solid(std::mt19937& random, double size) {
     std::uniform_real_distribution<double> u(0.2, 1);
     switch (random() % 4) {
-        case 0: return box(size * Vector3(u(random), u(random), u(random)));
-        case 1: return prism(3 + static_cast<int>(random() % 6), size * u(random), size * 2 * u(random));
-        case 2: return tetrahedron(random, size);
-        default: return box(size * Vector3(1, u(random), 0.01));  // a thin plate
+        case 0:
+            return box(size * Vector3(u(random), u(random), u(random)));
+        case 1:
+            return prism(3 + static_cast<int>(random() % 6), size * u(random), size * 2 * u(random));
+        case 2:
+            return tetrahedron(random, size);
+        default:
+            return box(size * Vector3(1, u(random), 0.01));  // a thin plate
     }
 }
 

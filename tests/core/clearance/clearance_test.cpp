@@ -46,8 +46,8 @@ TEST_CASE("Boxes as assembled: bounds, status and witness", "[clearance]") {
     const auto start = as_assembled(model);
     CHECK(start.steps.empty());
     CHECK(start.body_names[2] == "body 2");
-    const auto results = certify_clearance(
-        model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}}, ClearanceOptions{1e-6, false, 1'000'000, {}});
+    const auto results = certify_clearance(model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}},
+                                           ClearanceOptions{1e-6, false, 1'000'000, {}});
     const std::vector<PairStatus> expected{PairStatus::clear, PairStatus::violated, PairStatus::undecided,
                                            PairStatus::clear, PairStatus::contact,  PairStatus::clear};
     for (std::size_t i = 0; i < results.size(); ++i) {

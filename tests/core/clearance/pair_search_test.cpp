@@ -15,9 +15,9 @@ namespace {
 
 /// What is wrong with a result, in metres; all three are at most 0 for a certificate that holds.
 struct Audit {
-    double lower_above_sample = 0;   ///< lower minus the least sampled distance
-    double upper_not_attained = 0;   ///< |upper - distance at the witness instant| minus what rounding may do
-    double gap_too_wide = 0;         ///< upper - lower - tolerance
+    double lower_above_sample = 0;  ///< lower minus the least sampled distance
+    double upper_not_attained = 0;  ///< |upper - distance at the witness instant| minus what rounding may do
+    double gap_too_wide = 0;        ///< upper - lower - tolerance
     double sampled = 0;
 };
 
@@ -67,11 +67,11 @@ Campaign run(const Family& family, int pairs, int samples, double deviation_scal
 
 const std::vector<Family> families{
     {1, 1, Vector3::Zero(), 1e-6},
-    {1, 12, Vector3::Zero(), 1e-6},                       // rotation vectors of several pi
-    {1e-3, 2, Vector3::Zero(), 1e-6},                     // parts of a millimetre, to a nanometre
-    {0.02, 1, Vector3(300, -800, 1500), 1e-4},            // far from the origin
-    {1e-3, 0.01, Vector3(1e5, 1e5, 0), 1e-9},             // rounding is larger than the tolerance
-    {0.05, 0.03, Vector3(0.1, 0.2, 0), 2e-5},             // a time step of a crank
+    {1, 12, Vector3::Zero(), 1e-6},             // rotation vectors of several pi
+    {1e-3, 2, Vector3::Zero(), 1e-6},           // parts of a millimetre, to a nanometre
+    {0.02, 1, Vector3(300, -800, 1500), 1e-4},  // far from the origin
+    {1e-3, 0.01, Vector3(1e5, 1e5, 0), 1e-9},   // rounding is larger than the tolerance
+    {0.05, 0.03, Vector3(0.1, 0.2, 0), 2e-5},   // a time step of a crank
 };
 
 }  // namespace
@@ -208,7 +208,7 @@ TEST_CASE("Out of budget: the bounds are true, only wide", "[clearance]") {
             CHECK(result.lower <= static_cast<double>(sampled_minimum(pair, 100, 5)));
             CHECK(result.upper + 1e-15 >= result.lower);
             CHECK(std::isfinite(result.upper));
-            CHECK(result.evaluations <= budget + 8);
+            CHECK(result.evaluations < budget + 12);  // the split that was begun is finished: two leaves of two triangles, three directions
         }
     }
 }

@@ -16,9 +16,7 @@ namespace {
 
 using Exact3 = std::array<Exact, 3>;
 
-Exact3 cross(const Exact3& a, const Exact3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Exact3 cross(const Exact3& a, const Exact3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 
 /// World position by R Y = Y + sinc(x) theta x Y + (1 - cos x)/x^2 theta x (theta x Y).
 Exact3 exact_position(const core::kinematics::PathSegment& p, const Vector3& X, double s) {
@@ -33,7 +31,8 @@ Exact3 exact_position(const core::kinematics::PathSegment& p, const Vector3& X, 
     const Exact x = sqrt(squared), half = sin(x / 2);
     const Exact3 ty = cross(t, y), tty = cross(t, ty);
     Exact3 result;
-    for (int i = 0; i < 3; ++i) result[i] = q[i] + y[i] + (x > 0 ? Exact(sin(x) / x * ty[i] + 2 * half * half / squared * tty[i]) : Exact(0));
+    for (int i = 0; i < 3; ++i)
+        result[i] = q[i] + y[i] + (x > 0 ? Exact(sin(x) / x * ty[i] + 2 * half * half / squared * tty[i]) : Exact(0));
     return result;
 }
 
@@ -81,8 +80,8 @@ TEST_CASE("The moving plane bounds every point of two triangles, in 50-digit ari
         const Vector3 n0 = unit_direction(trial % 2 ? random_vector(random, 1) : path_a.rotation_vector_step);
         const Vector3 n1 = unit_direction(n0 + random_vector(random, trial % 4 < 2 ? 0 : u(random)));
         const MovingPlane plane = moving_plane(instant_at(segment, s0), instant_at(segment, s0 + h), n0, n1);
-        const SegmentBound bound = segment_bound(segment, h, plane, corner_coefficients(plane, a, b), corners_reach(segment.a, a),
-                                                 corners_reach(segment.b, b));
+        const SegmentBound bound =
+            segment_bound(segment, h, plane, corner_coefficients(plane, a, b), corners_reach(segment.a, a), corners_reach(segment.b, b));
         CHECK((n0.norm() <= 1 && n1.norm() <= 1));
         for (const double v : {0.0, 0.125, 0.5, 0.625, 1.0}) {
             Exact least_a = 1e300, largest_b = -1e300;
@@ -139,8 +138,8 @@ TEST_CASE("The bound converges with the square of the interval, tilting faces in
         const Instant start = instant_at(segment, 0), end = instant_at(segment, 1);
         const auto loss_with = [&](const Vector3& n0, const Vector3& n1) {
             const MovingPlane plane = moving_plane(start, end, n0, n1);
-            const SegmentBound bound = segment_bound(segment, 1, plane, corner_coefficients(plane, corner, face), corners_reach(segment.a, corner),
-                                                     corners_reach(segment.b, face));
+            const SegmentBound bound = segment_bound(segment, 1, plane, corner_coefficients(plane, corner, face),
+                                                     corners_reach(segment.a, corner), corners_reach(segment.b, face));
             const double d0 = placed_distance(start, corner, face).distance, d1 = placed_distance(end, corner, face).distance;
             return std::min(d0, d1) - bound.lower;
         };

@@ -52,12 +52,15 @@ TEST_CASE("Triangles that pass through each other are at distance 0", "[clearanc
         const Matrix3 a = random_triangle(random, Vector3::Zero()), b = random_triangle(random, random_vector(random, 0.6));
         const auto pair = triangle_pair_distance(a, b);
         // Independent: an edge of one crosses the other's inside, by orientations (far from degenerate, or not counted).
-        const auto volume = [](const Vector3& p, const Vector3& q, const Vector3& r, const Vector3& s) { return (q - p).dot((r - p).cross(s - p)); };
+        const auto volume = [](const Vector3& p, const Vector3& q, const Vector3& r, const Vector3& s) {
+            return (q - p).dot((r - p).cross(s - p));
+        };
         const auto crosses = [&](const Matrix3& edges, const Matrix3& t) {
             for (int k = 0; k < 3; ++k) {
                 const Vector3 p = edges.col(k), q = edges.col((k + 1) % 3);
                 const double sides = volume(p, t.col(0), t.col(1), t.col(2)) * volume(q, t.col(0), t.col(1), t.col(2));
-                const double v0 = volume(p, q, t.col(0), t.col(1)), v1 = volume(p, q, t.col(1), t.col(2)), v2 = volume(p, q, t.col(2), t.col(0));
+                const double v0 = volume(p, q, t.col(0), t.col(1)), v1 = volume(p, q, t.col(1), t.col(2)),
+                             v2 = volume(p, q, t.col(2), t.col(0));
                 if (sides < 0 && v0 * v1 > 0 && v1 * v2 > 0) return true;
             }
             return false;
