@@ -20,12 +20,18 @@ constexpr double rounding = 1e-14;
 struct SweptBody {
     const model::Body* body;
     Pose start, end;
-    double turn;  // |w|
+    double turn;                          // |w|
+    std::array<Matrix3X, 2> vertices{};   // world positions at both ends; filled when some pair of boxes is close
+    void place_vertices() {
+        if (vertices[0].cols() > 0) return;
+        vertices[0] = (start.rotation * body->mesh.vertices).colwise() + start.position;
+        vertices[1] = (end.rotation * body->mesh.vertices).colwise() + end.position;
+    }
     double deviation(double radius) const { return 0.125 * turn * turn * radius * (1 + 1e-12); }
 };
 
 SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& segment) {
-    return {&body, pose_at(segment, 0), pose_at(segment, 1), segment.rotation_vector_step.norm()};
+    return {&body, pose_at(segment, 0), pose_at(segment, 1), segment.rotation_vector_step.norm(), {}};
 }
 
 // One separating direction, in the frames of both bodies at both ends.
@@ -37,7 +43,7 @@ struct Axis {
 
 class PairSearch {
 public:
-    PairSearch(const SweptBody& a, const SweptBody& b, double activation, const MotionAllowance& allow_a, const MotionAllowance& allow_b)
+    PairSearch(SweptBody& a, SweptBody& b, double activation, const MotionAllowance& allow_a, const MotionAllowance& allow_b)
         : a_(a), b_(b), allow_a_(allow_a), allow_b_(allow_b), activation_(activation) {
         for (int k = 0; k < 3; ++k) {
             axes_[k] = axis(a_.start.rotation.col(k));
@@ -107,42 +113,41 @@ private:
         return false;
     }
 
-    // Vertices of a primitive at both ends.
+    // A vertex at both ends.
     using Ends = std::array<Vector3, 2>;
-    static Ends ends(const SweptBody& s, int v) {
-        const Vector3 X = s.body->mesh.vertices.col(v);
-        return {world_position(s.start, X), world_position(s.end, X)};
-    }
-    using Corners = std::array<Ends, 3>;
-    static Corners corners(const SweptBody& s, const HierarchyElement& e) {
-        Corners c;
-        for (int k = 0; k < e.vertex_count; ++k) c[k] = ends(s, e.vertices[k]);
-        return c;
+    static Ends ends(const SweptBody& s, int v) { return {s.vertices[0].col(v), s.vertices[1].col(v)}; }
+
+    // Box of some vertices at both ends.
+    struct Box {
+        Vector3 low, high;
+        bool apart_from(const Box& other, double margin) const {
+            return ((low - other.high).array() > margin).any() || ((other.low - high).array() > margin).any();
+        }
+    };
+    static Box box(const SweptBody& s, const int* v, int count) {
+        Box out{s.vertices[0].col(v[0]), s.vertices[0].col(v[0])};
+        for (const Matrix3X& x : s.vertices)
+            for (int k = 0; k < count; ++k) {
+                out.low = out.low.cwiseMin(x.col(v[k]));
+                out.high = out.high.cwiseMax(x.col(v[k]));
+            }
+        return out;
     }
 
     void visit_leaves(const HierarchyNode& na, const HierarchyNode& nb) {
+        a_.place_vertices();
+        b_.place_vertices();
         margin_ = margin_of(na.radius, nb.radius) + rounding * world_size_;
         lost_ = a_.deviation(na.radius) + b_.deviation(nb.radius) + rounding * world_size_;
         for (int i = na.first; i < na.first + na.count; ++i) {
             const HierarchyElement& ea = a_.body->hierarchy->elements()[i];
-            const Corners ca = corners(a_, ea);
-            for (int j = nb.first; j < nb.first + nb.count; ++j) visit_elements(ea, ca, b_.body->hierarchy->elements()[j]);
-        }
-    }
-
-    bool boxes_apart(const Corners& a, int count_a, const Corners& b, int count_b) const {
-        Vector3 low_a = a[0][0], high_a = low_a, low_b = b[0][0], high_b = low_b;
-        for (int e = 0; e < 2; ++e) {
-            for (int k = 0; k < count_a; ++k) {
-                low_a = low_a.cwiseMin(a[k][e]);
-                high_a = high_a.cwiseMax(a[k][e]);
-            }
-            for (int k = 0; k < count_b; ++k) {
-                low_b = low_b.cwiseMin(b[k][e]);
-                high_b = high_b.cwiseMax(b[k][e]);
+            const Box box_a = box(a_, ea.vertices.data(), ea.vertex_count);
+            for (int j = nb.first; j < nb.first + nb.count; ++j) {
+                const HierarchyElement& eb = b_.body->hierarchy->elements()[j];
+                const Box box_b = box(b_, eb.vertices.data(), eb.vertex_count);
+                if (!box_a.apart_from(box_b, margin_)) visit_elements(ea, box_a, eb, box_b);
             }
         }
-        return ((low_a - high_b).array() > margin_).any() || ((low_b - high_a).array() > margin_).any();
     }
 
     // Least separation, at the other end, along the direction of the closest points at this one.
@@ -173,30 +178,36 @@ private:
         if (d + lost_ <= margin_) list.push_back({i, j, d});
     }
 
-    void visit_elements(const HierarchyElement& ea, const Corners& ca, const HierarchyElement& eb) {
-        const Corners cb = corners(b_, eb);
-        if (boxes_apart(ca, ea.vertex_count, cb, eb.vertex_count)) return;
-        if (eb.triangle >= 0)
-            for (int k = 0; k < ea.owned_vertex_count; ++k) {
-                const int v = ea.owned_vertices[k];
-                add(out_.vertex_triangle, v, eb.triangle, PairType::point_triangle, {ends(a_, v), cb[0], cb[1], cb[2]});
-            }
-        if (ea.triangle >= 0)
-            for (int k = 0; k < eb.owned_vertex_count; ++k) {
-                const int v = eb.owned_vertices[k];
-                add(out_.triangle_vertex, ea.triangle, v, PairType::point_triangle, {ends(b_, v), ca[0], ca[1], ca[2]});
-            }
+    // Vertices that `owner` owns (on `v`) against the triangle of `other` (on `t`).
+    void visit_vertices(const SweptBody& v, const HierarchyElement& owner, const SweptBody& t, const HierarchyElement& other, const Box& box_t,
+                        bool vertex_first) {
+        if (other.triangle < 0) return;
+        for (int k = 0; k < owner.owned_vertex_count; ++k) {
+            const int i = owner.owned_vertices[k];
+            if (box(v, &i, 1).apart_from(box_t, margin_)) continue;
+            const std::array<Ends, 4> x{ends(v, i), ends(t, other.vertices[0]), ends(t, other.vertices[1]), ends(t, other.vertices[2])};
+            if (vertex_first) add(out_.vertex_triangle, i, other.triangle, PairType::point_triangle, x);
+            else add(out_.triangle_vertex, other.triangle, i, PairType::point_triangle, x);
+        }
+    }
+
+    void visit_elements(const HierarchyElement& ea, const Box& box_a, const HierarchyElement& eb, const Box& box_b) {
+        visit_vertices(a_, ea, b_, eb, box_b, true);
+        visit_vertices(b_, eb, a_, ea, box_a, false);
         for (int k = 0; k < ea.owned_edge_count; ++k) {
-            const auto& edge_a = a_.body->mesh.edges[ea.owned_edges[k]];
-            const Ends a0 = ends(a_, edge_a[0]), a1 = ends(a_, edge_a[1]);
+            const geometry::Edge& edge_a = a_.body->mesh.edges[ea.owned_edges[k]];
+            const Box edge_box = box(a_, edge_a.data(), 2);
+            if (edge_box.apart_from(box_b, margin_)) continue;
             for (int l = 0; l < eb.owned_edge_count; ++l) {
-                const auto& edge_b = b_.body->mesh.edges[eb.owned_edges[l]];
-                add(out_.edge_edge, ea.owned_edges[k], eb.owned_edges[l], PairType::edge_edge, {a0, a1, ends(b_, edge_b[0]), ends(b_, edge_b[1])});
+                const geometry::Edge& edge_b = b_.body->mesh.edges[eb.owned_edges[l]];
+                if (edge_box.apart_from(box(b_, edge_b.data(), 2), margin_)) continue;
+                add(out_.edge_edge, ea.owned_edges[k], eb.owned_edges[l], PairType::edge_edge,
+                    {ends(a_, edge_a[0]), ends(a_, edge_a[1]), ends(b_, edge_b[0]), ends(b_, edge_b[1])});
             }
         }
     }
 
-    const SweptBody &a_, &b_;
+    SweptBody &a_, &b_;
     const MotionAllowance &allow_a_, &allow_b_;
     const double activation_;
     std::array<Axis, 6> axes_;

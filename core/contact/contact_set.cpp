@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace fettle::core::contact {
 namespace {
@@ -45,6 +46,12 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
     }
 }
 
+// Where a pair stands in the order of its bodies' primitives.
+using Key = std::array<int, 5>;
+Key key_of(const ContactPair& pair) {
+    return {pair.type == PairType::edge_edge ? 1 : 0, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]};
+}
+
 kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
     auto& blocks = hessian.off_diagonal;
     const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b), [](const auto& block, const std::pair<int, int>& key) {
@@ -70,6 +77,8 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
             (first == list.a ? forward : backward).contacts.push_back(pair);
         });
         for (BodyPairContacts* contacts : {&forward, &backward}) {
+            std::sort(contacts->contacts.begin(), contacts->contacts.end(),
+                      [](const ContactPair& x, const ContactPair& y) { return key_of(x) < key_of(y); });
             set.count += static_cast<int>(contacts->contacts.size());
             if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));
         }
@@ -84,14 +93,19 @@ double barrier_potential(const model::Model& model, const Candidates& candidates
     const double dmin_squared = parameters.dmin * parameters.dmin;
     const std::vector<double> moved = displacements(model, candidates, poses);
     double sum = 0;
+    std::vector<std::tuple<int, Key, double>> terms;
     for (const BodyPairCandidates& list : candidates.pairs) {
-        double pair_sum = 0;
-        for_each_pair(model, list, poses, parameters.activation + moved[list.a] + moved[list.b], [&](int, int, ContactPair& pair) {
+        terms.clear();
+        for_each_pair(model, list, poses, parameters.activation + moved[list.a] + moved[list.b], [&](int first, int, ContactPair& pair) {
             pair.closest = closest_points(pair.type, pair.x);
             if (pair.closest.distance_squared >= activation_squared) return;
-            pair_sum += pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters)
-                                                                      : std::numeric_limits<double>::infinity();
+            const double value = pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters)
+                                                                              : std::numeric_limits<double>::infinity();
+            terms.emplace_back(first, key_of(pair), value);
         });
+        std::sort(terms.begin(), terms.end());
+        double pair_sum = 0;
+        for (const auto& [first, key, value] : terms) pair_sum += value;
         sum += pair_sum;
     }
     return sum;

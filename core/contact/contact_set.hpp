@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The pairs that are closer than the activation distance at one configuration, and the barrier potential summed over them.
+/// Contacts are ordered by their primitives, so that sums do not depend on how and when the candidates were found.
 #pragma once
 
 #include <vector>

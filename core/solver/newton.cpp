@@ -45,16 +45,17 @@ struct Direction {
 
 class Minimiser {
 public:
-    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear,
-              const NewtonOptions& options)
-        : problem_(problem), model_(*problem.model), targets_(targets), dofs_(dofs), linear_(linear), options_(options) {
+    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
+        : problem_(problem), model_(*problem.model), targets_(targets), dofs_(workspace.dofs), linear_(workspace.linear),
+          candidates_(workspace.candidates), options_(options) {
         for (const Pose& pose : problem.poses_t0) points_.push_back({pose.position, Vector3::Zero()});
         result_.poses = problem.poses_t0;
         result_.path.push_back(points_);
     }
 
     NewtonResult run() {
-        find_candidates(segments_to(points_));
+        const std::vector<PathSegment> here = segments_to(points_);
+        if (candidates_.poses.size() != here.size() || contact::covered_fraction(candidates_, here) < 1) find_candidates(here);
         value_ = energy::incremental_potential(problem_, result_.poses, candidates_);
         while (iterate()) {
         }
@@ -316,9 +317,9 @@ private:
     const std::vector<Vector6>& targets_;
     const FreeDofs& dofs_;
     LinearSolver& linear_;
+    contact::Candidates& candidates_;
     const NewtonOptions& options_;
     std::vector<ChartPoint> points_;
-    contact::Candidates candidates_;
     contact::ContactSet contacts_;
     bool on_segments_ = false;  // were the candidates found along the segments of this search?
     contact::SafeStep limiting_;
@@ -333,8 +334,9 @@ private:
 
 }  // namespace
 
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options) {
-    return Minimiser(problem, targets, dofs, linear, options).run();
+NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+                      const NewtonOptions& options) {
+    return Minimiser(problem, targets, workspace, options).run();
 }
 
 }  // namespace fettle::core::solver

@@ -37,8 +37,16 @@ struct NewtonResult {
     double residual = 0;          ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
 };
 
+/// What is worth keeping from one solve to the next; the result does not depend on it.
+struct NewtonWorkspace {
+    FreeDofs dofs;
+    LinearSolver linear;             ///< its symbolic factor
+    contact::Candidates candidates;  ///< complete near where the last solve ended
+    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
+};
+
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
-/// @param linear   kept by the caller from step to step (its symbolic factor is reused).
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs, LinearSolver& linear, const NewtonOptions& options);
+NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+                      const NewtonOptions& options);
 
 }  // namespace fettle::core::solver

@@ -37,7 +37,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     out.trajectory.timestep = model.timestep;
     for (const model::Body& body : model.bodies) out.trajectory.body_names.push_back(body.name);
     StepState state = start_state(model);
-    StepWorkspace workspace(model);
+    solver::NewtonWorkspace workspace(model);
     out.trajectory.poses.push_back(state.poses);
     const int steps = step_count(model, options);
     for (int t = 0; t < steps; ++t) {

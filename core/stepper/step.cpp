@@ -65,7 +65,7 @@ std::vector<Vector6> prescribed_targets(const model::Model& model, const std::ve
     return targets;
 }
 
-StepResult step(const model::Model& model, const StepState& state, StepWorkspace& workspace, const SimulationOptions& options) {
+StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options) {
     const energy::StepProblem problem = energy::implicit_euler_problem(model, state.poses, state.velocities);
     const std::vector<Vector6> targets = prescribed_targets(model, state.poses, state.time);
     solver::NewtonOptions newton;
@@ -74,7 +74,7 @@ StepResult step(const model::Model& model, const StepState& state, StepWorkspace
     newton.to_rounding = options.for_gradient;
     newton.should_stop = options.should_stop;
     const solver::NewtonResult solved =
-        solver::minimise(problem, targets, workspace.dofs, workspace.linear, newton);
+        solver::minimise(problem, targets, workspace, newton);
 
     StepResult result;
     result.status = simulation_status(solved.status);

@@ -18,13 +18,6 @@ struct StepState {
 };
 StepState start_state(const model::Model& model);
 
-/// Scratch kept between steps.
-struct StepWorkspace {
-    solver::FreeDofs dofs;
-    solver::LinearSolver linear;
-    explicit StepWorkspace(const model::Model& model) : dofs(solver::free_dofs(model)), linear(dofs) {}
-};
-
 struct StepResult {
     SimulationStatus status = SimulationStatus::ok;
     std::string message;
@@ -33,7 +26,7 @@ struct StepResult {
     StepReport report;
 };
 
-StepResult step(const model::Model& model, const StepState& state, StepWorkspace& workspace, const SimulationOptions& options);
+StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options);
 
 /// Chart coordinates of the prescribed DOFs at the end of a step that starts at `time` from `poses`.
 std::vector<Vector6> prescribed_targets(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time);
