@@ -131,6 +131,13 @@ private:
     Errors scene_errors_;
 };
 
+// 10 and 10.0 are the same number, however they are written.
+void make_numbers_equal(nlohmann::json& json) {
+    if (json.is_number()) json = json.get<double>();
+    if (!json.is_structured()) return;
+    for (auto& child : json) make_numbers_equal(child);
+}
+
 // Everything of a scene that is not in its own text: meshes, which come from files or generators.
 void append_bytes(std::string& text, const void* data, size_t size) { text.append(static_cast<const char*>(data), size); }
 
@@ -161,7 +168,13 @@ bool is_design_file(const std::string& path) {
 std::string design_text(const Design& design, const VectorX& values, const std::string& directory) {
     auto json = nlohmann::ordered_json::parse(design.text);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json["parameters"][k]["value"] = from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
+        const Parameter& parameter = design.parameters[k];
+        auto& entry = json["parameters"][k];
+        const double value = values[static_cast<Eigen::Index>(k)];
+        // A value at a bound is written as the bound is: a neighbour with the same SI value could lie outside.
+        entry["value"] = value == parameter.lower   ? entry["lower"].get<double>()
+                         : value == parameter.upper ? entry["upper"].get<double>()
+                                                    : from_si(value, parameter.unit);
     }
     std::error_code failure;
     const fs::path scene = fs::relative(fs::absolute(design.scene_path), fs::absolute(directory), failure);
@@ -173,6 +186,7 @@ std::string design_text(const Design& design, const VectorX& values, const std::
 std::string design_hash(const Design& design) {
     auto json = nlohmann::json::parse(design.text);
     for (const char* key : {"$schema", "description", "optimiser", "output", "scene"}) json.erase(key);
+    make_numbers_equal(json);
     std::string all = std::string(core::base::version()) + "\n" + json.dump() + "\n";
     if (const Result<std::string> scene = core::base::read_file(design.scene_path)) all += *scene;
     for (const core::scene::Body& body : design.scene.bodies) {

@@ -22,7 +22,8 @@ Result<Design> read_design(const std::string& path, const DesignReadOptions& opt
 bool is_design_file(const std::string& path);
 
 /// The design file with other parameter values (SI), to be written in folder `directory` (for the relative path of the scene). All else is
-/// as it was, comments of `description` included. Values read back as the same bits.
+/// as it was, comments of `description` included. Values that are representable (parameter_units.hpp)
+/// read back as the same bits.
 std::string design_text(const Design& design, const VectorX& values, const std::string& directory);
 
 /// Hash of all that an evaluation's numbers depend on: the program's version, the design without optimiser and output, the scene and its

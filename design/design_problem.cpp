@@ -196,6 +196,11 @@ optimisers::Problem DesignProblem::optimiser_problem() const {
         problem.lower[k] = design_.parameters[static_cast<size_t>(k)].lower;
         problem.upper[k] = design_.parameters[static_cast<size_t>(k)].upper;
     }
+    problem.representable = [this](const VectorX& p) {
+        VectorX q = p;
+        for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = representable(p[k], design_.parameters[static_cast<size_t>(k)].unit);
+        return q;
+    };
     problem.constraint_lower.resize(m);
     problem.constraint_upper.resize(m);
     for (Eigen::Index i = 0; i < m; ++i) {

@@ -60,7 +60,8 @@ public:
     /// Deterministic. A trial that cannot be built or simulated is not usable, and says why; no number stands in for it.
     DesignEvaluation evaluate(const VectorX& p, const EvaluateOptions& options = {}) const;
 
-    /// What the optimiser works on: values from `design`, bounds narrowed by their margins. `evaluate` is left empty.
+    /// What the optimiser works on: values from `design`, bounds narrowed by their margins. `evaluate` is left empty. Must not outlive
+    /// this object.
     optimisers::Problem optimiser_problem() const;
 
     /// An evaluation as the optimiser and the history take it. Throws optimisers::Interrupted if it was.

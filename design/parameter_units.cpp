@@ -57,4 +57,6 @@ double from_si(double value, const ParameterUnit& unit) {
     return guess;
 }
 
+double representable(double value, const ParameterUnit& unit) { return to_si(from_si(value, unit), unit); }
+
 }  // namespace fettle::design

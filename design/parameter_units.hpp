@@ -24,7 +24,10 @@ std::vector<std::string_view> parameter_unit_names();
 
 /// Power of ten units are divided by, not multiplied with: 14.7 mm is 14.7 / 1000, the double nearest to 0.0147.
 double to_si(double value, const ParameterUnit& unit);
-/// The shortest decimal number in `unit` that reads back as the same SI value, if there is one among the neighbours of value / factor.
+/// value / factor, or one of its neighbours: one that to_si maps back to the same bits, if there is one (not every SI value is some number
+/// of millimetres; representable() gives the nearest that is).
 double from_si(double value, const ParameterUnit& unit);
+/// The SI value nearest to `value`, to a few units of rounding, that a file in this unit can hold exactly: to_si(from_si(value)).
+double representable(double value, const ParameterUnit& unit);
 
 }  // namespace fettle::design

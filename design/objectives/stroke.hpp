@@ -2,7 +2,7 @@
 /// Stroke of a body along a world axis: largest minus smallest coordinate axis . q over the motion, of its reference point.
 ///
 /// The extremes are taken of the parabola through the three configurations round the extremal one, not of the configurations themselves:
-/// closer to the truth (the error of a cosine falls from (omega h)^2/8 of its amplitude, at worst, to (omega h)^4/128), and smooth in the
+/// closer to the truth (the error of a cosine falls from (omega h)^2/8 of its amplitude, at worst, to 3 (omega h)^4/128), and smooth in the
 /// parameters where the largest of many numbers has kinks. At the first or last configuration, or where the three do not bend, it is the
 /// configuration's own coordinate.
 ///   y(i + s) = y_i + b s + a s^2,  b = (y_+ - y_-)/2,  a = (y_+ - 2 y_i + y_-)/2;   extreme y_i - b^2/(4a)  at  s = -b/(2a), |s| <= 1/2

@@ -27,6 +27,8 @@ struct Problem {
     VectorX start, lower, upper;                 ///< n; finite, lower <= start <= upper
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     std::function<Evaluation(const VectorX&)> evaluate;
+    /// Optional: the nearest point that can be written down exactly (to a few units of rounding), the one that is evaluated in its place.
+    std::function<VectorX(const VectorX&)> representable;
 };
 
 /// Thrown by Problem::evaluate when the user interrupts: the point is neither good nor bad, and is not recorded.

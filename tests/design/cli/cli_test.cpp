@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// The program from outside: exit codes, one JSON object on stdout, messages. FETTLE_PROGRAM (a definition or the environment) says where it
+// is.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fettle/tests/design/small_design.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace fettle::tests::design_support;
+
+std::string program() {
+    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
+#ifdef FETTLE_PROGRAM
+    return FETTLE_PROGRAM;
+#else
+    return {};
+#endif
+}
+
+struct Answer {
+    int code = -1;
+    std::string out;
+    Json json() const { return Json::parse(out, nullptr, false); }
+};
+
+// stderr is dropped unless `with_errors`.
+Answer run(const std::string& arguments, bool with_errors = false) {
+    const std::string command = "'" + program() + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
+    Answer answer;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    char buffer[4096];
+    for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
+    const int status = ::pclose(pipe);
+    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return answer;
+}
+
+bool absent() {
+    if (!program().empty()) return false;
+    WARN("skipped: FETTLE_PROGRAM does not say where the program is");
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("usage: version, help, unknown commands and options") {
+    if (absent()) return;
+    CHECK(run("--version").code == 0);
+    CHECK(run("--version").out.find("fettle ") == 0);
+    const Answer help = run("--help");
+    CHECK(help.code == 0);
+    for (const char* word : {"validate", "simulate", "clearance", "gradient", "optimise", "Example", "--threads", "--mesh-dir"}) {
+        CHECK(help.out.find(word) != std::string::npos);
+    }
+    for (const char* command : {"validate", "simulate", "clearance", "gradient", "optimise", "optimize"}) {
+        const Answer each = run(std::string(command) + " --help");
+        CHECK(each.code == 0);
+        CHECK(each.out.find("Example") != std::string::npos);
+    }
+    CHECK(run("").code == 3);
+    CHECK(run("validate").code == 3);
+    CHECK(run("validate x --nonsense").code == 3);
+    const Answer typo = run("optmise x --json");
+    CHECK(typo.code == 3);
+    CHECK(typo.json()["status"] == "error");
+    CHECK(typo.out.find("optimise") != std::string::npos);
+}
+
+TEST_CASE("validate: what is usable, and every fault with its place") {
+    if (absent()) return;
+    const DesignFolder good;
+    const Answer design = run("validate " + good.design() + " --json");
+    CHECK(design.code == 0);
+    CHECK(design.json()["status"] == "ok");
+    CHECK(design.json()["kind"] == "design");
+    const Answer scene = run("--json validate " + (good.path / "small.scene.json").string());
+    CHECK(scene.code == 0);
+    CHECK(scene.json()["bodies"].size() == 3);
+
+    const DesignFolder bad(replaced(small_design, "\"lower\": 6,", "\"lower\": 16,"));
+    const Answer faulty = run("validate " + bad.design() + " --json");
+    CHECK(faulty.code == 3);
+    CHECK(faulty.json()["errors"][0]["code"] == "inconsistent");
+    CHECK(faulty.json()["errors"][0]["where"].get<std::string>().find("#/parameters/0/lower") != std::string::npos);
+
+    CHECK(run("validate /nowhere/x.scene.json").code == 3);
+    const DesignFolder touching(small_design, replaced(small_scene, "[3, 1, 5.12]", "[3, 1, 4]"));
+    const Answer intersecting = run("validate " + touching.design() + " --json");
+    CHECK(intersecting.code == 3);
+    CHECK(intersecting.json()["errors"][0]["code"] == "bodies_intersect");
+}
+
+TEST_CASE("simulate: keys, and a trajectory that clearance takes") {
+    if (absent()) return;
+    const DesignFolder folder;
+    const std::string out = (folder.path / "out").string();
+    const Answer answer = run("simulate " + (folder.path / "small.scene.json").string() + " --steps 6 --json --out " + out);
+    CHECK(answer.code == 0);
+    const Json json = answer.json();
+    for (const char* key : {"status", "steps", "newton_iterations", "wall_seconds", "minimum_distance", "bodies", "peak_memory_bytes"}) {
+        CHECK(json.contains(key));
+    }
+    CHECK(json["status"] == "ok");
+    CHECK(json["steps"] == 6);
+    CHECK(json["minimum_distance"].get<double>() > 0);
+    CHECK(json["bodies"][1]["name"] == "cube");
+    CHECK(json["bodies"][1]["rotation"].size() == 3);
+    CHECK(json["peak_memory_bytes"].get<long>() > 1000000);
+    const Answer certified = run("clearance " + out + "/trajectory.json --minimum 1mm --pairs cube:wall --json");
+    CHECK(certified.code == 0);
+    CHECK(certified.json()["motion"] == true);
+    CHECK(certified.json()["pairs"][0]["status"] == "clear");
+}
+
+TEST_CASE("clearance: exit codes by status, lengths with units") {
+    if (absent()) return;
+    const DesignFolder folder;
+    const std::string scene = (folder.path / "small.scene.json").string();
+    const Answer clear = run("clearance " + scene + " --minimum 0.1mm --json");
+    CHECK(clear.code == 0);
+    CHECK(clear.json()["status"] == "clear");
+    CHECK(clear.json()["minimum"] == 1e-4);
+    for (const char* key : {"a", "b", "lower", "upper", "status", "time", "point_a", "point_b"})
+        CHECK(clear.json()["pairs"][0].contains(key));
+    CHECK(run("clearance " + scene + " --minimum 130um --pairs cube:table").code == 1);
+    CHECK(run("clearance " + scene + " --minimum 0.12mm --pairs cube:table --tolerance 0.01mm").code == 2);
+    CHECK(run("clearance " + scene + " --minimum 0.1").code == 3);
+    CHECK(run("clearance " + scene).code == 3);
+    const Answer name = run("clearance " + scene + " --minimum 1mm --pairs cube:tabel", true);
+    CHECK(name.code == 3);
+    CHECK(name.out.find("did you mean \"table\"") != std::string::npos);
+    CHECK(run("clearance " + folder.design() + " --minimum 0.1mm").code == 0);
+}
+
+TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
+    if (absent()) return;
+    const DesignFolder folder;
+    const Answer gradient = run("gradient " + folder.design() + " --check --json");
+    CHECK(gradient.code == 0);
+    const Json g = gradient.json();
+    CHECK(g["gradient"].size() == 5);
+    CHECK(g["constraints"][0].contains("gradient"));
+    CHECK(g["largest_relative_error"].get<double>() < 1e-5);
+    CHECK(g["check"].size() == 30);
+    CHECK(g.contains("forward_seconds"));
+    CHECK(g.contains("backward_seconds"));
+
+    const std::string out = (folder.path / "out").string();
+    const Answer optimise = run("optimize " + folder.design() + " --json --out " + out);
+    const Json o = optimise.json();
+    for (const char* key : {"status", "objective_start", "objective", "parameters", "evaluations", "iterations", "constraint_violation",
+                            "clearance", "out"}) {
+        CHECK(o.contains(key));
+    }
+    CHECK((optimise.code == 0 || optimise.code == 2));
+    CHECK(o["objective"].get<double>() < o["objective_start"].get<double>());
+    const Answer again = run("optimise " + folder.design() + " --json --resume --out " + out);
+    CHECK(again.json()["parameters"] == o["parameters"]);
+    CHECK(again.json()["replayed_evaluations"] == o["evaluations"]);
+    CHECK(run("validate " + out + "/design.final.json").code == 0);
+
+    const DesignFolder impossible(replaced(small_design, "\"minimum\": 15", "\"minimum\": 60"));
+    const Answer unreachable = run("optimise " + impossible.design() + " --json --out " + out + "2");
+    CHECK(unreachable.code == 1);
+    CHECK(unreachable.json()["limits"].size() > 0);
+    CHECK(unreachable.json()["constraint_violation"].get<double>() > 0);
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+/// A small design whose simulation takes a fraction of a second: a box that falls 0.02 mm onto a table that a motor tilts; contact is
+/// active.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace fettle::tests::design_support {
+
+inline const char* small_scene = R"({
+  "fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.005, "end_time": 0.1,
+  "contact": { "dhat": 0.1 },
+  "bodies": [
+    { "name": "table", "type": "kinematic",
+      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } },
+      "position": [0, 0, -5], "prescribed": { "ry": { "rate": 40 } } },
+    { "name": "cube", "density": 1000, "angular_velocity": [20, 10, 0],
+      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } }, "position": [3, 1, 5.12] },
+    { "name": "wall", "type": "static",
+      "shape": { "generator": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } }, "position": [40, 0, 0] }
+  ]
+})";
+
+inline const char* small_design = R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [
+    { "name": "height", "value": 10, "lower": 6, "upper": 14,
+      "moves": [{ "body": "cube", "dimension": "size_z" }, { "body": "cube", "position": [0, 0, 0.5], "offset": [0, 0, 0.12] }] },
+    { "name": "width", "value": 20, "lower": 15, "upper": 30, "moves": [{ "body": "cube", "dimension": "size_x" }] },
+    { "name": "place", "value": 3, "lower": -5, "upper": 20, "moves": [{ "body": "cube", "position": [1, 0, 0] }] },
+    { "name": "density", "value": 1000, "lower": 500, "upper": 2000, "unit": "kg/m^3", "moves": [{ "body": "cube", "density": true }] },
+    { "name": "speed", "value": 40, "lower": 10, "upper": 60, "unit": "deg/s", "moves": [{ "motor": "table", "rate": "ry" }] }
+  ],
+  "objective": [
+    { "type": "mass", "bodies": ["cube"], "weight": 1 },
+    { "type": "marker_path", "body": "cube", "point": [3, 2, 1], "points": [[4, 2, 7], [8, 3, 6]], "times": [0.052, 0.1], "weight": 0.1 },
+    { "type": "marker_path", "body": "cube", "point": [0, 0, 5], "points": [[3, 1, 11]], "weight": 0.1 },
+    { "type": "play", "a": "cube", "b": "wall", "weight": 0.5 },
+    { "type": "stroke", "body": "cube", "axis": [0, 0, 2], "target": 1, "weight": 1 }
+  ],
+  "constraints": [
+    { "type": "clearance", "a": "cube", "b": "wall", "minimum": 15, "motion": true },
+    { "type": "clearance", "a": "cube", "b": "wall", "minimum": 16, "motion": true, "windows": 2 },
+    { "type": "stroke", "body": "cube", "axis": [0, 0, 1], "lower": 0, "upper": 30 },
+    { "type": "mass", "bodies": ["cube"], "lower": 1.5, "upper": 4 }
+  ],
+  "optimiser": { "name": "mma", "max_evaluations": 8 }
+})";
+
+/// A folder of its own with the two files in it.
+struct DesignFolder {
+    std::filesystem::path path;
+    explicit DesignFolder(const std::string& design = small_design, const std::string& scene = small_scene) {
+        std::string name = (std::filesystem::temp_directory_path() / "fettle_design_XXXXXX").string();
+        path = ::mkdtemp(name.data());
+        std::ofstream(path / "small.scene.json") << scene;
+        std::ofstream(path / "small.design.json") << design;
+    }
+    ~DesignFolder() { std::filesystem::remove_all(path); }
+    DesignFolder(const DesignFolder&) = delete;
+    DesignFolder& operator=(const DesignFolder&) = delete;
+    std::string design() const { return (path / "small.design.json").string(); }
+};
+
+/// `text` with the first `from` replaced; empty if it is not there, so that a test that replaces nothing fails.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const size_t at = text.find(from);
+    if (at == std::string::npos) return {};
+    return text.replace(at, from.size(), to);
+}
+
+}  // namespace fettle::tests::design_support
