@@ -19,14 +19,14 @@ TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
 
 /// dJ/d(body data).
 struct BodyGradient {
-    Matrix3X vertices_bar;                        ///< 3 x n, vertices in the body's frame (relative to c, which is constant)
+    Matrix3X vertices_bar;  ///< 3 x n, vertices in the body's frame (relative to c, which is constant)
     /// Start pose of the reference point's frame, [R q], entry by entry; R's part is defined up to what a rotation cannot do:
     /// pair it with tangents dP = [[phi] R, dq]. Body::velocity_start is held (a caller that holds omega in [[omega] R, v] adds that term).
     Matrix34 pose_start_bar = Matrix34::Zero();
     Matrix34 velocity_start_bar = Matrix34::Zero();  ///< Pdot at the start, entry by entry
-    double density_bar = 0;                       ///< moments = density * solid_moments(vertices)
+    double density_bar = 0;                          ///< moments = density * solid_moments(vertices)
     Vector3 force_bar = Vector3::Zero();
-    std::vector<Vector6> increment_bar;           ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
+    std::vector<Vector6> increment_bar;  ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
 };
 
 struct ModelGradient {
@@ -38,11 +38,11 @@ ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
 /// The same quantities as a direction to differentiate along (forward mode).
 struct BodyTangent {
     Matrix3X vertices_dot;
-    Vector6 pose_start_dot = Vector6::Zero();     ///< position, then left rotation: dR = [phi] R
+    Vector6 pose_start_dot = Vector6::Zero();  ///< position, then left rotation: dR = [phi] R
     Matrix34 velocity_start_dot = Matrix34::Zero();
     double density_dot = 0;
     Vector3 force_dot = Vector3::Zero();
-    std::vector<Vector6> increment_dot;           ///< [step]
+    std::vector<Vector6> increment_dot;  ///< [step]
 };
 struct ModelTangent {
     std::vector<BodyTangent> bodies;

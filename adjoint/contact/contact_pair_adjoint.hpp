@@ -18,7 +18,8 @@ inline bool is_mollified(const core::contact::ContactPair& pair) {
 }
 
 /// df_i/deps (world) [N s^2/m^4 with the weight h^2]. Contract: is_mollified(pair).
-std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPair& pair, const core::contact::BarrierParameters& parameters);
+std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPair& pair,
+                                                  const core::contact::BarrierParameters& parameters);
 
 /// deps/dX_i of the four undeformed vertices, each in its own body's frame [m^3].
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1);

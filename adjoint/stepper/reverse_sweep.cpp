@@ -92,7 +92,8 @@ private:
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 y_bar_[s][i].head<3>() = end_[s][i].col(3);
-                y_bar_[s][i].tail<3>() = left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
+                y_bar_[s][i].tail<3>() =
+                    left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
             rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
         }
@@ -154,7 +155,8 @@ private:
                 bar.pose_start_bar = end_[s][i];
                 if (moments_bar_[s][i].isZero(0)) continue;
                 bar.density_bar = moments_bar_[s][i].cwiseProduct(solid).sum();
-                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[s][i], bar.vertices_bar);
+                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[s][i],
+                                                bar.vertices_bar);
             }
         }
     }
@@ -173,7 +175,8 @@ private:
 
 }  // namespace
 
-Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Trajectory& trajectory, const std::vector<TrajectoryGradient>& seeds) {
+Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Trajectory& trajectory,
+                                                 const std::vector<TrajectoryGradient>& seeds) {
     if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
     ReverseSweep sweep(model, trajectory, seeds);
     if (Errors errors = sweep.run(); !errors.empty()) return errors;

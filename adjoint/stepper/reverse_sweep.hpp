@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 /// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. method.md section 10.
-/// Contract: the trajectory was simulated from this model with for_gradient = true. The result is as exact as the steps' residuals are small.
+/// Contract: the trajectory was simulated from this model with for_gradient = true. The result is as exact as the steps' residuals are
+/// small.
 ///
 /// One step, from P = P[t] to P' = P[t+1] = [exp([theta]) R, q'], unknowns y = (q', theta), residual g = dE/dy over the free ones:
 ///   y_bar = (dP'/dy)^T P'_bar,   H_ff lambda = y_bar_f,   lambda = 0 where prescribed,   v = (dP'/dy) lambda  (3x4 per body),
 ///   increment_bar_k = (y_bar - H lambda)_k                  prescribed; for positions P_bar gets the same, as y_k = q_k + increment,
 ///   P_hat_bar = v M,   M_bar -= sym(v^T (P' - P_hat)),   force_bar += h^2 lambda_q,   vertices: contact/contact_set_adjoint.hpp,
 ///   P_hat = 2 P[t] - P[t-1] + h^2 [0|gravity]               (at t = 0: P[0] + h velocity_start + h^2 [0|gravity]).
-/// The chart is based at R: with theta held, a rotation [delta] R turns the end by delta' = exp([theta]) delta. What this does to J and to the
-/// residual cancels where all three rotations of a body are free (lambda solves just that). Where one or two are prescribed, with
-/// the left Jacobian J_l of theta, phi = J_l lambda_theta, and the torque tau = J_l^-T g_theta that holds the prescribed ones,
+/// The chart is based at R: with theta held, a rotation [delta] R turns the end by delta' = exp([theta]) delta. What this does to J and to
+/// the residual cancels where all three rotations of a body are free (lambda solves just that). Where one or two are prescribed, with the
+/// left Jacobian J_l of theta, phi = J_l lambda_theta, and the torque tau = J_l^-T g_theta that holds the prescribed ones,
 ///   delta'_bar = J_l^-T (increment_bar_theta + C lambda_theta) + 1/2 phi x tau,   C_ab = <1/2 [tau], d2R/dtheta_a dtheta_b R^T>,
 /// because the derivative of the torque along a rotation psi is the symmetric tangent Hessian plus 1/2 psi x tau.
 #pragma once

@@ -46,10 +46,11 @@ LinearisedStep linearise_step(const core::model::Model& model, const core::stepp
 Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step, core::solver::LinearSolver& solver) {
     if (solver.factorise_indefinite(step.derivatives.hessian)) return {};
     const double time = trajectory.time_start + t * trajectory.timestep;
-    return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
-             "the step at t = " + std::to_string(time) +
-                 " s has no derivative: its equations' matrix is singular. Is a body left without mass, or was the trajectory simulated from "
-                 "another model?"}};
+    return {
+        {core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
+         "the step at t = " + std::to_string(time) +
+             " s has no derivative: its equations' matrix is singular. Is a body left without mass, or was the trajectory simulated from "
+             "another model?"}};
 }
 
 MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
@@ -80,9 +81,10 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const double angle = trajectory.steps[t].nodes.back()[i].rotation_vector.norm();
             if (angle < 1.99 * std::numbers::pi) continue;
-            errors.push_back({core::base::ErrorCode::out_of_range, "step " + std::to_string(t),
-                              "'" + model.bodies[i].name + "' turns by " + std::to_string(angle) +
-                                  " rad in one time step, which cannot be differentiated: use a smaller time step (less than a revolution each)"});
+            errors.push_back(
+                {core::base::ErrorCode::out_of_range, "step " + std::to_string(t),
+                 "'" + model.bodies[i].name + "' turns by " + std::to_string(angle) +
+                     " rad in one time step, which cannot be differentiated: use a smaller time step (less than a revolution each)"});
         }
     return errors;
 }

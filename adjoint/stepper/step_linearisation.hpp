@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One implicit Euler step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from the
-/// trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing else.
+/// One implicit Euler step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from
+/// the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing else.
 #pragma once
 
 #include "fettle/core/base/result.hpp"

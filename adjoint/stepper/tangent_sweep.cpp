@@ -49,7 +49,8 @@ public:
             const Body& body = model.bodies[i];
             const BodyTangent& dot = direction.bodies[i];
             moments_dot_.push_back(dot.density_dot * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles) +
-                                   body.density * geometry::solid_moments_tangent(body.mesh.vertices, body.mesh.triangles, dot.vertices_dot));
+                                   body.density *
+                                       geometry::solid_moments_tangent(body.mesh.vertices, body.mesh.triangles, dot.vertices_dot));
             poses_dot_.push_back(matrix_of(dot.pose_start_dot, trajectory.poses[0][i].rotation));
             velocities_dot_.push_back(dot.velocity_start_dot);
         }
@@ -74,8 +75,10 @@ private:
     // dP/dy_k of a body in the step's chart.
     Matrix34 chart_direction(int t, std::size_t i, const RotationDerivatives& r, int k) const {
         Matrix34 d = Matrix34::Zero();
-        if (k < 3) d(k, 3) = 1;
-        else d.leftCols<3>() = r.gradient[k - 3] * trajectory_.poses[t][i].rotation;
+        if (k < 3)
+            d(k, 3) = 1;
+        else
+            d.leftCols<3>() = r.gradient[k - 3] * trajectory_.poses[t][i].rotation;
         return d;
     }
 
@@ -97,7 +100,8 @@ private:
         if (k < 3) return dot(k, 3);
         const int a = k - 3;
         const Matrix3& base = trajectory_.poses[t][i].rotation;
-        double change = inner(dot.leftCols<3>(), r.gradient[a] * base) + inner(value.leftCols<3>(), r.gradient[a] * poses_dot_[i].leftCols<3>());
+        double change =
+            inner(dot.leftCols<3>(), r.gradient[a] * base) + inner(value.leftCols<3>(), r.gradient[a] * poses_dot_[i].leftCols<3>());
         for (int b = 0; b < 3; ++b)
             if (!is_free(model_.bodies[i], b + 3))
                 change += direction_.bodies[i].increment_dot[t][b + 3] * inner(value.leftCols<3>(), second_derivative(r, a, b) * base);

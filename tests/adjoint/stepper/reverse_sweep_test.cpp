@@ -104,7 +104,8 @@ TEST_CASE("free fall has the derivatives of its closed form", "[adjoint][stepper
     scene.model.timestep = 0.01;
     scene.model.velocity_tolerance = 1e-6;
     scene.model.kappa = 1e4;
-    scene.model.bodies.push_back(support::make_body("ball", support::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}), support::make_pose({0, 0, 0}, {1, 2, 30})));
+    scene.model.bodies.push_back(
+        support::make_body("ball", support::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}), support::make_pose({0, 0, 0}, {1, 2, 30})));
     support::set_velocity(scene.model.bodies[0], {0, 0, 3}, {0, 0, 0});
     scene.model.bodies[0].force = {0, 0, 7};
     const core::stepper::Trajectory trajectory = trajectory_of(scene);
@@ -126,8 +127,8 @@ TEST_CASE("a scripted body has the derivatives of its script", "[adjoint][steppe
     SweepScene scene{"script", {}, 10};
     scene.model.timestep = 0.1;
     scene.model.kappa = 1e4;
-    scene.model.bodies.push_back(support::make_body("crank", support::box_mesh({0, 0, 0}, {1, 0.1, 0.1}), support::make_pose({0, 0, 0.3}, {1, 0, 0}),
-                                                    core::scene::BodyType::kinematic_body));
+    scene.model.bodies.push_back(support::make_body("crank", support::box_mesh({0, 0, 0}, {1, 0.1, 0.1}),
+                                                    support::make_pose({0, 0, 0.3}, {1, 0, 0}), core::scene::BodyType::kinematic_body));
     support::prescribe(scene.model.bodies[0], 1, 0.5);
     support::prescribe(scene.model.bodies[0], 5, 2);
     const core::stepper::Trajectory trajectory = trajectory_of(scene);

@@ -40,7 +40,8 @@ Matrix34 velocity_matrix(const Vector6& tangent, const Matrix3& rotation) {
 
 SweepScene free_flight() {
     SweepScene scene{"free flight", base_model(), 12};
-    scene.model.bodies.push_back(make_body("brick", box_mesh({-0.02, -0.05, 0.01}, {0.06, 0.03, 0.04}), make_pose({0.3, -0.4, 0.8}, {0, 0, 1})));
+    scene.model.bodies.push_back(
+        make_body("brick", box_mesh({-0.02, -0.05, 0.01}, {0.06, 0.03, 0.04}), make_pose({0.3, -0.4, 0.8}, {0, 0, 1})));
     support::set_velocity(scene.model.bodies[0], {1, 0.5, 2}, {4, -3, 7});
     scene.model.bodies[0].force = {0.3, 0.1, -0.2};
     return scene;
@@ -51,8 +52,10 @@ SweepScene stack() {
     auto& bodies = scene.model.bodies;
     bodies.push_back(support::ground_plate());
     bodies.push_back(make_body("lower", box_mesh({-0.05, -0.04, -0.03}, {0.05, 0.04, 0.05}), make_pose({0.02, 0.01, 0.1}, {0, 0, 0.035})));
-    bodies.push_back(make_body("upper", box_mesh({-0.03, -0.05, -0.02}, {0.04, 0.03, 0.03}), make_pose({0.3, 0.5, 0.4}, {0.015, 0.01, 0.135})));
-    bodies.push_back(make_body("side", box_mesh({-0.02, -0.03, -0.03}, {0.03, 0.03, 0.03}), make_pose({0.01, -0.02, 0.11}, {0.0885, 0.01, 0.034})));
+    bodies.push_back(
+        make_body("upper", box_mesh({-0.03, -0.05, -0.02}, {0.04, 0.03, 0.03}), make_pose({0.3, 0.5, 0.4}, {0.015, 0.01, 0.135})));
+    bodies.push_back(
+        make_body("side", box_mesh({-0.02, -0.03, -0.03}, {0.03, 0.03, 0.03}), make_pose({0.01, -0.02, 0.11}, {0.0885, 0.01, 0.034})));
     support::set_velocity(bodies[2], {0.2, 0.1, -0.4}, {1, -2, 0.5});
     support::set_velocity(bodies[3], {-0.3, 0, 0}, {0, 0, 0});
     bodies[2].force = {0.2, -0.1, 0.1};
@@ -63,17 +66,20 @@ SweepScene twisted_pair() {
     SweepScene scene{"twisted pair", base_model(), 15};
     auto& bodies = scene.model.bodies;
     bodies.push_back(make_body("lower", box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0}), {}, BodyType::static_body));
-    bodies.push_back(make_body("upper", box_mesh({-0.0503, -0.0496, 0.001}, {0.0494, 0.0505, 0.06}), make_pose({0.003, -0.002, 0.011}, {0, 0, 0.0008})));
+    bodies.push_back(
+        make_body("upper", box_mesh({-0.0503, -0.0496, 0.001}, {0.0494, 0.0505, 0.06}), make_pose({0.003, -0.002, 0.011}, {0, 0, 0.0008})));
     support::set_velocity(bodies[1], {0.01, -0.005, -0.05}, {0, 0, -0.15});
     return scene;
 }
 
 SweepScene tilting_motor() {
-    SweepScene scene{"tilting motor", base_model(), 20};
+    SweepScene scene{"tilting motor", base_model(), 14};
     auto& bodies = scene.model.bodies;
     bodies.push_back(support::ground_plate());
-    bodies.push_back(make_body("paddle", box_mesh({-0.02, -0.01, -0.02}, {0.12, 0.012, 0.02}), make_pose({0.05, -0.03, 0.2}, {0, 0, 0.032})));
-    bodies.push_back(make_body("box", box_mesh({-0.02, -0.02, -0.021}, {0.02, 0.025, 0.03}), make_pose({0, 0, 0.3}, {0.07, 0.075, 0.0222})));
+    bodies.push_back(
+        make_body("paddle", box_mesh({-0.02, -0.01, -0.02}, {0.12, 0.012, 0.02}), make_pose({0.05, -0.03, 0.2}, {0, 0, 0.032})));
+    bodies.push_back(
+        make_body("box", box_mesh({-0.02, -0.02, -0.021}, {0.02, 0.025, 0.03}), make_pose({0, 0, 0.3}, {0.07, 0.075, 0.0222})));
     prescribe(bodies[1], 5, 6.0);
     support::set_velocity(bodies[1], {0, 0, -0.1}, {0.5, 0.2, 6});
     return scene;
@@ -84,7 +90,8 @@ SweepScene double_motor() {
     auto& bodies = scene.model.bodies;
     bodies.push_back(support::ground_plate());
     bodies.push_back(make_body("rocker", box_mesh({-0.06, -0.03, -0.02}, {0.08, 0.02, 0.03}), make_pose({0.1, 0.2, -0.3}, {0, 0, 0.0404})));
-    bodies.push_back(make_body("rider", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.1, 0.25, 0.3}, {0.01, 0, 0.0982})));
+    bodies.push_back(
+        make_body("rider", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.1, 0.25, 0.3}, {0.01, 0, 0.0982})));
     prescribe(bodies[1], 3, -1.5);
     prescribe(bodies[1], 5, 4.0);
     return scene;
@@ -93,9 +100,12 @@ SweepScene double_motor() {
 SweepScene pusher() {
     SweepScene scene{"pusher", base_model(), 20};
     auto& bodies = scene.model.bodies;
-    bodies.push_back(make_body("pusher", box_mesh({-0.03, -0.04, -0.02}, {0.03, 0.04, 0.02}), make_pose({0, 0, 0.1}, {0, 0, 0.04}), BodyType::kinematic_body));
-    bodies.push_back(make_body("slider", box_mesh({-0.02, -0.03, -0.02}, {0.03, 0.03, 0.025}), make_pose({0.1, 0.05, -0.1}, {0.062, 0.005, 0.04})));
-    bodies.push_back(make_body("last", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.4, 0.3, 0.5}, {0.13, 0.01, 0.045})));
+    bodies.push_back(make_body("pusher", box_mesh({-0.03, -0.04, -0.02}, {0.03, 0.04, 0.02}), make_pose({0, 0, 0.1}, {0, 0, 0.04}),
+                               BodyType::kinematic_body));
+    bodies.push_back(
+        make_body("slider", box_mesh({-0.02, -0.03, -0.02}, {0.03, 0.03, 0.025}), make_pose({0.1, 0.05, -0.1}, {0.062, 0.005, 0.04})));
+    bodies.push_back(
+        make_body("last", box_mesh({-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}), make_pose({0.4, 0.3, 0.5}, {0.13, 0.01, 0.045})));
     prescribe(bodies[0], 0, 0.5);
     prescribe(bodies[0], 3, 1.0);
     prescribe(bodies[0], 5, 1.2);
@@ -110,12 +120,16 @@ std::vector<SweepScene> all_scenes() { return {free_flight(), stack(), twisted_p
 ContactCount count_contacts(const Model& model, const core::stepper::Trajectory& trajectory) {
     ContactCount count;
     for (std::size_t t = 1; t < trajectory.poses.size(); ++t) {
-        const auto candidates = core::contact::find_candidates(model, trajectory.poses[t], std::vector<core::contact::MotionAllowance>(model.bodies.size()));
+        const auto candidates =
+            core::contact::find_candidates(model, trajectory.poses[t], std::vector<core::contact::MotionAllowance>(model.bodies.size()));
         for (const auto& list : core::contact::find_contacts(model, candidates, trajectory.poses[t]).pairs)
             for (const core::contact::ContactPair& pair : list.contacts) {
-                if (pair.type == core::contact::PairType::point_triangle) ++count.vertex_face;
-                else if (fettle::adjoint::contact::is_mollified(pair)) ++count.mollified;
-                else ++count.edge_edge;
+                if (pair.type == core::contact::PairType::point_triangle)
+                    ++count.vertex_face;
+                else if (fettle::adjoint::contact::is_mollified(pair))
+                    ++count.mollified;
+                else
+                    ++count.edge_edge;
             }
     }
     return count;
@@ -123,13 +137,20 @@ ContactCount count_contacts(const Model& model, const core::stepper::Trajectory&
 
 const char* to_string(ParameterKind kind) {
     switch (kind) {
-        case ParameterKind::vertices: return "vertices";
-        case ParameterKind::pose_start: return "pose_start";
-        case ParameterKind::velocity_start: return "velocity_start";
-        case ParameterKind::density: return "density";
-        case ParameterKind::gravity: return "gravity";
-        case ParameterKind::force: return "force";
-        case ParameterKind::increments: return "increments";
+        case ParameterKind::vertices:
+            return "vertices";
+        case ParameterKind::pose_start:
+            return "pose_start";
+        case ParameterKind::velocity_start:
+            return "velocity_start";
+        case ParameterKind::density:
+            return "density";
+        case ParameterKind::gravity:
+            return "gravity";
+        case ParameterKind::force:
+            return "force";
+        case ParameterKind::increments:
+            return "increments";
     }
     return "unknown";
 }
@@ -228,7 +249,8 @@ double objective(const TrajectoryGradient& weights, const core::stepper::Traject
     return sum;
 }
 
-double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory, const std::vector<std::vector<Vector6>>& tangents) {
+double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory,
+               const std::vector<std::vector<Vector6>>& tangents) {
     double sum = 0;
     for (std::size_t t = 0; t < tangents.size(); ++t)
         for (std::size_t i = 0; i < tangents[t].size(); ++i)

@@ -42,8 +42,9 @@ struct ContactCount {
 ContactCount count_contacts(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, increments };
-inline constexpr ParameterKind all_kinds[] = {ParameterKind::vertices, ParameterKind::pose_start, ParameterKind::velocity_start,
-                                              ParameterKind::density, ParameterKind::gravity, ParameterKind::force, ParameterKind::increments};
+inline constexpr ParameterKind all_kinds[] = {ParameterKind::vertices,  ParameterKind::pose_start, ParameterKind::velocity_start,
+                                              ParameterKind::density,   ParameterKind::gravity,    ParameterKind::force,
+                                              ParameterKind::increments};
 const char* to_string(ParameterKind kind);
 
 /// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures.
@@ -63,6 +64,7 @@ TrajectoryGradient random_seed(const SweepScene& scene, std::mt19937_64& random)
 double objective(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory);
 
 /// <weights, P_dot> for a tangent sweep's output.
-double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory, const std::vector<std::vector<Vector6>>& tangents);
+double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory,
+               const std::vector<std::vector<Vector6>>& tangents);
 
 }  // namespace fettle::tests::adjoint

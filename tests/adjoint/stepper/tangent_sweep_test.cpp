@@ -13,7 +13,7 @@ namespace fettle::tests::adjoint {
 namespace {
 
 constexpr int seed_count = 3;
-const support::StepSweep sweep{1e-3, 0.2, 9};
+const support::StepSweep sweep{1e-4, 0.3, 9};
 
 core::stepper::Simulation simulation_of(const SweepScene& scene, const core::model::Model& model) {
     core::stepper::SimulationOptions options;
@@ -23,7 +23,8 @@ core::stepper::Simulation simulation_of(const SweepScene& scene, const core::mod
 }
 
 // Objectives of all seeds as a function of the step along `direction`, against `derivative`.
-double error_along(const SweepScene& scene, const std::vector<TrajectoryGradient>& seeds, const ModelTangent& direction, const VectorX& derivative) {
+double error_along(const SweepScene& scene, const std::vector<TrajectoryGradient>& seeds, const ModelTangent& direction,
+                   const VectorX& derivative) {
     const auto objectives = [&](const VectorX& s) {
         const core::stepper::Simulation simulation = simulation_of(scene, moved(scene, direction, s[0]));
         VectorX out = VectorX::Constant(seed_count, std::numeric_limits<double>::quiet_NaN());
