@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
 
 namespace fettle::core::contact {
@@ -61,19 +62,18 @@ private:
             double& radius = i < n ? radius_a : radius_b;
             radius = std::max(radius, X[i].squaredNorm());
         }
-        const double distance = std::sqrt(closest_points(type, x).distance_squared);
+        // A proven lower bound of the distance at the start, and of what the pair can lose: most pairs need no more.
+        const double distance = distance_lower_bound(type, x) - rounding_ * (x[0].norm() + x[3].norm());
         const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
-        // Nothing to do when the pair cannot travel that far (the curved query repeats this with rounding charged).
         const double travel = (sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * std::sqrt(radius_a) +
                               sb.rotation_vector_step.norm() * std::sqrt(radius_b);
-        if (distance > kept + result_.fraction * travel * (1 + 1e-10) + 1e-14 * (x[0].norm() + x[3].norm() + distance)) return;
-        const double f = result_.fraction;
-        const CurvedCcdResult ccd = f == 1 ? curved_ccd(type, sa, sb, X, kept)
-                                           : curved_ccd(type, sub_segment(sa, 0, f), sub_segment(sb, 0, f), X, kept);
-        if (!ccd.hit) return;
-        result_ = {f * ccd.toi * (1 - 1e-12), first, second};
+        if (distance > kept + result_.fraction * travel * (1 + 1e-12)) return;
+        // Always the whole segment: a part of it would be another path, by rounding.
+        const CurvedCcdResult ccd = curved_ccd(type, sa, sb, X, kept);
+        if (ccd.hit && ccd.toi < result_.fraction) result_ = {ccd.toi, first, second};
     }
 
+    static constexpr double rounding_ = 1e-14;  // of world positions, relative to their size
     const model::Model& model_;
     const std::vector<PathSegment>& segments_;
     const Limits limits_;

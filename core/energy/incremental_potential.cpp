@@ -84,7 +84,7 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
         add_inertia_gradient(poses[i], problem.pose_hat[i], body.moments, inertia);
         d.gradients[i].force += inertia.force - problem.weight * body.force;
         d.gradients[i].arm += inertia.arm;
-        d.force_magnitude[i] += inertia.force.norm() + problem.weight * body.force.norm();
+        d.force_magnitude[i] += inertia.force.norm() + inertia.arm.norm() / body.radius + problem.weight * body.force.norm();
     }
     return d;
 }

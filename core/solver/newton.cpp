@@ -221,6 +221,13 @@ private:
         return out;
     }
 
+    // The slope cannot foresee a contact that is not active yet: the penalty must outweigh a barrier's force and the push of all bodies.
+    double least_penalty(double remaining) const {
+        double mass = 0;
+        for (const model::Body& body : model_.bodies) mass += body.moments(3, 3);
+        return 1000 * problem_.weight * model_.kappa * model_.dhat + 10 * mass * remaining;
+    }
+
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
         std::vector<PathSegment> segments(points_.size());
         for (std::size_t i = 0; i < points_.size(); ++i) segments[i] = path_between(problem_.poses_t0[i].rotation, points_[i], end[i]);
@@ -241,7 +248,7 @@ private:
         const contact::SafeStep safe = safe_step(direction);
         limiting_ = safe;
         const double remaining = direction.remaining_norm;
-        if (remaining > 0) penalty_ = std::max(penalty_, direction.slope > 0 ? 2 * direction.slope / remaining : 0.0);
+        if (remaining > 0) penalty_ = std::max({penalty_, 2 * direction.slope / remaining, least_penalty(remaining)});
         const double slope = direction.slope - penalty_ * remaining;
         for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
             std::vector<ChartPoint> trial = moved(direction, fraction);
