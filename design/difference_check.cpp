@@ -41,16 +41,17 @@ public:
             parameter.upper > parameter.lower ? parameter.upper - parameter.lower : std::max(std::abs(parameter.value), 1e-6);
         double step = options_.first_step * range;
         for (int size = 0; size < options_.sizes; ++size, step /= options_.ratio) {
-            if (!add_difference(step)) break;
-            if (differences_.empty() || getting_worse()) break;
+            add_difference(step);
+            if (result_.interrupted || getting_worse()) break;
         }
         result_.estimates = estimates();
         return std::move(result_);
     }
 
 private:
-    // p +- step as the doubles they are: their distance is exact, not 2 step.
-    bool add_difference(double step) {
+    // p +- step as the doubles they are: their distance is exact, not 2 step. Where a trial fails the sequence begins anew with the next
+    // size: extrapolation needs one ratio throughout.
+    void add_difference(double step) {
         VectorX above = p_, below = p_;
         above[parameter_] += step;
         below[parameter_] -= step;
@@ -63,11 +64,11 @@ private:
         if (!up.usable || !down.usable) {
             result_.interrupted = up.interrupted || down.interrupted;
             result_.failure = up.usable ? down.reason : up.reason;
-            return differences_.empty() && !result_.interrupted;  // a large first step can fail where a smaller one does not
+            differences_.clear();
+            return;
         }
         result_.failure.clear();
         differences_.push_back((quantities(up) - quantities(down)) / (above[parameter_] - below[parameter_]));
-        return true;
     }
 
     std::vector<DifferenceEstimate> estimates() const {
