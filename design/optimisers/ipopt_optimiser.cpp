@@ -78,7 +78,8 @@ public:
         return e != nullptr;
     }
 
-    // Done, too, when several iterations in a row brought the best feasible design forward by less than the tolerance.
+    // Done, too, when several iterations in a row brought the best feasible design forward by less than the tolerance: soon if that design
+    // looks optimal, later if it does not (the filter's iterates are infeasible for a while).
     bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number, Number, Number, Number, Number, Number, Index,
                                const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
         iterations_ = iteration;
@@ -87,8 +88,10 @@ public:
         const double change = last_best_ - best.objective;
         quiet_iterations_ = change > options_.tolerance * std::max(1.0, std::abs(best.objective)) ? 0 : quiet_iterations_ + 1;
         last_best_ = std::min(last_best_, best.objective);
-        settled_ = quiet_iterations_ >= quiet_iterations_wanted;
-        return !settled_;
+        if (quiet_iterations_ < quiet_iterations_wanted) return true;
+        settled_ = optimality_residual(evaluator_, evaluator_.best_scaled_point(), best, nearly_active) <= nearly_optimal;
+        given_up_ = quiet_iterations_ >= most_quiet_iterations;
+        return !settled_ && !given_up_;
     }
 
     void finalize_solution(Ipopt::SolverReturn, Index, const Number*, const Number*, const Number*, Index, const Number*, const Number*,
@@ -100,6 +103,7 @@ public:
 private:
     // 4 in a row: a limited-memory step is now and then short while its curvature is still being learnt.
     static constexpr int quiet_iterations_wanted = 4;
+    static constexpr int most_quiet_iterations = 15;
 
     // StopOptimisation passes through Ipopt, which answers it with NonIpopt_Exception_Thrown.
     const Evaluation* evaluate(Index n, const Number* x) {
@@ -112,7 +116,7 @@ private:
     double last_best_ = std::numeric_limits<double>::infinity();
     int quiet_iterations_ = 0;
     int iterations_ = 0;
-    bool settled_ = false;
+    bool settled_ = false, given_up_ = false;
 };
 
 const char* words(Ipopt::ApplicationReturnStatus status) {

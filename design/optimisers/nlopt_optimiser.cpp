@@ -213,7 +213,7 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
         }
         outcome.success = run.result > 0 && run.result != NLOPT_MAXEVAL_REACHED;
         if (run.result == NLOPT_ROUNDOFF_LIMITED) {
-            outcome.success = optimality_residual(evaluator, best, evaluator.best_scaled_evaluation(), 1e-4) <= 1e-2;
+            outcome.success = optimality_residual(evaluator, best, evaluator.best_scaled_evaluation(), nearly_active) <= nearly_optimal;
         }
         return outcome;
     }

@@ -66,8 +66,8 @@ double optimality_residual(const Evaluator& evaluator, const VectorX& x, const E
 
 namespace {
 
-// The native optimiser's answer, the budget and the best design's feasibility, as one verdict.
-OptimiserStatus verdict(const Evaluator& evaluator, const NativeOutcome& native, bool feasible) {
+// What stopped the run, and the best design's feasibility and optimality, as one verdict.
+OptimiserStatus verdict(const Evaluator& evaluator, double optimality, bool feasible) {
     switch (evaluator.stop_reason()) {
         case StopReason::interrupted:
             return OptimiserStatus::interrupted;
@@ -77,7 +77,7 @@ OptimiserStatus verdict(const Evaluator& evaluator, const NativeOutcome& native,
             break;
     }
     if (!feasible) return OptimiserStatus::infeasible;
-    return native.success ? OptimiserStatus::converged : OptimiserStatus::not_converged;
+    return optimality <= nearly_optimal ? OptimiserStatus::converged : OptimiserStatus::not_converged;
 }
 
 }  // namespace
@@ -107,8 +107,8 @@ OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, con
     report.point = evaluator.best_point();
     report.best = evaluator.best_evaluation();
     report.feasible = report.best.violation <= 0;
-    report.status = verdict(evaluator, native, report.feasible);
-    report.optimality = optimality_residual(evaluator, evaluator.best_scaled_point(), evaluator.best_scaled_evaluation(), 1e-4);
+    report.optimality = optimality_residual(evaluator, evaluator.best_scaled_point(), evaluator.best_scaled_evaluation(), nearly_active);
+    report.status = verdict(evaluator, report.optimality, report.feasible);
     report.message = optimiser.name() + ": " + native.message;
     if (evaluator.stop_reason() == StopReason::budget)
         report.message = "stopped after max_evaluations = " + std::to_string(options.max_evaluations);

@@ -49,6 +49,11 @@ enum class OptimiserStatus {
 };
 const char* to_string(OptimiserStatus status);
 
+/// A design counts as optimal when its optimality residual is at most this (the objective's largest derivative at the start is 1) ...
+inline constexpr double nearly_optimal = 5e-2;
+/// ... where bounds and constraints within this (scaled) distance count as holding with equality.
+inline constexpr double nearly_active = 1e-2;
+
 struct OptimiserReport {
     OptimiserStatus status = OptimiserStatus::start_failed;
     std::string message;  ///< for people: what ended it, in the native optimiser's words too
