@@ -97,7 +97,7 @@ private:
         if (!options_.to_rounding && result_.iterations > 0 && arrived && slow) return stop(NewtonStatus::converged);
         if (result_.iterations >= options_.max_iterations) return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
 
-        if (options_.to_rounding && result_.iterations > 0 && arrived && slow && is_stagnant(direction.residual)) {
+        if (options_.to_rounding && result_.iterations > 0 && arrived && slow && is_stagnant(direction)) {
             if (direction.residual <= usable_residual) return stop(NewtonStatus::converged);
             return stop(NewtonStatus::not_converged, failure_message(direction, "rounding stops the solve before it is accurate enough for a gradient"));
         }
@@ -121,9 +121,11 @@ private:
         return true;
     }
 
-    bool is_stagnant(double residual) {
-        if (residual < 0.5 * least_residual_) {
-            least_residual_ = residual;
+    // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the residual
+    // grows for a while, but the potential falls.)
+    bool is_stagnant(const Direction& direction) {
+        if (direction.residual < 0.5 * least_residual_ || -direction.slope > 100 * direction.rounding) {
+            least_residual_ = std::min(least_residual_, direction.residual);
             since_least_ = 0;
             return false;
         }
