@@ -20,7 +20,8 @@ using kinematics::Pose;
 constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double stalled_step = 1e-3;   // a step this short, again and again, means that the way is blocked
-constexpr int stalled_iterations = 25;
+constexpr double smallest_drive = 1e-4;
+constexpr int stalled_iterations = 50;
 constexpr int stagnant_iterations = 12;  // without a smaller residual, when rounding is all that is left
 constexpr double usable_residual = 1e-8; // of a solve to rounding that stagnates: the adjoint's accuracy
 
@@ -34,8 +35,9 @@ ChartPoint chart_point(const Vector6& y) { return {y.head<3>(), y.tail<3>()}; }
 
 struct Direction {
     std::vector<Vector6> step;         // per body
-    std::vector<Vector6> remaining;    // prescribed part of it
+    std::vector<Vector6> remaining;    // of the prescribed coordinates
     double remaining_norm = 0;         // l1, rotations times the body's radius [m]
+    double drive = 1;                  // share of what remains that the step takes
     double slope = 0;                  // g . step
     double motion = 0;                 // bound on the largest motion of a point of a body that is solved for [m]
     double residual = 0;
@@ -104,6 +106,12 @@ private:
 
         ++result_.iterations;
         const double fraction = search(direction);
+        // What is pushed must have time to give way: drive less where little was possible, more where much was.
+        if (!arrived) drive_ = fraction < 0.25 ? std::max(smallest_drive, 0.25 * drive_) : std::min(1.0, 2 * drive_);
+        if (fraction == 0 && !arrived && drive_ > smallest_drive) {
+            penalty_ *= 10;
+            return true;
+        }
         if (fraction == 0 && direction.kind == HessianKind::exact) {
             projected_iterations_ = 3;
             return true;
@@ -112,7 +120,7 @@ private:
             if (arrived && slow) return stop(NewtonStatus::converged);
             return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
         }
-        stalled_ = fraction < stalled_step ? stalled_ + 1 : 0;
+        stalled_ = fraction * direction.drive < stalled_step ? stalled_ + 1 : 0;
         if (!arrived && stalled_ >= stalled_iterations) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
         // A full exact step this small leaves an error of its square over the gap: rounding.
         const double rounding_motion = 1e-7 * std::min(model_.dhat, contacts_.minimum_distance - model_.dmin);
@@ -196,10 +204,12 @@ private:
                 direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model_.bodies[i].radius);
             }
         }
+        direction.drive = direction.remaining_norm > 0 ? drive_ : 1;
         direction.step = direction.remaining;
+        for (Vector6& step : direction.step) step *= direction.drive;
         if (dofs_.count > 0) {
             VectorX rhs = -gather(dofs_, d.gradient);
-            if (direction.remaining_norm > 0) rhs -= gather(dofs_, multiply(d.hessian, direction.remaining));
+            if (direction.remaining_norm > 0) rhs -= gather(dofs_, multiply(d.hessian, direction.step));
             scatter(dofs_, linear_.solve(rhs), direction.step);
         }
         for (std::size_t i = 0; i < n; ++i) {
@@ -215,7 +225,7 @@ private:
         std::vector<ChartPoint> out(points_.size());
         for (std::size_t i = 0; i < points_.size(); ++i) {
             Vector6 y = coordinates(points_[i]) + fraction * direction.step[i];
-            if (fraction == 1)  // prescribed coordinates arrive exactly
+            if (fraction == 1 && direction.drive == 1)  // prescribed coordinates arrive exactly
                 for (int k = 0; k < 6; ++k)
                     if (dofs_.index[i][k] < 0) y[k] = targets_[i][k];
             out[i] = chart_point(y);
@@ -227,7 +237,7 @@ private:
     double least_penalty(double remaining) const {
         double mass = 0;
         for (const model::Body& body : model_.bodies) mass += body.moments(3, 3);
-        return 1000 * problem_.weight * model_.kappa * model_.dhat + 10 * mass * remaining;
+        return 100 * problem_.weight * model_.kappa * model_.dhat + 10 * mass * remaining;
     }
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
@@ -249,7 +259,7 @@ private:
     double search(const Direction& direction) {
         const contact::SafeStep safe = safe_step(direction);
         limiting_ = safe;
-        const double remaining = direction.remaining_norm;
+        const double remaining = direction.drive * direction.remaining_norm;
         if (remaining > 0) penalty_ = std::max({penalty_, 2 * direction.slope / remaining, least_penalty(remaining)});
         const double slope = direction.slope - penalty_ * remaining;
         for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
@@ -334,6 +344,7 @@ private:
     contact::SafeStep limiting_;
     double value_ = 0;
     double penalty_ = 0;
+    double drive_ = 1;
     int projected_iterations_ = 0;
     int stalled_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
