@@ -13,18 +13,18 @@
 namespace fettle::core::base {
 
 enum class ErrorCode {
-    file_not_found,      ///< no such file, or not where it was looked for
-    file_unreadable,     ///< exists but cannot be read or written
-    parse,               ///< not valid JSON, not a mesh of its format
-    unknown_key,         ///< a key that the format does not have
-    missing_key,         ///< a key that the format requires
-    wrong_type,          ///< a string where a number is wanted, and so on
-    out_of_range,        ///< a number outside what is allowed
-    not_finite,          ///< NaN or infinity
-    mesh_invalid,        ///< open, inconsistently oriented, degenerate, self-intersecting
-    bodies_intersect,    ///< two bodies intersect, or are closer than the minimum separation, at the start
-    inconsistent,        ///< parts of the input contradict each other
-    unsupported          ///< valid, but not something this version does
+    file_not_found,    ///< no such file, or not where it was looked for
+    file_unreadable,   ///< exists but cannot be read or written
+    parse,             ///< not valid JSON, not a mesh of its format
+    unknown_key,       ///< a key that the format does not have
+    missing_key,       ///< a key that the format requires
+    wrong_type,        ///< a string where a number is wanted, and so on
+    out_of_range,      ///< a number outside what is allowed
+    not_finite,        ///< NaN or infinity
+    mesh_invalid,      ///< open, inconsistently oriented, degenerate, self-intersecting
+    bodies_intersect,  ///< two bodies intersect, or are closer than the minimum separation, at the start
+    inconsistent,      ///< parts of the input contradict each other
+    unsupported        ///< valid, but not something this version does
 };
 
 struct Error {
@@ -39,18 +39,27 @@ using Errors = std::vector<Error>;
 template <class T>
 class [[nodiscard]] Result {
 public:
-    Result(T value) : data_(std::move(value)) {}                  // NOLINT: implicit by design, `return value;`
-    Result(Error error) : data_(Errors{std::move(error)}) {}      // NOLINT
-    Result(Errors errors) : data_(std::move(errors)) {            // NOLINT
+    Result(T value) : data_(std::move(value)) {}              // NOLINT: implicit by design, `return value;`
+    Result(Error error) : data_(Errors{std::move(error)}) {}  // NOLINT
+    Result(Errors errors) : data_(std::move(errors)) {        // NOLINT
         FETTLE_ASSERT(!std::get<Errors>(data_).empty(), "a failed Result needs an error");
     }
 
     bool has_value() const { return data_.index() == 0; }
     explicit operator bool() const { return has_value(); }
 
-    const T& value() const& { check(); return std::get<0>(data_); }
-    T& value() & { check(); return std::get<0>(data_); }
-    T&& value() && { check(); return std::get<0>(std::move(data_)); }
+    const T& value() const& {
+        check();
+        return std::get<0>(data_);
+    }
+    T& value() & {
+        check();
+        return std::get<0>(data_);
+    }
+    T&& value() && {
+        check();
+        return std::get<0>(std::move(data_));
+    }
     const T& operator*() const& { return value(); }
     T& operator*() & { return value(); }
     T&& operator*() && { return std::move(*this).value(); }

@@ -35,10 +35,10 @@ inline ScalarDerivatives edge_mollifier(double cross_squared, double eps) {
 inline constexpr double mollifier_scale = 1e-3;
 
 struct BarrierParameters {
-    double dmin = 0;                ///< [m]
-    double activation = 0;          ///< dmin + dhat [m]
-    double gap_hat = 0;             ///< 2 dmin dhat + dhat^2 [m^2]
-    double factor = 0;              ///< multiplies m b: weight * kappa / (4 activation^2)
+    double dmin = 0;        ///< [m]
+    double activation = 0;  ///< dmin + dhat [m]
+    double gap_hat = 0;     ///< 2 dmin dhat + dhat^2 [m^2]
+    double factor = 0;      ///< multiplies m b: weight * kappa / (4 activation^2)
 };
 
 /// @param weight  factor on the potential energy (h^2 for implicit Euler).

@@ -21,8 +21,7 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
     std::vector<HierarchyElement> elements;
     std::vector<bool> vertex_owned(static_cast<std::size_t>(mesh.vertices.cols()), false);
     std::map<std::pair<int, int>, int> edge_index;
-    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e)
-        edge_index[std::minmax(mesh.edges[e][0], mesh.edges[e][1])] = e;
+    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e) edge_index[std::minmax(mesh.edges[e][0], mesh.edges[e][1])] = e;
     std::vector<bool> edge_owned(mesh.edges.size(), false);
     const auto own_vertex = [&](HierarchyElement& element, int v) {
         if (vertex_owned[v]) return;

@@ -23,7 +23,7 @@ struct HierarchyNode {
 
 /// What an element owns. `vertices` of triangle elements are its three corners; edges have two, points one.
 struct HierarchyElement {
-    int triangle = -1;                      ///< -1: a codimensional edge or point
+    int triangle = -1;  ///< -1: a codimensional edge or point
     int vertex_count = 0;
     std::array<int, 3> vertices{-1, -1, -1};
     int owned_vertex_count = 0, owned_edge_count = 0;
@@ -36,7 +36,7 @@ public:
     /// Contract: connectivity built, at least one vertex, finite coordinates.
     explicit BodyHierarchy(const geometry::Mesh& mesh);
 
-    const std::vector<HierarchyNode>& nodes() const { return nodes_; }        ///< root is 0
+    const std::vector<HierarchyNode>& nodes() const { return nodes_; }  ///< root is 0
     const std::vector<HierarchyElement>& elements() const { return elements_; }
 
 private:

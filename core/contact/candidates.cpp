@@ -20,8 +20,8 @@ constexpr double rounding = 1e-14;
 struct SweptBody {
     const model::Body* body;
     Pose start, end;
-    double turn;                          // |w|
-    std::array<Matrix3X, 2> vertices{};   // world positions at both ends; filled when some pair of boxes is close
+    double turn;                         // |w|
+    std::array<Matrix3X, 2> vertices{};  // world positions at both ends; filled when some pair of boxes is close
     void place_vertices() {
         if (vertices[0].cols() > 0) return;
         vertices[0] = (start.rotation * body->mesh.vertices).colwise() + start.position;
@@ -36,9 +36,9 @@ SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& seg
 
 // One separating direction, in the frames of both bodies at both ends.
 struct Axis {
-    std::array<Vector3, 2> a, b;       // the direction in the body's frame at the start and at the end
+    std::array<Vector3, 2> a, b;  // the direction in the body's frame at the start and at the end
     std::array<Vector3, 2> abs_a, abs_b;
-    std::array<double, 2> offset;      // n . (q_b - q_a)
+    std::array<double, 2> offset;  // n . (q_b - q_a)
 };
 
 class PairSearch {
@@ -50,8 +50,8 @@ public:
             axes_[k + 3] = axis(b_.start.rotation.col(k));
         }
         reach_ = (b_.start.position - a_.start.position).norm() + (b_.end.position - a_.end.position).norm();
-        world_size_ = a_.start.position.norm() + a_.end.position.norm() + b_.start.position.norm() + b_.end.position.norm() + a_.body->radius +
-                      b_.body->radius;
+        world_size_ = a_.start.position.norm() + a_.end.position.norm() + b_.start.position.norm() + b_.end.position.norm() +
+                      a_.body->radius + b_.body->radius;
     }
 
     BodyPairCandidates run() {
@@ -179,15 +179,17 @@ private:
     }
 
     // Vertices that `owner` owns (on `v`) against the triangle of `other` (on `t`).
-    void visit_vertices(const SweptBody& v, const HierarchyElement& owner, const SweptBody& t, const HierarchyElement& other, const Box& box_t,
-                        bool vertex_first) {
+    void visit_vertices(const SweptBody& v, const HierarchyElement& owner, const SweptBody& t, const HierarchyElement& other,
+                        const Box& box_t, bool vertex_first) {
         if (other.triangle < 0) return;
         for (int k = 0; k < owner.owned_vertex_count; ++k) {
             const int i = owner.owned_vertices[k];
             if (box(v, &i, 1).apart_from(box_t, margin_)) continue;
             const std::array<Ends, 4> x{ends(v, i), ends(t, other.vertices[0]), ends(t, other.vertices[1]), ends(t, other.vertices[2])};
-            if (vertex_first) add(out_.vertex_triangle, i, other.triangle, PairType::point_triangle, x);
-            else add(out_.triangle_vertex, other.triangle, i, PairType::point_triangle, x);
+            if (vertex_first)
+                add(out_.vertex_triangle, i, other.triangle, PairType::point_triangle, x);
+            else
+                add(out_.triangle_vertex, other.triangle, i, PairType::point_triangle, x);
         }
     }
 
@@ -241,7 +243,8 @@ Candidates find_candidates(const model::Model& model, const std::vector<kinemati
 
 Candidates find_candidates(const model::Model& model, const std::vector<Pose>& poses, const std::vector<MotionAllowance>& allowances) {
     std::vector<kinematics::PathSegment> segments(poses.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) segments[i] = {poses[i].rotation, Vector3::Zero(), Vector3::Zero(), poses[i].position, Vector3::Zero()};
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        segments[i] = {poses[i].rotation, Vector3::Zero(), Vector3::Zero(), poses[i].position, Vector3::Zero()};
     return find_candidates(model, segments, allowances);
 }
 
@@ -274,7 +277,8 @@ std::vector<double> displacements(const model::Model& model, const Candidates& c
     return out;
 }
 
-std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments) {
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates,
+                                  const std::vector<kinematics::PathSegment>& segments) {
     std::vector<double> out(segments.size());
     for (std::size_t i = 0; i < segments.size(); ++i)
         out[i] = displacement(model.bodies[i], candidates.poses[i], motion_over(candidates, i, segments[i]));

@@ -4,7 +4,8 @@
 ///
 /// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
 /// (method.md section 7, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that move straight is
-/// concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay apart.
+/// concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay
+/// apart.
 #pragma once
 
 #include <array>
@@ -21,8 +22,8 @@ struct MotionAllowance {
     double rotation = 0;     ///< [rad]
 };
 
-/// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left those by
-/// less, the pair needs no second look.
+/// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
+/// those by less, the pair needs no second look.
 struct PrimitivePair {
     int a = 0, b = 0;
     double distance = 0;  ///< [m]
@@ -38,10 +39,10 @@ struct BodyPairCandidates {
 };
 
 struct Candidates {
-    std::vector<BodyPairCandidates> pairs;            ///< sorted by (a, b)
-    std::vector<kinematics::Pose> poses;              ///< a configuration on the segments that they were found along (at first, the start).
-                                                      ///< Whoever moves along the segments may move it too: allowances count from here
-    std::vector<MotionAllowance> allowances;          ///< per body
+    std::vector<BodyPairCandidates> pairs;    ///< sorted by (a, b)
+    std::vector<kinematics::Pose> poses;      ///< a configuration on the segments that they were found along (at first, the start).
+                                              ///< Whoever moves along the segments may move it too: allowances count from here
+    std::vector<MotionAllowance> allowances;  ///< per body
 };
 
 /// All pairs whose distance, somewhere along the segments, is at most dmin + dhat + (allowances of both primitives).
@@ -56,10 +57,11 @@ Candidates find_candidates(const model::Model& model, const std::vector<kinemati
 std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
 /// The same over the whole of each segment.
-std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
+std::vector<double> displacements(const model::Model& model, const Candidates& candidates,
+                                  const std::vector<kinematics::PathSegment>& segments);
 
-/// Largest fraction of the segments along which the candidates are complete (up to the activation distance): while each body stays within its
-/// allowance of candidates.poses.
+/// Largest fraction of the segments along which the candidates are complete (up to the activation distance): while each body stays within
+/// its allowance of candidates.poses.
 double covered_fraction(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 }  // namespace fettle::core::contact

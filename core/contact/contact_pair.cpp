@@ -109,7 +109,8 @@ void add_distance_hessian(const ContactPair& pair, const Arms& arms, const Scala
     double weight_squared = 0;
     for (double w : c.weight) weight_squared += w * w;
     for (int j = 0; j < c.free_count; ++j) {
-        // (p + d s)(p + d s)^T - p p^T = d (p s^T + s p^T) + d^2 s s^T: its positive eigenvector in the basis (p, s), scaled to unit patterns.
+        // (p + d s)(p + d s)^T - p p^T = d (p s^T + s p^T) + d^2 s s^T: its positive eigenvector in the basis (p, s), scaled to unit
+        // patterns.
         const double rho_p = std::sqrt(weight_squared), rho_s = std::sqrt(2.0) * spread[j].norm();
         const double off = d * rho_p * rho_s, corner = d * d * rho_s * rho_s;
         const double eigenvalue = 0.5 * (corner + std::sqrt(corner * corner + 4 * off * off));
@@ -121,8 +122,8 @@ void add_distance_hessian(const ContactPair& pair, const Arms& arms, const Scala
 
 // Derivatives of c = |e1 x e2|^2.
 struct EdgeCross {
-    Vector3 e1, e2, c1, c2;         // edges, dc/de1, dc/de2
-    Matrix3 c11, c12, c22;          // second derivatives
+    Vector3 e1, e2, c1, c2;  // edges, dc/de1, dc/de2
+    Matrix3 c11, c12, c22;   // second derivatives
 };
 
 EdgeCross edge_cross(const PairVertices& x) {

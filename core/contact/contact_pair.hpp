@@ -26,11 +26,11 @@ enum class HessianKind {
 /// One pair closer than the activation distance, in world coordinates.
 struct ContactPair {
     PairType type = PairType::point_triangle;
-    PairVertices x;                 ///< world [m]; the first primitive's vertices are on body `first`
-    std::array<int, 4> vertex{};    ///< indices into the bodies' meshes
-    std::array<int, 2> edge{};      ///< edge_edge: indices of the two edges
+    PairVertices x;               ///< world [m]; the first primitive's vertices are on body `first`
+    std::array<int, 4> vertex{};  ///< indices into the bodies' meshes
+    std::array<int, 2> edge{};    ///< edge_edge: indices of the two edges
     geometry::ClosestPoints closest;
-    double mollifier_eps = 0;       ///< edge_edge: eps [m^4]
+    double mollifier_eps = 0;  ///< edge_edge: eps [m^4]
 };
 
 /// How many of the four vertices lie on the first body.

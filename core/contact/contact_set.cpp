@@ -14,7 +14,8 @@ Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_
 
 // Calls visit(first, second, pair) with vertices filled, for every candidate in order that was found no farther apart than `reach`.
 template <class Visit>
-void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double reach, const Visit& visit) {
+void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double reach,
+                   const Visit& visit) {
     const model::Body &a = model.bodies[list.a], &b = model.bodies[list.b];
     const Pose &pa = poses[list.a], &pb = poses[list.b];
     ContactPair pair;
@@ -54,9 +55,8 @@ Key key_of(const ContactPair& pair) {
 
 kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
     auto& blocks = hessian.off_diagonal;
-    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b), [](const auto& block, const std::pair<int, int>& key) {
-        return std::pair(block.a, block.b) < key;
-    });
+    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b),
+                                     [](const auto& block, const std::pair<int, int>& key) { return std::pair(block.a, block.b) < key; });
     if (at != blocks.end() && at->a == a && at->b == b) return *at;
     return *blocks.insert(at, {a, b, Matrix6::Zero()});
 }
@@ -99,8 +99,8 @@ double barrier_potential(const model::Model& model, const Candidates& candidates
         for_each_pair(model, list, poses, parameters.activation + moved[list.a] + moved[list.b], [&](int first, int, ContactPair& pair) {
             pair.closest = closest_points(pair.type, pair.x);
             if (pair.closest.distance_squared >= activation_squared) return;
-            const double value = pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters)
-                                                                              : std::numeric_limits<double>::infinity();
+            const double value =
+                pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters) : std::numeric_limits<double>::infinity();
             terms.emplace_back(first, key_of(pair), value);
         });
         std::sort(terms.begin(), terms.end());
@@ -126,8 +126,10 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& pos
         hessian.diagonal[list.second] += full.bottomRightCorner<6, 6>();
         const bool in_order = list.first < list.second;
         kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(list.first, list.second), std::max(list.first, list.second));
-        if (in_order) block.block += full.topRightCorner<6, 6>();
-        else block.block += full.bottomLeftCorner<6, 6>();
+        if (in_order)
+            block.block += full.topRightCorner<6, 6>();
+        else
+            block.block += full.bottomLeftCorner<6, 6>();
     }
 }
 

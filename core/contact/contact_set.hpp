@@ -21,7 +21,7 @@ struct BodyPairContacts {
 struct ContactSet {
     std::vector<BodyPairContacts> pairs;  ///< in the candidates' order; vertices on the higher body come as a pair of their own
     int count = 0;
-    double minimum_distance = 0;          ///< of the contacts [m]; infinity if there are none
+    double minimum_distance = 0;  ///< of the contacts [m]; infinity if there are none
 };
 
 /// Contacts among the candidates at `poses`. Contract: candidates cover `poses`; no pair at or below dmin.

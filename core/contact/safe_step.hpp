@@ -10,13 +10,14 @@
 namespace fettle::core::contact {
 
 struct SafeStep {
-    double fraction = 1;               ///< proven: every pair stays farther apart than dmin on [0, fraction]
+    double fraction = 1;                   ///< proven: every pair stays farther apart than dmin on [0, fraction]
     int limiting_a = -1, limiting_b = -1;  ///< bodies of the pair that limits it; -1: nothing does
 };
 
 /// Longest safe fraction of the segments. A pair may lose at most nine tenths of its distance (or come to a quarter of dhat, whichever is
 /// less), so that the barrier stays finite and the next step has room.
-/// @param moved  per body: how far its points may leave the segments that the candidates were found along, [m] (displacements() of candidates.hpp;
+/// @param moved  per body: how far its points may leave the segments that the candidates were found along, [m] (displacements() of
+/// candidates.hpp;
 ///               zero if `segments` are those very segments).
 /// Contract: the candidates cover the segments (candidates.hpp).
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments,

@@ -16,13 +16,14 @@ namespace fettle::core::energy {
 struct StepProblem {
     const model::Model* model = nullptr;
     std::vector<kinematics::Pose> poses_t0;
-    std::vector<Matrix34> pose_hat;          ///< per body; unused without free degrees of freedom
-    double weight = 0;                       ///< factor on potential energies: h^2 for implicit Euler [s^2]
+    std::vector<Matrix34> pose_hat;  ///< per body; unused without free degrees of freedom
+    double weight = 0;               ///< factor on potential energies: h^2 for implicit Euler [s^2]
     contact::BarrierParameters barrier;
 };
 
 /// The implicit Euler step from `poses` with velocities Pdot.
-StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinematics::Pose> poses_t0, const std::vector<Matrix34>& velocities_t0);
+StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinematics::Pose> poses_t0,
+                                   const std::vector<Matrix34>& velocities_t0);
 
 std::vector<kinematics::Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points);
 
@@ -31,20 +32,21 @@ double incremental_potential(const StepProblem& problem, const std::vector<kinem
 
 /// First derivatives before any choice of coordinates (inertia, loads and barrier), and the Gauss-Newton Hessian of barrier alone.
 struct PoseDerivatives {
-    std::vector<kinematics::PoseGradient> gradients;   ///< per body
-    kinematics::BlockHessian barrier_hessian;          ///< tangent coordinates (q, phi)
-    std::vector<double> force_magnitude;               ///< per body: sum of the magnitudes of the forces' parts, in gradient units per metre
+    std::vector<kinematics::PoseGradient> gradients;  ///< per body
+    kinematics::BlockHessian barrier_hessian;         ///< tangent coordinates (q, phi)
+    std::vector<double> force_magnitude;              ///< per body: sum of the magnitudes of the forces' parts, in gradient units per metre
 };
-PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts,
-                                 contact::HessianKind kind);
+PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<kinematics::Pose>& poses,
+                                 const contact::ContactSet& contacts, contact::HessianKind kind);
 
 /// Gradient and Hessian in the step's chart coordinates.
 struct ChartDerivatives {
-    std::vector<Vector6> gradient;        ///< per body
+    std::vector<Vector6> gradient;  ///< per body
     kinematics::BlockHessian hessian;
     std::vector<double> force_magnitude;  ///< as above
 };
 ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,
-                                   const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts, contact::HessianKind kind);
+                                   const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts,
+                                   contact::HessianKind kind);
 
 }  // namespace fettle::core::energy

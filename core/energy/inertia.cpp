@@ -8,7 +8,8 @@ double inertia_potential(const Matrix34& pose, const Matrix34& pose_hat, const M
     return 0.5 * (d * moments).cwiseProduct(d).sum();
 }
 
-void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat, const Matrix4& moments, kinematics::PoseGradient& gradient) {
+void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat, const Matrix4& moments,
+                          kinematics::PoseGradient& gradient) {
     const Matrix34 g = (pose_matrix(pose) - pose_hat) * moments;
     gradient.force += g.col(3);
     gradient.arm += g.leftCols<3>() * pose.rotation.transpose();

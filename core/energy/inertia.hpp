@@ -12,7 +12,8 @@ namespace fettle::core::energy {
 double inertia_potential(const Matrix34& pose, const Matrix34& pose_hat, const Matrix4& moments);
 
 /// Adds dE_d/dP as force and arm.
-void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat, const Matrix4& moments, kinematics::PoseGradient& gradient);
+void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat, const Matrix4& moments,
+                          kinematics::PoseGradient& gradient);
 
 /// Gauss-Newton part J^T (M (x) I) J in (dq, phi): positive semi-definite for a true moment matrix.
 ///   [ m I, -[R s] ; [R s], tr(J_w) I - J_w ],  s first moments, J_w = R J R^T second moments.

@@ -13,10 +13,10 @@ namespace fettle::core::geometry {
 /// point-triangle (p t0 t1 t2): weight = (1, -b0, -b1, -b2). edge-edge (ea0 ea1 eb0 eb1): weight = (1-s, s, -(1-t), -t).
 struct ClosestPoints {
     std::array<double, 4> weight{};
-    int free_count = 0;                          ///< parameters in the interior: 0, 1 or 2 (point, edge, face or two edges)
+    int free_count = 0;                                  ///< parameters in the interior: 0, 1 or 2 (point, edge, face or two edges)
     std::array<std::array<double, 4>, 2> free_weight{};  ///< d weight / d parameter, one per interior parameter
-    Vector3 difference = Vector3::Zero();        ///< r [m]
-    double distance_squared = 0;                 ///< |r|^2 [m^2]
+    Vector3 difference = Vector3::Zero();                ///< r [m]
+    double distance_squared = 0;                         ///< |r|^2 [m^2]
 };
 
 /// Robust for degenerate (zero-area, zero-length, parallel) input: always the true closest points up to rounding.

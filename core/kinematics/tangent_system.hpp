@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// First and second derivatives of functions of body poses, in tangent coordinates: a body moves by (dq, phi), R -> exp([phi]) R.
 ///
-/// A potential that acts through body points x = R X + q is summed per body as two small quantities from which gradient and curvature follow:
+/// A potential that acts through body points x = R X + q is summed per body as two small quantities from which gradient and curvature
+/// follow:
 ///   force  F = sum f_i              (f_i = dE/dx_i, world)
 ///   arm    S = sum f_i (x_i - q)^T  (3x3; equals (dE/dR) R^T)
-/// gradient: dE/dq = F, dE/dphi = axial(S) = sum (x_i - q) x f_i. The curvature of the rotation itself contributes, in tangent coordinates at R,
+/// gradient: dE/dq = F, dE/dphi = axial(S) = sum (x_i - q) x f_i. The curvature of the rotation itself contributes, in tangent coordinates
+/// at R,
 ///   1/2 (S + S^T) - tr(S) I,
 /// and in a chart theta (R = exp([theta]) base) the matrix sum_ij S_ij (d2R/dtheta_a dtheta_b R^T)_ij.
 /// The rest of the Hessian (Gauss-Newton part, J^T H_x J) is summed in blocks.
@@ -35,9 +37,7 @@ inline Vector6 tangent_gradient(const PoseGradient& g) {
 }
 
 /// Curvature of the rotation in tangent coordinates, 1/2 (S + S^T) - tr(S) I.
-inline Matrix3 tangent_curvature(const Matrix3& arm) {
-    return 0.5 * (arm + arm.transpose()) - arm.trace() * Matrix3::Identity();
-}
+inline Matrix3 tangent_curvature(const Matrix3& arm) { return 0.5 * (arm + arm.transpose()) - arm.trace() * Matrix3::Identity(); }
 
 /// Curvature of the rotation in the chart: entry (a, b) = <S, d2R(theta)/dtheta_a dtheta_b R(theta)^T>.
 inline Matrix3 chart_curvature(const Matrix3& arm, const RotationDerivatives& r) {
@@ -59,8 +59,8 @@ struct OffDiagonalBlock {
 
 /// Symmetric second derivative over all bodies' (q, phi) or (q, theta).
 struct BlockHessian {
-    std::vector<Matrix6> diagonal;              ///< [body]
-    std::vector<OffDiagonalBlock> off_diagonal; ///< sorted by (a, b), each pair once
+    std::vector<Matrix6> diagonal;               ///< [body]
+    std::vector<OffDiagonalBlock> off_diagonal;  ///< sorted by (a, b), each pair once
 };
 
 }  // namespace fettle::core::kinematics

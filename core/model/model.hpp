@@ -18,7 +18,7 @@ class BodyHierarchy;
 namespace fettle::core::model {
 
 /// A body's frame is its mesh file's frame, shifted to the reference point c: X = x_file - c. c is the centre of mass of the
-/// first design (of the bounding box, for surfaces) and never follows a parameter; neither do the axes.
+/// first design (of the bounding box, for surfaces) unless the scene names one, and never follows a parameter; neither do the axes.
 struct Body {
     std::string name;
     scene::BodyType type = scene::BodyType::dynamic_body;

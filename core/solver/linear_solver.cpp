@@ -220,11 +220,16 @@ MatrixX LinearSolver::solve(const MatrixX& rhs) const {
     using Factor = Implementation::Factor;
     if (rhs.rows() == 0) return rhs;
     switch (self.factor) {
-        case Factor::dense_cholesky: return self.dense_cholesky.solve(rhs);
-        case Factor::dense_lu: return self.dense_lu.solve(rhs);
-        case Factor::sparse_cholesky: return self.sparse_cholesky.solve(rhs);
-        case Factor::sparse_lu: return self.sparse_lu.solve(rhs);
-        case Factor::none: break;
+        case Factor::dense_cholesky:
+            return self.dense_cholesky.solve(rhs);
+        case Factor::dense_lu:
+            return self.dense_lu.solve(rhs);
+        case Factor::sparse_cholesky:
+            return self.sparse_cholesky.solve(rhs);
+        case Factor::sparse_lu:
+            return self.sparse_lu.solve(rhs);
+        case Factor::none:
+            break;
     }
     FETTLE_ASSERT(false, "solve without a factorisation");
     return {};

@@ -19,11 +19,11 @@ using kinematics::Pose;
 
 constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
-constexpr double stalled_step = 1e-3;   // a step this short, again and again, means that the way is blocked
+constexpr double stalled_step = 1e-3;  // a step this short, again and again, means that the way is blocked
 constexpr double smallest_drive = 1e-4;
 constexpr int stalled_iterations = 50;
-constexpr int stagnant_iterations = 12;  // without a smaller residual, when rounding is all that is left
-constexpr double usable_residual = 1e-8; // of a solve to rounding that stagnates: the adjoint's accuracy
+constexpr int stagnant_iterations = 12;   // without a smaller residual, when rounding is all that is left
+constexpr double usable_residual = 1e-8;  // of a solve to rounding that stagnates: the adjoint's accuracy
 
 Vector6 coordinates(const ChartPoint& p) {
     Vector6 y;
@@ -34,22 +34,28 @@ Vector6 coordinates(const ChartPoint& p) {
 ChartPoint chart_point(const Vector6& y) { return {y.head<3>(), y.tail<3>()}; }
 
 struct Direction {
-    std::vector<Vector6> step;         // per body
-    std::vector<Vector6> remaining;    // of the prescribed coordinates
-    double remaining_norm = 0;         // l1, rotations times the body's radius [m]
-    double drive = 1;                  // share of what remains that the step takes
-    double slope = 0;                  // g . step
-    double motion = 0;                 // bound on the largest motion of a point of a body that is solved for [m]
+    std::vector<Vector6> step;       // per body
+    std::vector<Vector6> remaining;  // of the prescribed coordinates
+    double remaining_norm = 0;       // l1, rotations times the body's radius [m]
+    double drive = 1;                // share of what remains that the step takes
+    double slope = 0;                // g . step
+    double motion = 0;               // bound on the largest motion of a point of a body that is solved for [m]
     double residual = 0;
-    double rounding = 0;               // of the potential's value here: what a difference of two values may be wrong by
+    double rounding = 0;  // of the potential's value here: what a difference of two values may be wrong by
     HessianKind kind = HessianKind::exact;
 };
 
 class Minimiser {
 public:
-    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
-        : problem_(problem), model_(*problem.model), targets_(targets), dofs_(workspace.dofs), linear_(workspace.linear),
-          candidates_(workspace.candidates), options_(options) {
+    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+              const NewtonOptions& options)
+        : problem_(problem),
+          model_(*problem.model),
+          targets_(targets),
+          dofs_(workspace.dofs),
+          linear_(workspace.linear),
+          candidates_(workspace.candidates),
+          options_(options) {
         for (const Pose& pose : problem.poses_t0) points_.push_back({pose.position, Vector3::Zero()});
         result_.poses = problem.poses_t0;
         result_.path.push_back(points_);
@@ -80,7 +86,8 @@ private:
             const model::Body& body = model_.bodies[i];
             if (body.type == scene::BodyType::static_body) continue;
             allowances[i].translation = 0.1 * segments[i].position_step.norm() + 0.25 * model_.dhat;
-            allowances[i].rotation = 0.1 * segments[i].rotation_vector_step.norm() + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
+            allowances[i].rotation =
+                0.1 * segments[i].rotation_vector_step.norm() + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
         }
         candidates_ = contact::find_candidates(model_, segments, allowances);
     }
@@ -92,16 +99,19 @@ private:
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
         Direction direction;
-        if (!find_direction(kind, direction)) return stop(NewtonStatus::not_converged, "the Newton matrix could not be made positive definite");
+        if (!find_direction(kind, direction))
+            return stop(NewtonStatus::not_converged, "the Newton matrix could not be made positive definite");
         result_.residual = direction.residual;
         const bool arrived = direction.remaining_norm == 0;
         const bool slow = direction.motion <= options_.velocity_tolerance * model_.timestep;
         if (!options_.to_rounding && result_.iterations > 0 && arrived && slow) return stop(NewtonStatus::converged);
-        if (result_.iterations >= options_.max_iterations) return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
+        if (result_.iterations >= options_.max_iterations)
+            return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
 
         if (options_.to_rounding && result_.iterations > 0 && arrived && slow && is_stagnant(direction)) {
             if (direction.residual <= usable_residual) return stop(NewtonStatus::converged);
-            return stop(NewtonStatus::not_converged, failure_message(direction, "rounding stops the solve before it is accurate enough for a gradient"));
+            return stop(NewtonStatus::not_converged,
+                        failure_message(direction, "rounding stops the solve before it is accurate enough for a gradient"));
         }
 
         ++result_.iterations;
@@ -121,7 +131,8 @@ private:
             return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
         }
         stalled_ = fraction * direction.drive < stalled_step ? stalled_ + 1 : 0;
-        if (!arrived && stalled_ >= stalled_iterations) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
+        if (!arrived && stalled_ >= stalled_iterations)
+            return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
         // A full exact step this small leaves an error of its square over the gap: rounding.
         const double rounding_motion = 1e-7 * std::min(model_.dhat, contacts_.minimum_distance - model_.dmin);
         if (options_.to_rounding && fraction == 1 && arrived && direction.kind == HessianKind::exact && direction.motion <= rounding_motion)
@@ -129,8 +140,8 @@ private:
         return true;
     }
 
-    // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the residual
-    // grows for a while, but the potential falls.)
+    // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the
+    // residual grows for a while, but the potential falls.)
     bool is_stagnant(const Direction& direction) {
         if (direction.residual < 0.5 * least_residual_ || -direction.slope > 100 * direction.rounding) {
             least_residual_ = std::min(least_residual_, direction.residual);
@@ -217,7 +228,8 @@ private:
             bool solved_for = false;
             for (int index : dofs_.index[i]) solved_for = solved_for || index >= 0;
             if (solved_for)
-                direction.motion = std::max(direction.motion, direction.step[i].head<3>().norm() + direction.step[i].tail<3>().norm() * model_.bodies[i].radius);
+                direction.motion = std::max(
+                    direction.motion, direction.step[i].head<3>().norm() + direction.step[i].tail<3>().norm() * model_.bodies[i].radius);
         }
     }
 
@@ -251,8 +263,9 @@ private:
         const std::vector<PathSegment> segments = segments_to(moved(direction, 1));
         on_segments_ = contact::covered_fraction(candidates_, segments) < 1;
         if (on_segments_) find_candidates(segments);
-        return contact::longest_safe_step(model_, candidates_, segments,
-                                          on_segments_ ? std::vector<double>(segments.size(), 0) : displacements(model_, candidates_, segments));
+        return contact::longest_safe_step(
+            model_, candidates_, segments,
+            on_segments_ ? std::vector<double>(segments.size(), 0) : displacements(model_, candidates_, segments));
     }
 
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.

@@ -2,10 +2,10 @@
 /// Projected Newton for one time step, with curved CCD in its line search: every accepted point, and the path to it, is free of
 /// intersections. method.md section 6.
 ///
-/// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution. Each iteration moves them by what remains, and the free
-/// ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact stops larger ones. The step length is the longest that CCD allows, then backtracked on the
-/// exact penalty E + nu |remaining| (Nocedal and Wright, Numerical Optimization, section 18.4).
-/// The exact Hessian is used wherever it is positive definite, the projected one elsewhere.
+/// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution. Each iteration moves them by what remains,
+/// and the free ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact
+/// stops larger ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and
+/// Wright, Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere.
 #pragma once
 
 #include <functional>
@@ -20,17 +20,17 @@ namespace fettle::core::solver {
 enum class NewtonStatus { converged, blocked, not_converged, interrupted };
 
 struct NewtonOptions {
-    double velocity_tolerance = 0;    ///< stop when the next step moves no point faster than this [m/s]
+    double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
-    bool to_rounding = false;         ///< go on with exact steps until the residual is at rounding level
+    bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level
     std::function<bool()> should_stop;
 };
 
 struct NewtonResult {
     NewtonStatus status = NewtonStatus::converged;
-    std::string message;                                       ///< cause, with body names, when not converged
-    std::vector<std::vector<kinematics::ChartPoint>> path;     ///< the start and every accepted point
-    std::vector<kinematics::Pose> poses;                       ///< at the end of the path
+    std::string message;                                    ///< cause, with body names, when not converged
+    std::vector<std::vector<kinematics::ChartPoint>> path;  ///< the start and every accepted point
+    std::vector<kinematics::Pose> poses;                    ///< at the end of the path
     int iterations = 0;
     int contacts = 0;
     double minimum_distance = 0;  ///< [m]

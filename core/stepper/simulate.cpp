@@ -23,10 +23,14 @@ int step_count(const model::Model& model, const SimulationOptions& options) {
 
 const char* to_string(SimulationStatus status) {
     switch (status) {
-        case SimulationStatus::ok: return "ok";
-        case SimulationStatus::blocked: return "blocked";
-        case SimulationStatus::not_converged: return "not_converged";
-        case SimulationStatus::interrupted: return "interrupted";
+        case SimulationStatus::ok:
+            return "ok";
+        case SimulationStatus::blocked:
+            return "blocked";
+        case SimulationStatus::not_converged:
+            return "not_converged";
+        case SimulationStatus::interrupted:
+            return "interrupted";
     }
     return "unknown";
 }

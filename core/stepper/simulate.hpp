@@ -25,22 +25,22 @@ struct Progress {
 };
 
 struct SimulationOptions {
-    int steps = -1;                   ///< negative: the model's end_time (1000 steps if that is not given)
-    bool for_gradient = false;        ///< solve each step to rounding level with the true Hessian (what the adjoint needs)
+    int steps = -1;                                ///< negative: the model's end_time (1000 steps if that is not given)
+    bool for_gradient = false;                     ///< solve each step to rounding level with the true Hessian (what the adjoint needs)
     std::function<void(const Progress&)> on_step;  ///< optional
     std::function<bool()> should_stop;             ///< optional, asked after each Newton iteration
 };
 
 struct StepReport {
     int newton_iterations = 0;
-    int contacts = 0;                 ///< active pairs at the end of the step
-    double minimum_distance = 0;      ///< at the end of the step, of pairs within the broad phase's margin [m]; infinity if none
-    double residual = 0;              ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp)
+    int contacts = 0;             ///< active pairs at the end of the step
+    double minimum_distance = 0;  ///< of the active pairs at the end of the step [m]; infinity if there are none
+    double residual = 0;          ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp)
 };
 
 struct SimulationReport {
     SimulationStatus status = SimulationStatus::ok;
-    std::string message;              ///< names step, bodies, closest pair and cause when not ok
+    std::string message;  ///< names step, bodies, closest pair and cause when not ok
     std::vector<StepReport> steps;
     int newton_iterations = 0;
     double wall_seconds = 0;

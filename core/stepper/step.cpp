@@ -34,10 +34,14 @@ TrajectoryStep stored_path(const model::Model& model, const StepState& state, co
 
 SimulationStatus simulation_status(solver::NewtonStatus status) {
     switch (status) {
-        case solver::NewtonStatus::converged: return SimulationStatus::ok;
-        case solver::NewtonStatus::blocked: return SimulationStatus::blocked;
-        case solver::NewtonStatus::interrupted: return SimulationStatus::interrupted;
-        case solver::NewtonStatus::not_converged: break;
+        case solver::NewtonStatus::converged:
+            return SimulationStatus::ok;
+        case solver::NewtonStatus::blocked:
+            return SimulationStatus::blocked;
+        case solver::NewtonStatus::interrupted:
+            return SimulationStatus::interrupted;
+        case solver::NewtonStatus::not_converged:
+            break;
     }
     return SimulationStatus::not_converged;
 }
@@ -73,8 +77,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     newton.max_iterations = model.max_newton_iterations;
     newton.to_rounding = options.for_gradient;
     newton.should_stop = options.should_stop;
-    const solver::NewtonResult solved =
-        solver::minimise(problem, targets, workspace, newton);
+    const solver::NewtonResult solved = solver::minimise(problem, targets, workspace, newton);
 
     StepResult result;
     result.status = simulation_status(solved.status);

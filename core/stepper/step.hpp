@@ -12,9 +12,9 @@ namespace fettle::core::stepper {
 
 /// What is carried from step to step.
 struct StepState {
-    double time = 0;                          ///< at the start of the step [s]
+    double time = 0;  ///< at the start of the step [s]
     std::vector<kinematics::Pose> poses;
-    std::vector<Matrix34> velocities;         ///< Pdot
+    std::vector<Matrix34> velocities;  ///< Pdot
 };
 StepState start_state(const model::Model& model);
 
@@ -22,7 +22,7 @@ struct StepResult {
     SimulationStatus status = SimulationStatus::ok;
     std::string message;
     TrajectoryStep path;
-    StepState state;         ///< at the end; the start's when not ok
+    StepState state;  ///< at the end; the start's when not ok
     StepReport report;
 };
 

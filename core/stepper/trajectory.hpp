@@ -20,10 +20,10 @@ struct TrajectoryStep {
 
 struct Trajectory {
     double time_start = 0;
-    double timestep = 0;                                     ///< h [s]
+    double timestep = 0;  ///< h [s]
     std::vector<std::string> body_names;
-    std::vector<std::vector<kinematics::Pose>> poses;        ///< [t][body], t = 0 .. steps.size()
-    std::vector<TrajectoryStep> steps;                       ///< step t leads from poses[t] to poses[t + 1]
+    std::vector<std::vector<kinematics::Pose>> poses;  ///< [t][body], t = 0 .. steps.size()
+    std::vector<TrajectoryStep> steps;                 ///< step t leads from poses[t] to poses[t + 1]
 };
 
 /// Segment `k` of step `t` of a body.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The broad phase against all pairs of primitives: nothing that comes within the activation distance is missing, and stored distances are bounds.
+// The broad phase against all pairs of primitives: nothing that comes within the activation distance is missing, and stored distances are
+// bounds.
 #include "fettle/core/contact/candidates.hpp"
 
 #include <catch2/catch.hpp>
@@ -50,13 +51,16 @@ std::map<Key, double> all_distances(const model::Model& m, const std::vector<kin
     const auto at_b = [&](int v) { return world_position(poses[1], b.vertices.col(v)); };
     for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t)
         for (int v = 0; v < a.vertices.cols(); ++v)
-            out[{0, v, t}] = std::sqrt(geometry::point_triangle_distance_squared(at_a(v), at_b(b.triangles[t][0]), at_b(b.triangles[t][1]), at_b(b.triangles[t][2])));
+            out[{0, v, t}] = std::sqrt(geometry::point_triangle_distance_squared(at_a(v), at_b(b.triangles[t][0]), at_b(b.triangles[t][1]),
+                                                                                 at_b(b.triangles[t][2])));
     for (int t = 0; t < static_cast<int>(a.triangles.size()); ++t)
         for (int v = 0; v < b.vertices.cols(); ++v)
-            out[{1, t, v}] = std::sqrt(geometry::point_triangle_distance_squared(at_b(v), at_a(a.triangles[t][0]), at_a(a.triangles[t][1]), at_a(a.triangles[t][2])));
+            out[{1, t, v}] = std::sqrt(geometry::point_triangle_distance_squared(at_b(v), at_a(a.triangles[t][0]), at_a(a.triangles[t][1]),
+                                                                                 at_a(a.triangles[t][2])));
     for (int i = 0; i < static_cast<int>(a.edges.size()); ++i)
         for (int j = 0; j < static_cast<int>(b.edges.size()); ++j)
-            out[{2, i, j}] = std::sqrt(geometry::edge_edge_distance_squared(at_a(a.edges[i][0]), at_a(a.edges[i][1]), at_b(b.edges[j][0]), at_b(b.edges[j][1])));
+            out[{2, i, j}] = std::sqrt(
+                geometry::edge_edge_distance_squared(at_a(a.edges[i][0]), at_a(a.edges[i][1]), at_b(b.edges[j][0]), at_b(b.edges[j][1])));
     return out;
 }
 
@@ -130,8 +134,9 @@ TEST_CASE("coverage ends where a body leaves its allowance", "[candidates]") {
     const kinematics::Pose here{Matrix3::Identity(), Vector3(0.1, 0, 0)};
     const Candidates candidates = find_candidates(model, std::vector<kinematics::Pose>{here, here}, {{0.1, 0.1}, {0, 0}});
     const auto segment = [&](double travel, double turn) {
-        return std::vector<kinematics::PathSegment>{{here.rotation, Vector3::Zero(), Vector3(0, turn, 0), here.position, Vector3(travel, 0, 0)},
-                                                    {here.rotation, Vector3::Zero(), Vector3::Zero(), here.position, Vector3::Zero()}};
+        return std::vector<kinematics::PathSegment>{
+            {here.rotation, Vector3::Zero(), Vector3(0, turn, 0), here.position, Vector3(travel, 0, 0)},
+            {here.rotation, Vector3::Zero(), Vector3::Zero(), here.position, Vector3::Zero()}};
     };
     CHECK(covered_fraction(candidates, segment(0.09, 0.09)) == 1);
     CHECK(covered_fraction(candidates, segment(0.2, 0)) == Approx(0.5));

@@ -39,11 +39,18 @@ std::vector<Case> cases() {
         {"face", make_pair(pt, {Vector3(0.4, 0.3, 0.07), t0, t1, t2}, 1), 2, false},
         {"triangle edge", make_pair(pt, {Vector3(0.5, -0.01, 0.06), t0, t1, t2}, 1), 1, false},
         {"triangle corner", make_pair(pt, {Vector3(-0.05, -0.03, 0.04), t0, t1, t2}, 1), 0, false},
-        {"crossing edges", make_pair(ee, {Vector3(-0.5, 0.1, 0.08), Vector3(0.6, 0, 0.07), Vector3(0, -0.4, 0), Vector3(0.1, 0.5, 0.01)}, 1), 2, false},
-        {"edge end", make_pair(ee, {Vector3(0.06, 0.1, 0.05), Vector3(0.8, 0, 0.2), Vector3(0, -0.4, 0), Vector3(0.01, 0.5, 0.01)}, 1), 1, false},
-        {"two ends", make_pair(ee, {Vector3(0.06, 0.54, 0.05), Vector3(0.8, 0.9, 0.2), Vector3(0, -0.4, 0), Vector3(0.01, 0.5, 0.01)}, 1), 0, false},
-        {"nearly parallel, inside", make_pair(ee, {Vector3(-0.5, 0.005, 0.07), Vector3(0.5, -0.004, 0.0699), Vector3(-0.4, -0.004, 0), Vector3(0.6, 0.006, 0)}, 1), 2, true},
-        {"nearly parallel, end", make_pair(ee, {Vector3(-0.5, 0.03, 0.05), Vector3(0.5, 0.035, 0.04), Vector3(-0.4, -0.004, 0), Vector3(0.6, 0.006, 0)}, 1), 1, true},
+        {"crossing edges",
+         make_pair(ee, {Vector3(-0.5, 0.1, 0.08), Vector3(0.6, 0, 0.07), Vector3(0, -0.4, 0), Vector3(0.1, 0.5, 0.01)}, 1), 2, false},
+        {"edge end", make_pair(ee, {Vector3(0.06, 0.1, 0.05), Vector3(0.8, 0, 0.2), Vector3(0, -0.4, 0), Vector3(0.01, 0.5, 0.01)}, 1), 1,
+         false},
+        {"two ends", make_pair(ee, {Vector3(0.06, 0.54, 0.05), Vector3(0.8, 0.9, 0.2), Vector3(0, -0.4, 0), Vector3(0.01, 0.5, 0.01)}, 1),
+         0, false},
+        {"nearly parallel, inside",
+         make_pair(ee, {Vector3(-0.5, 0.005, 0.07), Vector3(0.5, -0.004, 0.0699), Vector3(-0.4, -0.004, 0), Vector3(0.6, 0.006, 0)}, 1), 2,
+         true},
+        {"nearly parallel, end",
+         make_pair(ee, {Vector3(-0.5, 0.03, 0.05), Vector3(0.5, 0.035, 0.04), Vector3(-0.4, -0.004, 0), Vector3(0.6, 0.006, 0)}, 1), 1,
+         true},
     };
     return out;
 }
@@ -111,8 +118,9 @@ TEST_CASE("gradient and exact Hessian of a pair agree with differences", "[conta
             for (int j = 0; j < 12; ++j) {
                 const Vector12 f = Vector12::Unit(j);
                 // In tangent coordinates the second difference is along the exponential of the sum.
-                second(i, j) = (potential_at(c.pair, h2 * (e + f)) - potential_at(c.pair, h2 * (e - f)) - potential_at(c.pair, h2 * (f - e)) +
-                                potential_at(c.pair, -h2 * (e + f))) / (4 * h2 * h2);
+                second(i, j) = (potential_at(c.pair, h2 * (e + f)) - potential_at(c.pair, h2 * (e - f)) -
+                                potential_at(c.pair, h2 * (f - e)) + potential_at(c.pair, -h2 * (e + f))) /
+                               (4 * h2 * h2);
             }
         }
         CHECK((gradient - difference).norm() <= 1e-7 * gradient.norm());

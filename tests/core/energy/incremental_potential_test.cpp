@@ -23,8 +23,10 @@ struct Setup {
 // Two boxes corner against face, off-centre so that first moments do not vanish.
 Setup setup() {
     Setup s;
-    s.model.bodies = {make_body("a", box_mesh(Vector3(-0.2, -0.1, -0.1), Vector3(0.3, 0.2, 0.1)), make_pose(Vector3(0.6, 0.5, 0.2), Vector3(0, 0.02, 0.33))),
-                      make_body("b", box_mesh(Vector3(-0.3, -0.3, -0.1), Vector3(0.2, 0.3, 0.15)), make_pose(Vector3(0, 0, 0.1), Vector3(0.02, 0, 0)))};
+    s.model.bodies = {
+        make_body("a", box_mesh(Vector3(-0.2, -0.1, -0.1), Vector3(0.3, 0.2, 0.1)),
+                  make_pose(Vector3(0.6, 0.5, 0.2), Vector3(0, 0.02, 0.33))),
+        make_body("b", box_mesh(Vector3(-0.3, -0.3, -0.1), Vector3(0.2, 0.3, 0.15)), make_pose(Vector3(0, 0, 0.1), Vector3(0.02, 0, 0)))};
     s.model.gravity = Vector3(0.3, 0, -9.81);
     s.model.timestep = 0.02;
     s.model.dhat = 0.2;
@@ -38,7 +40,8 @@ Setup setup() {
         poses.push_back(body.pose_start);
     }
     s.problem = implicit_euler_problem(s.model, poses, velocities);
-    s.points = {{poses[0].position + Vector3(0.01, 0, 0.01), Vector3(0.2, -0.1, 0.3)}, {poses[1].position - Vector3(0, 0.02, 0), Vector3(-0.1, 0.2, 0.4)}};
+    s.points = {{poses[0].position + Vector3(0.01, 0, 0.01), Vector3(0.2, -0.1, 0.3)},
+                {poses[1].position - Vector3(0, 0.02, 0), Vector3(-0.1, 0.2, 0.4)}};
     return s;
 }
 
@@ -48,8 +51,10 @@ contact::Candidates all_candidates(const Setup& s, const std::vector<kinematics:
 
 std::vector<kinematics::ChartPoint> moved(std::vector<kinematics::ChartPoint> points, int dof, double h) {
     kinematics::ChartPoint& p = points[dof / 6];
-    if (dof % 6 < 3) p.position[dof % 6] += h;
-    else p.rotation_vector[dof % 6 - 3] += h;
+    if (dof % 6 < 3)
+        p.position[dof % 6] += h;
+    else
+        p.rotation_vector[dof % 6 - 3] += h;
     return points;
 }
 
@@ -67,15 +72,18 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
     REQUIRE(contacts.count > 10);
     const ChartDerivatives d = derivatives_at(s.points, contact::HessianKind::exact);
     Eigen::Matrix<double, 12, 12> hessian, difference_hessian;
-    hessian << d.hessian.diagonal[0], d.hessian.off_diagonal.at(0).block, d.hessian.off_diagonal.at(0).block.transpose(), d.hessian.diagonal[1];
+    hessian << d.hessian.diagonal[0], d.hessian.off_diagonal.at(0).block, d.hessian.off_diagonal.at(0).block.transpose(),
+        d.hessian.diagonal[1];
     Vector12 gradient, difference;
     gradient << d.gradient[0], d.gradient[1];
     const double h = 1e-6;
     for (int k = 0; k < 12; ++k) {
         const auto plus = moved(s.points, k, h), minus = moved(s.points, k, -h);
         difference[k] = (incremental_potential(s.problem, poses_of(s.problem, plus), candidates) -
-                         incremental_potential(s.problem, poses_of(s.problem, minus), candidates)) / (2 * h);
-        const auto gp = derivatives_at(plus, contact::HessianKind::exact).gradient, gm = derivatives_at(minus, contact::HessianKind::exact).gradient;
+                         incremental_potential(s.problem, poses_of(s.problem, minus), candidates)) /
+                        (2 * h);
+        const auto gp = derivatives_at(plus, contact::HessianKind::exact).gradient,
+                   gm = derivatives_at(minus, contact::HessianKind::exact).gradient;
         difference_hessian.col(k) << (gp[0] - gm[0]) / (2 * h), (gp[1] - gm[1]) / (2 * h);
     }
     CHECK((gradient - difference).norm() < 1e-8 * gradient.norm());
@@ -83,7 +91,8 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
 
     const ChartDerivatives projected = derivatives_at(s.points, contact::HessianKind::projected);
     Eigen::Matrix<double, 12, 12> p;
-    p << projected.hessian.diagonal[0], projected.hessian.off_diagonal.at(0).block, projected.hessian.off_diagonal.at(0).block.transpose(), projected.hessian.diagonal[1];
+    p << projected.hessian.diagonal[0], projected.hessian.off_diagonal.at(0).block, projected.hessian.off_diagonal.at(0).block.transpose(),
+        projected.hessian.diagonal[1];
     CHECK(p.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= -1e-12 * p.norm());
 }
 

@@ -17,7 +17,8 @@ namespace {
 model::Model chain_of_bodies(int n) {
     model::Model model;
     for (int i = 0; i < n; ++i) {
-        model::Body body = make_body("b" + std::to_string(i), box_mesh(Vector3::Zero(), Vector3::Ones()), make_pose(Vector3::Zero(), Vector3::Zero()));
+        model::Body body =
+            make_body("b" + std::to_string(i), box_mesh(Vector3::Zero(), Vector3::Ones()), make_pose(Vector3::Zero(), Vector3::Zero()));
         if (i % 5 == 2) prescribe(body, i % 6);
         model.bodies.push_back(body);
     }
@@ -33,7 +34,8 @@ kinematics::BlockHessian random_hessian(int n, double shift, std::mt19937& rando
         if (i > 0) h.off_diagonal.push_back({i - 1, i, Matrix6::NullaryExpr([&] { return normal(random); })});
         if (i > 3) h.off_diagonal.push_back({i - 4, i, Matrix6::NullaryExpr([&] { return normal(random); })});
     }
-    std::sort(h.off_diagonal.begin(), h.off_diagonal.end(), [](const auto& x, const auto& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+    std::sort(h.off_diagonal.begin(), h.off_diagonal.end(),
+              [](const auto& x, const auto& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
     return h;
 }
 

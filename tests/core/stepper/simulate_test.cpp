@@ -67,7 +67,8 @@ TEST_CASE("the error of free fall is first order in the time step", "[simulate]"
 }
 
 TEST_CASE("a cube comes to rest on the ground within the activation distance", "[simulate]") {
-    const model::Model model = model_of({make_body("cube", cube(0.2), make_pose(Vector3::Zero(), Vector3(0.01, 0.02, 0.15))), ground_plate()});
+    const model::Model model =
+        model_of({make_body("cube", cube(0.2), make_pose(Vector3::Zero(), Vector3(0.01, 0.02, 0.15))), ground_plate()});
     const Simulation run = simulate(model, steps(100, true));
     REQUIRE(run.report.status == SimulationStatus::ok);
     const Vector3 end = run.trajectory.poses.back()[0].position, before = run.trajectory.poses[99][0].position;
@@ -81,7 +82,8 @@ TEST_CASE("a cube comes to rest on the ground within the activation distance", "
 
 TEST_CASE("momentum is exact under contact without gravity", "[simulate]") {
     model::Body a = make_body("a", cube(0.2), make_pose(Vector3(0.1, 0.2, 0.3), Vector3(0, 0, 0)));
-    model::Body b = make_body("b", cube(0.2), make_pose(Vector3(-0.3, 0.1, 0.2), Vector3(0.5, 0.03, -0.02)), scene::BodyType::dynamic_body, 2000);
+    model::Body b =
+        make_body("b", cube(0.2), make_pose(Vector3(-0.3, 0.1, 0.2), Vector3(0.5, 0.03, -0.02)), scene::BodyType::dynamic_body, 2000);
     set_velocity(a, Vector3(2, 0, 0), Vector3::Zero());
     model::Model model = model_of({a, b});
     model.gravity.setZero();
@@ -94,7 +96,8 @@ TEST_CASE("momentum is exact under contact without gravity", "[simulate]") {
     const auto momentum = [&](std::size_t t) {
         Vector3 p = Vector3::Zero();
         for (int i = 0; i < 2; ++i)
-            p += model.bodies[i].moments(3, 3) * (run.trajectory.poses[t][i].position - run.trajectory.poses[t - 1][i].position) / model.timestep;
+            p += model.bodies[i].moments(3, 3) * (run.trajectory.poses[t][i].position - run.trajectory.poses[t - 1][i].position) /
+                 model.timestep;
         return p;
     };
     for (std::size_t t = 1; t <= 60; ++t) CHECK((momentum(t) - Vector3(2 * a.moments(3, 3), 0, 0)).norm() < 1e-9 * a.moments(3, 3));
@@ -154,8 +157,9 @@ TEST_CASE("a blocked motor ends in an error that names the bodies", "[simulate]"
 }
 
 TEST_CASE("two runs agree bit for bit, and candidates kept between steps change nothing", "[simulate]") {
-    const model::Model model = model_of({make_body("a", cube(0.2), make_pose(Vector3(0.2, 0.1, 0), Vector3(0, 0, 0.2))),
-                                         make_body("b", cube(0.2), make_pose(Vector3(0, 0.3, 0.1), Vector3(0.03, 0, 0.5))), ground_plate()});
+    const model::Model model =
+        model_of({make_body("a", cube(0.2), make_pose(Vector3(0.2, 0.1, 0), Vector3(0, 0, 0.2))),
+                  make_body("b", cube(0.2), make_pose(Vector3(0, 0.3, 0.1), Vector3(0.03, 0, 0.5))), ground_plate()});
     const Simulation first = simulate(model, steps(60)), second = simulate(model, steps(60));
     REQUIRE(first.report.status == SimulationStatus::ok);
     for (std::size_t t = 0; t < first.trajectory.poses.size(); ++t)
