@@ -117,7 +117,12 @@ private:
         ++result_.iterations;
         const double fraction = search(direction);
         // What is pushed must have time to give way: drive less where little was possible, more where much was.
-        if (!arrived) drive_ = fraction < 0.25 ? std::max(smallest_drive, 0.25 * drive_) : std::min(1.0, 2 * drive_);
+        if (resting_ > 0) {
+            --resting_;
+        } else if (!arrived) {
+            drive_ = fraction < 0.25 ? std::max(smallest_drive, 0.25 * drive_) : std::min(1.0, 2 * drive_);
+            resting_ = fraction < 0.25 ? 2 : 0;
+        }
         if (fraction == 0 && !arrived && drive_ > smallest_drive) {
             penalty_ *= 10;
             return true;
@@ -130,7 +135,7 @@ private:
             if (arrived && slow) return stop(NewtonStatus::converged);
             return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
         }
-        stalled_ = fraction * direction.drive < stalled_step ? stalled_ + 1 : 0;
+        if (direction.drive > 0) stalled_ = fraction * direction.drive < stalled_step ? stalled_ + 1 : 0;
         if (!arrived && stalled_ >= stalled_iterations)
             return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
         // A full exact step this small leaves an error of its square over the gap: rounding.
@@ -215,7 +220,7 @@ private:
                 direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model_.bodies[i].radius);
             }
         }
-        direction.drive = direction.remaining_norm > 0 ? drive_ : 1;
+        direction.drive = direction.remaining_norm > 0 ? (resting_ > 0 ? 0 : drive_) : 1;
         direction.step = direction.remaining;
         for (Vector6& step : direction.step) step *= direction.drive;
         if (dofs_.count > 0) {
@@ -358,6 +363,7 @@ private:
     double value_ = 0;
     double penalty_ = 0;
     double drive_ = 1;
+    int resting_ = 0;  // iterations that leave the prescribed coordinates where they are
     int projected_iterations_ = 0;
     int stalled_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
