@@ -26,7 +26,7 @@ using core::scene::JsonNode;
 
 std::vector<std::string_view> views(const std::vector<std::string>& names) { return {names.begin(), names.end()}; }
 
-/// Reads one file. Faults go to the document; values after a fault are placeholders that nobody sees.
+/// Reads one file. Faults go to the document; values read after a fault are never used.
 class DesignReader {
 public:
     DesignReader(JsonDocument& document, const DesignReadOptions& options) : document_(document), options_(options) {}

@@ -19,7 +19,7 @@ const std::vector<std::string_view> dof_names{"px", "py", "pz", "rx", "ry", "rz"
 
 int dof_index(const std::string& name) { return static_cast<int>(std::find(dof_names.begin(), dof_names.end(), name) - dof_names.begin()); }
 
-/// Reads one file of our own format. Faults go to the document; values after a fault are placeholders that nobody sees.
+/// Reads one file of our own format. Faults go to the document; values read after a fault are never used.
 class SceneReader {
 public:
     SceneReader(JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
