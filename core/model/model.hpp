@@ -22,35 +22,52 @@ namespace fettle::core::model {
 struct Body {
     std::string name;
     scene::BodyType type = scene::BodyType::dynamic_body;
-    geometry::Mesh mesh;                                  ///< vertices relative to c [m]
-    Vector3 reference_point = Vector3::Zero();            ///< c in the file's frame [m]
+    geometry::Mesh mesh;                        ///< vertices relative to c [m]
+    Vector3 reference_point = Vector3::Zero();  ///< c in the file's frame [m]
     double density = 0;
-    Matrix4 moments = Matrix4::Zero();                    ///< M = integral of rho [X;1][X;1]^T [kg m^2, kg m, kg]; zero if not dynamic
-    kinematics::Pose pose_start;                          ///< of the reference point's frame
-    Matrix34 velocity_start = Matrix34::Zero();           ///< Pdot = [[omega] R, v]
+    Matrix4 moments = Matrix4::Zero();           ///< M = integral of rho [X;1][X;1]^T [kg m^2, kg m, kg]; zero if not dynamic
+    kinematics::Pose pose_start;                 ///< of the reference point's frame
+    Matrix34 velocity_start = Matrix34::Zero();  ///< Pdot = [[omega] R, v]
     scene::PrescribedMotion prescribed;
-    Vector3 force = Vector3::Zero();                      ///< at c [N]
+    scene::PoseScript script;          ///< of c's frame
+    Vector3 force = Vector3::Zero();   ///< at c [N]
+    Vector3 torque = Vector3::Zero();  ///< [N m]
+    int material = 0;                  ///< row of Model::friction.mu
     int group = -1;
-    double radius = 0;                                    ///< largest |X|
-    std::vector<double> edge_length_squared;              ///< undeformed, per edge: the mollifier's eps
+    double radius = 0;                        ///< largest |X|
+    std::vector<double> edge_length_squared;  ///< undeformed, per edge: the mollifier's eps
     std::shared_ptr<const contact::BodyHierarchy> hierarchy;
 };
 
 inline bool is_free(const Body& body, int dof) { return !body.prescribed[dof].has_value(); }
 
+struct Friction {
+    MatrixX mu = MatrixX::Zero(1, 1);  ///< coefficient by materials, symmetric
+    double eps_v = 1e-3;               ///< [m/s]
+    int rounds = 1;                    ///< per step; negative: until normal forces and tangents agree
+};
+
 struct Model {
     std::vector<Body> bodies;
-    Vector3 gravity = Vector3::Zero();     ///< [m/s^2]
-    double timestep = 0.01;                ///< h [s]
-    double end_time = -1;                  ///< [s], negative: not given
-    double dhat = 1e-3;                    ///< [m]
-    double dmin = 0;                       ///< [m]
-    double kappa = 0;                      ///< [N/m], fixed for the whole trajectory
-    double velocity_tolerance = 0;         ///< [m/s]
+    Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
+    double timestep = 0.01;             ///< h [s]
+    double end_time = -1;               ///< [s], negative: not given
+    double dhat = 1e-3;                 ///< [m]
+    double dmin = 0;                    ///< [m]
+    double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
+    bool adaptive_kappa = false;        ///< may a step raise kappa? (never when a gradient is asked for)
+    bool area_weighted = false;
+    Friction friction;
+    scene::Integrator integrator = scene::Integrator::implicit_euler;
+    double velocity_tolerance = 0;  ///< [m/s]
     int max_newton_iterations = 3000;
-    double diagonal = 1;                   ///< of the bounding box of everything at the start [m]
-    double length_unit = 1;                ///< of the scene file [m], for reports
+    double diagonal = 1;     ///< of the bounding box of everything at the start [m]
+    double length_unit = 1;  ///< of the scene file [m], for reports
 };
+
+inline double friction_coefficient(const Model& model, int a, int b) {
+    return model.friction.mu(model.bodies[static_cast<std::size_t>(a)].material, model.bodies[static_cast<std::size_t>(b)].material);
+}
 
 /// May these two bodies touch? Not a body with itself, nor bodies of one group, nor two bodies without any free degree of freedom
 /// and without prescribed motion relative to each other by contact: static and kinematic bodies do not collide with each other.

@@ -30,6 +30,39 @@ double motion_value(const MotionCurve& curve, double time);
 /// Rotations are components of the rotation vector of each time step.
 using PrescribedMotion = std::array<std::optional<MotionCurve>, 6>;
 
+/// Poses at times, for a kinematic body: from its start pose at time 0 through poses[k] at times[k], each stretch straight in its own
+/// chart (q linear, R = exp(s [theta]) R_k). After the last one the body goes on with its linear and angular velocity.
+struct PoseScript {
+    std::vector<double> times;            ///< [s], strictly increasing, > 0
+    std::vector<kinematics::Pose> poses;  ///< of the file's frame
+    bool empty() const { return times.empty(); }
+};
+
+/// What `density` is per: decides the mass integral of a dynamic body.
+enum class MassKind {
+    volume,  ///< closed mesh [kg/m^3]
+    area,    ///< triangles as a shell [kg/m^2]
+    length,  ///< all edges as wires [kg/m]
+    vertex   ///< all vertices as points [kg each]
+};
+
+/// Coulomb friction. The coefficient of two bodies: that of their pair of materials if one is listed, else the geometric mean of their own
+/// (Body::mu, else their material's, else `mu`).
+struct Friction {
+    struct Pair {
+        std::string material_a, material_b;
+        double mu = 0;
+    };
+    double mu = 0;                            ///< default
+    std::map<std::string, double> materials;  ///< mu of a material against itself
+    std::vector<Pair> pairs;
+    double eps_v = 1e-3;  ///< static speed bound [m/s]: below it friction is smoothed
+    int rounds = 1;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree
+};
+
+/// Time integration (method.md section 3). First order and dissipative; second order; second order and energy keeping.
+enum class Integrator { implicit_euler, bdf2, newmark };
+
 /// How strictly meshes are taken: our own files refuse what a printable part cannot be; the paper's files load with warnings.
 enum class MeshPolicy { strict, lenient };
 
@@ -47,12 +80,17 @@ struct Body {
     geometry::Mesh mesh;              ///< vertices in the file's frame, scaled, [m]
     std::optional<ShapeSpec> shape;   ///< what `mesh` was made from, if a generator made it
     MeshPolicy mesh_policy = MeshPolicy::strict;
-    double density = 1000;            ///< [kg/m^3] closed meshes, [kg/m^2] open surfaces
+    double density = 1000;            ///< per what `mass_kind` says
+    MassKind mass_kind = MassKind::volume;
+    std::string material;             ///< for friction; empty: none named
+    std::optional<double> mu;         ///< its own friction coefficient
     kinematics::Pose pose;            ///< of the file's frame at the start: world = rotation * x + position
     Vector3 linear_velocity = Vector3::Zero();   ///< of the reference point (model/model.hpp) at the start [m/s]
     Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
     PrescribedMotion prescribed;      ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
+    PoseScript script;                ///< kinematic only; then `prescribed` is what follows it
     Vector3 force = Vector3::Zero();  ///< constant, world, at the reference point [N]
+    Vector3 torque = Vector3::Zero(); ///< constant, world [N m]
     std::optional<Vector3> reference_point;      ///< in the file's frame [m]; default see model/model.hpp
     int group = -1;                   ///< bodies of one group (>= 0) never collide
 };
@@ -66,7 +104,10 @@ struct Scene {
     std::optional<double> end_time;              ///< [s]
     std::optional<double> dhat;                  ///< activation distance [m]; default 1e-3 of the scene's diagonal
     double dmin = 0;                             ///< minimum separation [m]
-    std::optional<double> kappa;                 ///< barrier stiffness [N/m]; default chosen by choose_kappa
+    std::optional<double> kappa;                 ///< barrier stiffness [N/m]; default chosen by choose_kappa, and raised as steps need it
+    bool area_weighted = false;                  ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
+    Friction friction;
+    Integrator integrator = Integrator::implicit_euler;
     std::optional<double> velocity_tolerance;    ///< Newton stops below this speed of any point [m/s]; default 1e-2 diagonal / s
     int max_newton_iterations = 3000;
     std::vector<std::string> warnings;           ///< what a lenient reader accepted
