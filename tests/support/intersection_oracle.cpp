@@ -49,7 +49,8 @@ Placed place(const core::geometry::Mesh& mesh, const core::kinematics::Pose& pos
 }
 
 /// The triangles that reach into `box`, and their indices.
-std::pair<std::vector<SpaceTriangle>, std::vector<int>> part_within(const std::vector<SpaceTriangle>& triangles, const Eigen::AlignedBox3d& box) {
+std::pair<std::vector<SpaceTriangle>, std::vector<int>> part_within(const std::vector<SpaceTriangle>& triangles,
+                                                                    const Eigen::AlignedBox3d& box) {
     std::pair<std::vector<SpaceTriangle>, std::vector<int>> part;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         Eigen::AlignedBox3d own(triangles[i][0]);
@@ -117,31 +118,31 @@ std::string to_string(const Intersection& at, const core::model::Model& model) {
     return text.str();
 }
 
+void find_intersections_in_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int step,
+                                int instants_between, std::size_t max_count, IntersectionReport& report) {
+    Intersection where;
+    where.step = step;
+    const int bodies = static_cast<int>(model.bodies.size());
+    std::vector<core::kinematics::Pose> poses(bodies);
+    look(model, trajectory.poses[step], where, max_count, report);  // as stored; the chart's start is the same up to rounding
+    for (where.segment = 0; where.segment < core::stepper::segment_count(trajectory, step); ++where.segment) {
+        for (int k = 1; k <= instants_between + 1; ++k) {  // the last one is the node at the segment's end
+            where.s = static_cast<double>(k) / (instants_between + 1);
+            for (int i = 0; i < bodies; ++i)
+                poses[i] = core::kinematics::pose_at(core::stepper::path_segment(trajectory, step, where.segment, i), where.s);
+            look(model, poses, where, max_count, report);
+        }
+    }
+}
+
 IntersectionReport find_intersections(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int instants_between,
                                       std::size_t max_count) {
     IntersectionReport report;
-    Intersection where;
-    if (trajectory.steps.empty()) {
-        where.step = -1;
-        look(model, trajectory.poses.at(0), where, max_count, report);
-        return report;
-    }
-    const int bodies = static_cast<int>(model.bodies.size());
-    std::vector<core::kinematics::Pose> poses(bodies);
-    for (where.step = 0; where.step < static_cast<int>(trajectory.steps.size()); ++where.step) {
-        look(model, trajectory.poses[where.step], where, max_count, report);  // as stored; the chart's start is the same up to rounding
-        for (where.segment = 0; where.segment < core::stepper::segment_count(trajectory, where.step); ++where.segment) {
-            for (int k = 1; k <= instants_between + 1; ++k) {  // the last one is the node at the segment's end
-                where.s = static_cast<double>(k) / (instants_between + 1);
-                for (int i = 0; i < bodies; ++i) {
-                    poses[i] = core::kinematics::pose_at(core::stepper::path_segment(trajectory, where.step, where.segment, i), where.s);
-                }
-                look(model, poses, where, max_count, report);
-            }
-        }
-        where.segment = 0, where.s = 0;
-    }
-    look(model, trajectory.poses.back(), where, max_count, report);
+    const int steps = static_cast<int>(trajectory.steps.size());
+    for (int step = 0; step < steps; ++step) find_intersections_in_step(model, trajectory, step, instants_between, max_count, report);
+    Intersection end;
+    end.step = steps > 0 ? steps : -1;
+    look(model, trajectory.poses.back(), end, max_count, report);
     return report;
 }
 

@@ -23,8 +23,8 @@ std::vector<std::pair<int, int>> intersecting_pairs(const std::vector<SpaceTrian
 std::vector<SpaceTriangle> triangles_in_space(const core::geometry::Mesh& mesh, const core::kinematics::Pose& pose);
 
 struct Intersection {
-    int step = 0, segment = 0;        ///< of the trajectory; step -1: the start of one without steps
-    double s = 0;                     ///< along that segment
+    int step = 0, segment = 0;  ///< of the trajectory; step -1: the start of one without steps
+    double s = 0;               ///< along that segment
     int body_a = 0, body_b = 0;
     int triangle_a = 0, triangle_b = 0;
 };
@@ -36,9 +36,14 @@ struct IntersectionReport {
     long body_pairs = 0;                      ///< pairs of bodies whose boxes overlapped and whose triangles were compared
 };
 
+/// Looks at one step, from its start to its end: at its nodes and at `instants_between` instants evenly between each two. Adds to `report`,
+/// which stops growing at `max_count` intersections.
+void find_intersections_in_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int step,
+                                int instants_between, std::size_t max_count, IntersectionReport& report);
+
 /// Looks at every stored node and at `instants_between` instants evenly between each two, all pairs that model::may_collide
 /// allows. The poses are those of the stored path (kinematics/path.hpp). At most `max_count` intersections are listed.
-IntersectionReport find_intersections(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
-                                      int instants_between, std::size_t max_count = 10);
+IntersectionReport find_intersections(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int instants_between,
+                                      std::size_t max_count = 10);
 
 }  // namespace fettle::tests::support
