@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/clearance/clearance.hpp"
 
+#include <algorithm>
 #include <mutex>
 
 #include "fettle/core/base/contract.hpp"
@@ -44,9 +45,58 @@ double witness_time(const stepper::Trajectory& trajectory, const Witness& witnes
 }
 
 PairStatus judge(const PairClearance& pair, double dhat) {
-    if (!(pair.minimum > 0)) return pair.upper < dhat ? PairStatus::contact : PairStatus::clear;
+    if (pair.intersecting) return PairStatus::violated;
+    if (!(pair.minimum > 0)) {
+        if (pair.upper < dhat) return PairStatus::contact;
+        return pair.complete || pair.lower >= dhat ? PairStatus::clear : PairStatus::undecided;
+    }
     if (pair.lower >= pair.minimum) return PairStatus::clear;
     return pair.upper < pair.minimum ? PairStatus::violated : PairStatus::undecided;
+}
+
+struct BodyPair {
+    SearchBody a, b;
+};
+
+double time_of(const stepper::Trajectory& trajectory, const PairSegment& segment, double s) {
+    Witness at;
+    at.step = segment.step;
+    at.segment = segment.segment;
+    at.s = s;
+    return witness_time(trajectory, at);
+}
+
+std::vector<MarginInterval> margin_curve(const stepper::Trajectory& trajectory, const BodyPair& bodies,
+                                         const std::vector<PairSegment>& segments, const SearchResult& whole, SearchOptions options) {
+    std::vector<MarginInterval> margin;
+    const double tolerance = options.tolerance;
+    for (const PairSegment& segment : segments) {
+        SearchOptions coarse = options;
+        coarse.tolerance = std::max(tolerance, 1e-3 * whole.upper);
+        const SearchResult found = search_pair(bodies.a, bodies.b, {segment}, coarse);
+        MarginInterval interval{segment.step,
+                                segment.segment,
+                                time_of(trajectory, segment, 0),
+                                time_of(trajectory, segment, 1),
+                                std::max(found.lower, whole.lower),
+                                found.upper};
+        if (segment.step == whole.witness.step && segment.segment == whole.witness.segment)
+            interval.upper = std::min(interval.upper, whole.upper);
+        margin.push_back(interval);
+    }
+    return margin;
+}
+
+// The nodes of the path, each held.
+std::vector<PairSegment> node_instants(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
+    std::vector<PairSegment> nodes;
+    const auto add = [&](const PairSegment& segment, double s) {
+        nodes.push_back(
+            pair_segment(held(kinematics::pose_at(segment.a.path, s)), held(kinematics::pose_at(segment.b.path, s)), radius_a, radius_b));
+    };
+    for (const PairSegment& segment : segments) add(segment, 0);
+    add(segments.back(), 1);
+    return nodes;
 }
 
 PairClearance certify_pair(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& request,
@@ -55,10 +105,11 @@ PairClearance certify_pair(const model::Model& model, const stepper::Trajectory&
     FETTLE_ASSERT(request.a >= 0 && request.a < bodies && request.b >= 0 && request.b < bodies && request.a != request.b,
                   "a pair of two bodies of the model");
     const model::Body &a = model.bodies[request.a], &b = model.bodies[request.b];
-    const auto segments =
-        pair_segments(trajectory, request, a.hierarchy->nodes()[0].radius, b.hierarchy->nodes()[0].radius, options.motion);
-    const SearchResult found =
-        search_pair({&a.mesh, a.hierarchy.get()}, {&b.mesh, b.hierarchy.get()}, segments, {options.tolerance, options.max_evaluations, 1});
+    const double radius_a = a.hierarchy->nodes()[0].radius, radius_b = b.hierarchy->nodes()[0].radius;
+    const auto segments = pair_segments(trajectory, request, radius_a, radius_b, options.motion);
+    const BodyPair pair{{&a.mesh, a.hierarchy.get()}, {&b.mesh, b.hierarchy.get()}};
+    const SearchOptions search{options.tolerance, options.max_evaluations, 1, options.should_stop};
+    const SearchResult found = search_pair(pair.a, pair.b, segments, search);
     PairClearance result;
     result.a = request.a;
     result.b = request.b;
@@ -67,7 +118,12 @@ PairClearance certify_pair(const model::Model& model, const stepper::Trajectory&
     result.upper = found.upper;
     result.witness = found.witness;
     result.witness.time = witness_time(trajectory, found.witness);
+    result.complete = found.complete;
+    result.intersecting = found.intersecting;
     result.status = judge(result, model.dhat);
+    result.witnesses = {result.witness};
+    result.sampled = search_pair(pair.a, pair.b, node_instants(segments, radius_a, radius_b), search).upper;
+    if (options.margin_curve) result.margin = margin_curve(trajectory, pair, segments, found, search);
     return result;
 }
 

@@ -82,7 +82,9 @@ public:
         take_distance_of_any_pair();
         for (int i = 0; i < static_cast<int>(segments_.size()); ++i) try_nodes(i, 0, 0);
         while (!queue_.empty()) {
-            if (is_settled() || result_.evaluations >= options_.max_evaluations) break;
+            if (is_settled()) break;
+            result_.complete = result_.evaluations < options_.max_evaluations && !is_stopped();
+            if (!result_.complete) break;
             std::pop_heap(queue_.begin(), queue_.end(), Later{});
             const Entry entry = queue_.back();
             queue_.pop_back();
@@ -101,6 +103,8 @@ private:
         const double next = queue_.front().lower;
         return aside_ <= next || std::max(next, 0.0) >= result_.upper - options_.tolerance;
     }
+
+    bool is_stopped() { return options_.should_stop && (++rounds_ & 255) == 1 && options_.should_stop(); }
 
     static bool is_still(const PairSegment& s) {
         return s.a.speed == 0 && s.b.speed == 0 && s.a.path.position_step == s.b.path.position_step;
@@ -249,6 +253,10 @@ private:
         w.step = segment.step;
         w.segment = segment.segment;
         w.s = at.s;
+        w.distance = pair.distance;
+        w.kind_a = pair.edge_edge ? Primitive::edge : pair.vertex_on_a ? Primitive::vertex : Primitive::triangle;
+        w.kind_b = pair.edge_edge ? Primitive::edge : pair.vertex_on_a ? Primitive::triangle : Primitive::vertex;
+        result_.intersecting = pair.intersecting;
         w.edge_edge = pair.edge_edge;
         w.vertex_on_a = pair.vertex_on_a;
         w.primitive_a = pair.edge_edge ? -1 : pair.vertex_on_a ? element_a.vertices[pair.corner_a] : element_a.triangle;
@@ -371,6 +379,7 @@ private:
     std::vector<Entry> queue_;  // a heap
     double aside_ = infinity;   // least bound of the entries that are not in the queue any more and were not split
     std::int64_t made_ = 0;
+    std::int64_t rounds_ = 0;
     int witness_segment_ = 0, witness_a_ = 0, witness_b_ = 0;  // elements
     geometry::Edge edge_a_{}, edge_b_{};
     SearchResult result_;

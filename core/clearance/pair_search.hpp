@@ -8,6 +8,7 @@
 /// All segments share one queue and one upper bound: a segment during which the bodies are far apart costs one entry.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "fettle/core/clearance/clearance.hpp"
@@ -23,13 +24,16 @@ struct SearchBody {
 struct SearchOptions {
     double tolerance = 1e-6;
     long max_evaluations = 50'000'000;
-    double deviation_scale = 1;  ///< less than 1 breaks the proof: for tests that must notice
+    double deviation_scale = 1;         ///< less than 1 breaks the proof: for tests that must notice
+    std::function<bool()> should_stop;  ///< optional
 };
 
 struct SearchResult {
     double lower = 0, upper = 0;  ///< [m], lower >= 0; upper - lower <= tolerance unless rounding or the budget stands in the way
     Witness witness;              ///< of `upper`; `time` left to the caller
     long evaluations = 0;         ///< bounds computed
+    bool complete = true;         ///< false: out of budget, or stopped
+    bool intersecting = false;    ///< the witness is an edge that passes through a triangle
 };
 
 /// Contract: at least one segment; hierarchies of triangles only.
