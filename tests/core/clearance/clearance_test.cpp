@@ -26,6 +26,12 @@ core::model::Model model_of(const std::vector<Solid>& solids, const std::vector<
     return model;
 }
 
+ClearanceOptions options_with(double tolerance) {
+    ClearanceOptions options;
+    options.tolerance = tolerance;
+    return options;
+}
+
 // Body 0 at rest, body 1 visiting the nodes within one step.
 core::stepper::Trajectory one_step(const core::model::Model& model, const std::vector<core::kinematics::ChartPoint>& nodes) {
     core::stepper::Trajectory trajectory = as_assembled(model);
@@ -46,8 +52,8 @@ TEST_CASE("Boxes as assembled: bounds, status and witness", "[clearance]") {
     const auto start = as_assembled(model);
     CHECK(start.steps.empty());
     CHECK(start.body_names[2] == "body 2");
-    const auto results = certify_clearance(model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}},
-                                           ClearanceOptions{1e-6, false, 1'000'000, {}});
+    const auto results =
+        certify_clearance(model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}}, options_with(1e-6));
     const std::vector<PairStatus> expected{PairStatus::clear, PairStatus::violated, PairStatus::undecided,
                                            PairStatus::clear, PairStatus::contact,  PairStatus::clear};
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -69,7 +75,7 @@ TEST_CASE("A pin in a bore as assembled: distance of polygons", "[clearance]") {
     const int n = 24;
     const double pin = 0.005, bore = 0.0053;
     const auto model = model_of({prism(n, pin, 0.03), ring(n, bore, 0.01, 0.02)}, {{0, 0, 0}, {0, 0, 0}});
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 3e-4}}, {1e-9, false, 10'000'000, {}})[0];
+    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 3e-4}}, options_with(1e-9))[0];
     const double exact = (bore - pin) * std::cos(M_PI / n);
     CHECK(result.lower <= exact);
     CHECK(result.lower >= exact - 1e-9);
