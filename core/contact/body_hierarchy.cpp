@@ -64,7 +64,17 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         own_vertex(element, v);
         elements.push_back(element);
     }
+    for (int i = 0; i < static_cast<int>(elements.size()); ++i) elements[i].face = i;
     return elements;
+}
+
+std::vector<geometry::Triangle> faces_of(const std::vector<HierarchyElement>& elements) {
+    std::vector<geometry::Triangle> faces;
+    for (const HierarchyElement& e : elements) {
+        const auto& v = e.vertices;
+        faces.push_back({v[0], e.vertex_count > 1 ? v[1] : v[0], e.vertex_count > 2 ? v[2] : e.vertex_count > 1 ? v[1] : v[0]});
+    }
+    return faces;
 }
 
 struct Box {
@@ -157,7 +167,7 @@ private:
 
 }  // namespace
 
-BodyHierarchy::BodyHierarchy(const geometry::Mesh& mesh) : elements_(collect_elements(mesh)) {
+BodyHierarchy::BodyHierarchy(const geometry::Mesh& mesh) : elements_(collect_elements(mesh)), faces_(faces_of(elements_)) {
     FETTLE_ASSERT(!elements_.empty(), "mesh " + mesh.name + " has no vertices");
     FETTLE_ASSERT(mesh.vertices.allFinite(), "mesh " + mesh.name + " has a vertex that is not finite");
     Builder(mesh, elements_, nodes_).build();

@@ -24,6 +24,7 @@ struct HierarchyNode {
 /// What an element owns. `vertices` of triangle elements are its three corners; edges have two, points one.
 struct HierarchyElement {
     int triangle = -1;  ///< -1: a codimensional edge or point
+    int face = -1;      ///< index into BodyHierarchy::faces()
     int vertex_count = 0;
     std::array<int, 3> vertices{-1, -1, -1};
     int owned_vertex_count = 0, owned_edge_count = 0;
@@ -39,9 +40,14 @@ public:
     const std::vector<HierarchyNode>& nodes() const { return nodes_; }  ///< root is 0
     const std::vector<HierarchyElement>& elements() const { return elements_; }
 
+    /// The mesh's triangles, then its codimensional edges as (e0, e1, e1) and points as (p, p, p), whose distances, closest points and CCD
+    /// are those of the edge or point: so isolated points meet them as they meet triangles.
+    const std::vector<geometry::Triangle>& faces() const { return faces_; }
+
 private:
     std::vector<HierarchyNode> nodes_;
     std::vector<HierarchyElement> elements_;
+    std::vector<geometry::Triangle> faces_;
 };
 
 }  // namespace fettle::core::contact

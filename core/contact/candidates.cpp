@@ -178,18 +178,21 @@ private:
         if (d + lost_ <= margin_) list.push_back({i, j, d});
     }
 
-    // Vertices that `owner` owns (on `v`) against the triangle of `other` (on `t`).
+    // Vertices that `owner` owns (on `v`) against the face of `other` (on `t`).
     void visit_vertices(const SweptBody& v, const HierarchyElement& owner, const SweptBody& t, const HierarchyElement& other,
                         const Box& box_t, bool vertex_first) {
-        if (other.triangle < 0) return;
+        // Loose edges and points are faces for isolated points only: other vertices are ends of edges, whose own pairs cover them. Two
+        // points are one pair, not two.
+        if (other.triangle < 0 && (owner.vertex_count > 1 || (other.vertex_count == 1 && !vertex_first))) return;
+        const geometry::Triangle& face = t.body->hierarchy->faces()[other.face];
         for (int k = 0; k < owner.owned_vertex_count; ++k) {
             const int i = owner.owned_vertices[k];
             if (box(v, &i, 1).apart_from(box_t, margin_)) continue;
-            const std::array<Ends, 4> x{ends(v, i), ends(t, other.vertices[0]), ends(t, other.vertices[1]), ends(t, other.vertices[2])};
+            const std::array<Ends, 4> x{ends(v, i), ends(t, face[0]), ends(t, face[1]), ends(t, face[2])};
             if (vertex_first)
-                add(out_.vertex_triangle, i, other.triangle, PairType::point_triangle, x);
+                add(out_.vertex_triangle, i, other.face, PairType::point_triangle, x);
             else
-                add(out_.triangle_vertex, other.triangle, i, PairType::point_triangle, x);
+                add(out_.triangle_vertex, other.face, i, PairType::point_triangle, x);
         }
     }
 

@@ -32,8 +32,8 @@ struct PrimitivePair {
 /// Primitives of two bodies, a < b. Each list is sorted by distance.
 struct BodyPairCandidates {
     int a = 0, b = 0;
-    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, triangle of b
-    std::vector<PrimitivePair> triangle_vertex;  ///< triangle of a, vertex of b
+    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
+    std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
     std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
     bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
 };

@@ -153,7 +153,7 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
     const ScalarDerivatives m = mollifier_of(pair);
     const ScalarDerivatives b = barrier_of(pair, p);
     const EdgeCross k = edge_cross(pair.x);
-    const double f = p.factor;
+    const double f = p.factor * pair.weight;
 
     const Vector3 force = 2 * f * m.value * b.first * pair.closest.difference;
     sum.first.add_force(force, arms.first);
@@ -185,17 +185,26 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
 double pair_potential(const ContactPair& pair, const BarrierParameters& p) {
     const double gap = pair.closest.distance_squared - p.dmin * p.dmin;
     if (gap >= p.gap_hat) return 0;
-    return p.factor * mollifier_of(pair).value * barrier(gap, p.gap_hat).value;
+    return p.factor * pair.weight * mollifier_of(pair).value * barrier(gap, p.gap_hat).value;
+}
+
+double normal_force(const ContactPair& pair, const BarrierParameters& p) {
+    return -2 * p.factor * pair.weight * mollifier_of(pair).value * barrier_of(pair, p).first * std::sqrt(pair.closest.distance_squared);
+}
+
+void add_rigid_stiffness(Matrix12& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
+                         const Vector3& arm_second) {
+    rank_one(hessian, stiffness, pull_back(direction, arm_first, arm_second));
 }
 
 std::array<Vector3, 4> pair_forces(const ContactPair& pair, const BarrierParameters& p) {
     const ScalarDerivatives m = mollifier_of(pair);
     const ScalarDerivatives b = barrier_of(pair, p);
     std::array<Vector3, 4> f;
-    for (int i = 0; i < 4; ++i) f[i] = 2 * p.factor * m.value * b.first * pair.closest.weight[i] * pair.closest.difference;
+    for (int i = 0; i < 4; ++i) f[i] = 2 * p.factor * pair.weight * m.value * b.first * pair.closest.weight[i] * pair.closest.difference;
     if (m.first != 0) {
         const EdgeCross k = edge_cross(pair.x);
-        const double g = p.factor * b.value * m.first;
+        const double g = p.factor * pair.weight * b.value * m.first;
         f[0] -= g * k.c1;
         f[1] += g * k.c1;
         f[2] -= g * k.c2;
@@ -227,7 +236,7 @@ std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const Barri
     for (int a = 0; a < c.free_count; ++a) dr -= beta[a] * free.r[a];
 
     const double dD = 2 * r.dot(wv);
-    const double f = p.factor;
+    const double f = p.factor * pair.weight;
     std::array<Vector3, 4> out;
     for (int i = 0; i < 4; ++i) {
         double slide = 0;  // change of w_i
@@ -256,8 +265,8 @@ void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& p, H
         return;
     }
     ScalarDerivatives b = barrier_of(pair, p);
-    b.first *= p.factor;
-    b.second *= p.factor;
+    b.first *= p.factor * pair.weight;
+    b.second *= p.factor * pair.weight;
     const Vector3 force = 2 * b.first * pair.closest.difference;
     sum.first.add_force(force, arms.first);
     sum.second.add_force(-force, arms.second);

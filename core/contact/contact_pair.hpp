@@ -31,6 +31,7 @@ struct ContactPair {
     std::array<int, 2> edge{};    ///< edge_edge: indices of the two edges
     geometry::ClosestPoints closest;
     double mollifier_eps = 0;  ///< edge_edge: eps [m^4]
+    double weight = 1;         ///< on the potential: an area [m^2] if the barrier is area-weighted
 };
 
 /// How many of the four vertices lie on the first body.
@@ -53,6 +54,9 @@ std::array<Vector3, 4> pair_forces(const ContactPair& pair, const BarrierParamet
 /// (d2(potential)/dx dx) v for the true second derivative, v and result per vertex (world). For the adjoint.
 std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const BarrierParameters& parameters, const std::array<Vector3, 4>& v);
 
+/// Magnitude of the force between the closest points, times the potentials' weight (a mollifier's torque is left out).
+double normal_force(const ContactPair& pair, const BarrierParameters& parameters);
+
 /// Sums over the contacts of one pair of bodies.
 struct BodyPairSum {
     kinematics::PoseGradient first, second;
@@ -62,5 +66,10 @@ struct BodyPairSum {
 /// Adds one pair's gradient and Hessian. `first_position`, `second_position`: the bodies' q.
 void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& parameters, HessianKind kind, const Vector3& first_position,
                           const Vector3& second_position, BodyPairSum& sum);
+
+/// Adds stiffness * v v^T, v the pull-back of a unit displacement `direction` between two material points: the Hessian of
+/// stiffness / 2 (direction . (x_first - x_second))^2 less the curvature of the rotations. `arm_*`: the points relative to the bodies' q.
+void add_rigid_stiffness(Matrix12& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
+                         const Vector3& arm_second);
 
 }  // namespace fettle::core::contact

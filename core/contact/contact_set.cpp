@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "fettle/core/contact/body_hierarchy.hpp"
+
 namespace fettle::core::contact {
 namespace {
 
@@ -20,7 +22,8 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
     const Pose &pa = poses[list.a], &pb = poses[list.b];
     ContactPair pair;
     const auto point_triangle = [&](const model::Body& vb, const Pose& vp, int v, const model::Body& tb, const Pose& tp, int t) {
-        const geometry::Triangle& corners = tb.mesh.triangles[t];
+        const geometry::Triangle& corners = tb.hierarchy->faces()[t];
+        pair.weight = model.area_weighted ? 0.5 * vb.vertex_area[v] : 1;
         pair.vertex = {v, corners[0], corners[1], corners[2]};
         pair.x[0] = vertex(vb, vp, v);
         for (int k = 0; k < 3; ++k) pair.x[k + 1] = vertex(tb, tp, corners[k]);
@@ -42,6 +45,7 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
         pair.edge = {ea, eb};
         pair.vertex = {va[0], va[1], vb[0], vb[1]};
         pair.x = {vertex(a, pa, va[0]), vertex(a, pa, va[1]), vertex(b, pb, vb[0]), vertex(b, pb, vb[1])};
+        pair.weight = model.area_weighted ? 0.25 * (a.edge_area[ea] + b.edge_area[eb]) : 1;
         pair.mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
         visit(list.a, list.b, pair);
     }
@@ -117,20 +121,24 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& pos
         BodyPairSum sum;
         for (const ContactPair& pair : list.contacts)
             add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sum);
-        gradients[list.first].force += sum.first.force;
-        gradients[list.first].arm += sum.first.arm;
-        gradients[list.second].force += sum.second.force;
-        gradients[list.second].arm += sum.second.arm;
-        const Matrix12 full = sum.hessian.selfadjointView<Eigen::Lower>();
-        hessian.diagonal[list.first] += full.topLeftCorner<6, 6>();
-        hessian.diagonal[list.second] += full.bottomRightCorner<6, 6>();
-        const bool in_order = list.first < list.second;
-        kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(list.first, list.second), std::max(list.first, list.second));
-        if (in_order)
-            block.block += full.topRightCorner<6, 6>();
-        else
-            block.block += full.bottomLeftCorner<6, 6>();
+        add_body_pair(list.first, list.second, sum, gradients, hessian);
     }
+}
+
+void add_body_pair(int first, int second, const BodyPairSum& sum, std::vector<kinematics::PoseGradient>& gradients,
+                   kinematics::BlockHessian& hessian) {
+    gradients[first].force += sum.first.force;
+    gradients[first].arm += sum.first.arm;
+    gradients[second].force += sum.second.force;
+    gradients[second].arm += sum.second.arm;
+    const Matrix12 full = sum.hessian.selfadjointView<Eigen::Lower>();
+    hessian.diagonal[first] += full.topLeftCorner<6, 6>();
+    hessian.diagonal[second] += full.bottomRightCorner<6, 6>();
+    kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(first, second), std::max(first, second));
+    if (first < second)
+        block.block += full.topRightCorner<6, 6>();
+    else
+        block.block += full.bottomLeftCorner<6, 6>();
 }
 
 }  // namespace fettle::core::contact

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
 
@@ -33,12 +34,12 @@ public:
         const auto& vb = b.mesh.vertices;
         for (const auto& [v, t, distance] : list.vertex_triangle) {
             if (distance > reach) break;
-            const geometry::Triangle& c = b.mesh.triangles[t];
+            const geometry::Triangle& c = b.hierarchy->faces()[t];
             check(PairType::point_triangle, list.a, list.b, {va.col(v), vb.col(c[0]), vb.col(c[1]), vb.col(c[2])});
         }
         for (const auto& [t, v, distance] : list.triangle_vertex) {
             if (distance > reach) break;
-            const geometry::Triangle& c = a.mesh.triangles[t];
+            const geometry::Triangle& c = a.hierarchy->faces()[t];
             check(PairType::point_triangle, list.b, list.a, {vb.col(v), va.col(c[0]), va.col(c[1]), va.col(c[2])});
         }
         for (const auto& [i, j, distance] : list.edge_edge) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/energy/inertia.hpp"
 
 namespace fettle::core::energy {
@@ -37,17 +38,20 @@ Matrix6 chart_to_tangent(const Vector3& theta) {
 
 }  // namespace
 
-StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> poses_t0, const std::vector<Matrix34>& velocities_t0) {
-    StepProblem problem;
-    const double h = model.timestep;
-    problem.model = &model;
-    problem.weight = h * h;
-    problem.barrier = contact::barrier_parameters(model.dhat, model.dmin, model.kappa, problem.weight);
-    problem.pose_hat.resize(model.bodies.size());
-    for (std::size_t i = 0; i < model.bodies.size(); ++i)
-        problem.pose_hat[i] = implicit_euler_pose_hat(pose_matrix(poses_t0[i]), velocities_t0[i], model.gravity, h);
-    problem.poses_t0 = std::move(poses_t0);
+StepProblem step_problem(const model::Model& model, const History& history, double kappa) {
+    StepProblem problem{integration_step(model, history), &model, history.poses, 0, {}, {}};
+    set_kappa(problem, kappa);
     return problem;
+}
+
+void set_kappa(StepProblem& problem, double kappa) {
+    problem.kappa = kappa;
+    problem.barrier = contact::barrier_parameters(problem.model->dhat, problem.model->dmin, kappa, problem.weight);
+}
+
+StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> poses_t0, const std::vector<Matrix34>& velocities_t0) {
+    FETTLE_ASSERT(model.integrator == scene::Integrator::implicit_euler, "another integrator is asked for");
+    return step_problem(model, {std::move(poses_t0), velocities_t0, {}, {}, {}}, model.kappa);
 }
 
 std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<ChartPoint>& points) {
@@ -57,15 +61,18 @@ std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<ChartPo
     return poses;
 }
 
-double incremental_potential(const StepProblem& problem, const std::vector<Pose>& poses, const contact::Candidates& candidates) {
+double incremental_potential(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
+                             const contact::Candidates& candidates) {
     double sum = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const model::Body& body = problem.model->bodies[i];
         if (!has_free_dof(body)) continue;
         sum += inertia_potential(pose_matrix(poses[i]), problem.pose_hat[i], body.moments) -
-               problem.weight * body.force.dot(poses[i].position - problem.poses_t0[i].position);
+               problem.weight *
+                   (body.force.dot(poses[i].position - problem.poses_t0[i].position) + body.torque.dot(points[i].rotation_vector));
     }
-    return sum + contact::barrier_potential(*problem.model, candidates, poses, problem.barrier);
+    return sum + contact::barrier_potential(*problem.model, candidates, poses, problem.barrier) +
+           contact::friction_potential(problem.friction, poses);
 }
 
 PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<Pose>& poses, const contact::ContactSet& contacts,
@@ -73,8 +80,9 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
     const std::size_t n = poses.size();
     PoseDerivatives d;
     d.gradients.resize(n);
-    d.barrier_hessian.diagonal.assign(n, Matrix6::Zero());
-    contact::add_barrier_derivatives(contacts, poses, problem.barrier, kind, d.gradients, d.barrier_hessian);
+    d.contact_hessian.diagonal.assign(n, Matrix6::Zero());
+    contact::add_barrier_derivatives(contacts, poses, problem.barrier, kind, d.gradients, d.contact_hessian);
+    contact::add_friction_derivatives(problem.friction, poses, d.gradients, d.contact_hessian);
     d.force_magnitude.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
         const model::Body& body = problem.model->bodies[i];
@@ -84,7 +92,9 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
         add_inertia_gradient(poses[i], problem.pose_hat[i], body.moments, inertia);
         d.gradients[i].force += inertia.force - problem.weight * body.force;
         d.gradients[i].arm += inertia.arm;
-        d.force_magnitude[i] += inertia.force.norm() + inertia.arm.norm() / body.radius + problem.weight * body.force.norm();
+        const double lever = std::max(body.radius, problem.model->dhat);
+        d.force_magnitude[i] +=
+            inertia.force.norm() + inertia.arm.norm() / lever + problem.weight * (body.force.norm() + body.torque.norm() / lever);
     }
     return d;
 }
@@ -102,13 +112,14 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         const Vector3& theta = points[i].rotation_vector;
         to_tangent[i] = chart_to_tangent(theta);
         out.gradient[i] = to_tangent[i].transpose() * tangent_gradient(d.gradients[i]);
+        out.gradient[i].tail<3>() -= problem.weight * body.torque;
         Matrix6 own = Matrix6::Zero();
         if (has_free_dof(body)) own = to_tangent[i].transpose() * inertia_hessian(poses[i].rotation, body.moments) * to_tangent[i];
         own.bottomRightCorner<3, 3>() += chart_curvature(d.gradients[i].arm, kinematics::rotation_derivatives(theta));
         if (kind == contact::HessianKind::projected) own = positive_part(own);
-        out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.barrier_hessian.diagonal[i] * to_tangent[i];
+        out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.contact_hessian.diagonal[i] * to_tangent[i];
     }
-    out.hessian.off_diagonal = std::move(d.barrier_hessian.off_diagonal);
+    out.hessian.off_diagonal = std::move(d.contact_hessian.off_diagonal);
     for (kinematics::OffDiagonalBlock& b : out.hessian.off_diagonal) b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
     out.force_magnitude = std::move(d.force_magnitude);
     return out;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -145,6 +146,23 @@ Body build_body(const scene::Body& from, const Vector3& reference_point) {
     return body;
 }
 
+void add_areas(Body& body) {
+    const geometry::Mesh& mesh = body.mesh;
+    body.vertex_area.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+    body.edge_area.assign(mesh.edges.size(), 0);
+    std::map<std::pair<int, int>, std::size_t> edge_index;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) edge_index[std::minmax(mesh.edges[e][0], mesh.edges[e][1])] = e;
+    for (const geometry::Triangle& t : mesh.triangles) {
+        const Vector3 u = mesh.vertices.col(t[1]) - mesh.vertices.col(t[0]), v = mesh.vertices.col(t[2]) - mesh.vertices.col(t[0]);
+        const double third = u.cross(v).norm() / 6;
+        for (int k = 0; k < 3; ++k) {
+            body.vertex_area[t[k]] += third;
+            if (const auto e = edge_index.find(std::minmax(t[k], t[(k + 1) % 3])); e != edge_index.end())
+                body.edge_area[e->second] += third;
+        }
+    }
+}
+
 }  // namespace
 
 void complete_geometry(Body& body) {
@@ -153,6 +171,7 @@ void complete_geometry(Body& body) {
     for (const auto& edge : body.mesh.edges) {
         body.edge_length_squared.push_back((body.mesh.vertices.col(edge[1]) - body.mesh.vertices.col(edge[0])).squaredNorm());
     }
+    add_areas(body);
     body.hierarchy = std::make_shared<const contact::BodyHierarchy>(body.mesh);
 }
 

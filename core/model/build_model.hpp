@@ -27,7 +27,7 @@ Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options
 /// 1 if there is no dynamic body: then nothing touches. A pure function of masses, forces, h, gravity and dhat.
 double choose_kappa(const Model& model);
 
-/// Fills radius (rounded up), edge_length_squared and hierarchy from the body's mesh.
+/// Fills radius (rounded up), edge_length_squared, areas and hierarchy from the body's mesh.
 void complete_geometry(Body& body);
 
 }  // namespace fettle::core::model

@@ -36,6 +36,8 @@ struct Body {
     int group = -1;
     double radius = 0;                        ///< largest |X|
     std::vector<double> edge_length_squared;  ///< undeformed, per edge: the mollifier's eps
+    std::vector<double> vertex_area;          ///< a third of each adjacent triangle's, per vertex [m^2]
+    std::vector<double> edge_area;            ///< the same per edge
     std::shared_ptr<const contact::BodyHierarchy> hierarchy;
 };
 
@@ -68,6 +70,9 @@ struct Model {
 inline double friction_coefficient(const Model& model, int a, int b) {
     return model.friction.mu(model.bodies[static_cast<std::size_t>(a)].material, model.bodies[static_cast<std::size_t>(b)].material);
 }
+
+/// Where a kinematic body's script has it at `time`: its start pose before, the last pose after. Contract: the script is not empty.
+kinematics::Pose scripted_pose(const Body& body, double time);
 
 /// May these two bodies touch? Not a body with itself, nor bodies of one group, nor two bodies without any free degree of freedom
 /// and without prescribed motion relative to each other by contact: static and kinematic bodies do not collide with each other.

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/solver/failure.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -22,7 +22,12 @@ constexpr double smallest_step = 1e-12;
 constexpr double stalled_step = 1e-3;  // a step this short, again and again, means that the way is blocked
 constexpr double smallest_drive = 1e-4;
 constexpr int stalled_iterations = 50;
-constexpr int stagnant_iterations = 12;   // without a smaller residual, when rounding is all that is left
+constexpr int stagnant_iterations = 12;      // without a smaller residual, when rounding is all that is left
+constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
+constexpr double friction_resolution = 0.1;  // of eps_v
+constexpr double raise_below = 1e-2;         // of dhat: kappa is raised where pairs come closer
+constexpr double kappa_step = 4;
+constexpr double largest_kappa_ratio = 1e6;
 constexpr double usable_residual = 1e-8;  // of a solve to rounding that stagnates: the adjoint's accuracy
 
 Vector6 coordinates(const ChartPoint& p) {
@@ -47,28 +52,35 @@ struct Direction {
 
 class Minimiser {
 public:
-    Minimiser(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
-              const NewtonOptions& options)
-        : problem_(problem),
-          model_(*problem.model),
+    Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
+        : problem_(std::move(problem)),
+          model_(*problem_.model),
           targets_(targets),
           dofs_(workspace.dofs),
           linear_(workspace.linear),
           candidates_(workspace.candidates),
+          clock_(workspace.clock),
           options_(options) {
-        for (const Pose& pose : problem.poses_t0) points_.push_back({pose.position, Vector3::Zero()});
-        result_.poses = problem.poses_t0;
+        for (const Pose& pose : problem_.poses_t0) points_.push_back({pose.position, Vector3::Zero()});
+        result_.poses = problem_.poses_t0;
         result_.path.push_back(points_);
     }
 
     NewtonResult run() {
         const std::vector<PathSegment> here = segments_to(points_);
         if (candidates_.poses.size() != here.size() || contact::covered_fraction(candidates_, here) < 1) find_candidates(here);
-        value_ = energy::incremental_potential(problem_, result_.poses, candidates_);
-        while (iterate()) {
-        }
-        result_.contacts = contacts_.count;
-        result_.minimum_distance = contacts_.minimum_distance;
+        find_contacts();
+        const bool frictional = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
+        do {
+            if (frictional) lag_friction();
+            value_ = potential(points_, result_.poses);
+            first_of_round_ = result_.iterations;
+            while (iterate()) {
+            }
+        } while (frictional && another_round());
+        result_.contacts = std::move(contacts_);
+        result_.friction = std::move(problem_.friction);
+        result_.kappa = problem_.kappa;
         return std::move(result_);
     }
 
@@ -77,6 +89,26 @@ private:
         result_.status = status;
         result_.message = message;
         return false;
+    }
+
+    void find_contacts() {
+        const auto span = clock_.charge(SolvePhase::contacts);
+        contacts_ = contact::find_contacts(model_, candidates_, result_.poses);
+    }
+
+    double potential(const std::vector<ChartPoint>& points, const std::vector<Pose>& poses) {
+        const auto span = clock_.charge(SolvePhase::potential);
+        return energy::incremental_potential(problem_, points, poses, candidates_);
+    }
+
+    energy::ChartDerivatives derivatives(HessianKind kind) {
+        const auto span = clock_.charge(SolvePhase::derivatives);
+        return energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
+    }
+
+    bool factorise(const kinematics::BlockHessian& hessian) {
+        const auto span = clock_.charge(SolvePhase::linear_solve);
+        return linear_.factorise(hessian);
     }
 
     // The allowance lets later, shorter steps do without a new search.
@@ -89,13 +121,48 @@ private:
             allowances[i].rotation =
                 0.1 * segments[i].rotation_vector_step.norm() + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
         }
+        const auto span = clock_.charge(SolvePhase::broad_phase);
         candidates_ = contact::find_candidates(model_, segments, allowances);
+    }
+
+    // Normal forces and tangents of where we are.
+    void lag_friction() {
+        problem_.friction =
+            contact::lag_friction(model_, contacts_, result_.poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
+        ++result_.friction_rounds;
+    }
+
+    // A round that needed no step has met its own normal forces: the fixed point.
+    bool another_round() const {
+        if (result_.status != NewtonStatus::converged) return false;
+        if (problem_.friction.pairs.empty() && contacts_.count == 0) return false;
+        const bool settled = result_.friction_rounds > 1 && result_.iterations == first_of_round_;
+        const int rounds = model_.friction.rounds;
+        return rounds > 0 ? result_.friction_rounds < rounds : !settled && result_.friction_rounds < most_friction_rounds;
+    }
+
+    // A step is due unless this round has made one, or an earlier round has and this one starts where it ended.
+    bool has_moved() const { return result_.iterations > first_of_round_ || result_.friction_rounds > 1; }
+
+    // Velocities below eps_v are what friction tells sticking from sliding by: they must be resolved.
+    double velocity_tolerance() const {
+        if (problem_.friction.pairs.empty()) return options_.velocity_tolerance;
+        return std::min(options_.velocity_tolerance, friction_resolution * model_.friction.eps_v);
+    }
+
+    // Far inside the activation distance the barrier is as good as a wall, and a hard one to solve against.
+    void raise_kappa() {
+        if (!model_.adaptive_kappa || options_.to_rounding || problem_.kappa >= largest_kappa_ratio * model_.kappa) return;
+        if (!(contacts_.minimum_distance - model_.dmin < raise_below * model_.dhat)) return;
+        energy::set_kappa(problem_, kappa_step * problem_.kappa);
+        value_ = potential(points_, result_.poses);
     }
 
     // One Newton iteration. @return whether to go on.
     bool iterate() {
         if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted);
-        contacts_ = contact::find_contacts(model_, candidates_, result_.poses);
+        if (result_.iterations > 0) find_contacts();
+        raise_kappa();
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
         Direction direction;
@@ -103,12 +170,12 @@ private:
             return stop(NewtonStatus::not_converged, "the Newton matrix could not be made positive definite");
         result_.residual = direction.residual;
         const bool arrived = direction.remaining_norm == 0;
-        const bool slow = direction.motion <= options_.velocity_tolerance * model_.timestep;
-        if (!options_.to_rounding && result_.iterations > 0 && arrived && slow) return stop(NewtonStatus::converged);
+        const bool slow = direction.motion <= velocity_tolerance() * model_.timestep;
+        if (!options_.to_rounding && has_moved() && arrived && slow) return stop(NewtonStatus::converged);
         if (result_.iterations >= options_.max_iterations)
             return stop(failure(direction), failure_message(direction, "too many Newton iterations"));
 
-        if (options_.to_rounding && result_.iterations > 0 && arrived && slow && is_stagnant(direction)) {
+        if (options_.to_rounding && has_moved() && arrived && slow && is_stagnant(direction)) {
             if (direction.residual <= usable_residual) return stop(NewtonStatus::converged);
             return stop(NewtonStatus::not_converged,
                         failure_message(direction, "rounding stops the solve before it is accurate enough for a gradient"));
@@ -158,8 +225,8 @@ private:
 
     // The residual that is reported belongs to the final point.
     bool finish_at_rounding() {
-        contacts_ = contact::find_contacts(model_, candidates_, result_.poses);
-        const energy::ChartDerivatives d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, HessianKind::projected);
+        find_contacts();
+        const energy::ChartDerivatives d = derivatives(HessianKind::projected);
         result_.residual = residual_of(d);
         return stop(NewtonStatus::converged);
     }
@@ -169,7 +236,7 @@ private:
         for (std::size_t i = 0; i < d.gradient.size(); ++i) {
             for (int k = 0; k < 6; ++k) {
                 if (dofs_.index[i][k] < 0) continue;
-                const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model_.bodies[i].radius, 1e-300);
+                const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model_.bodies[i].radius, model_.dhat);
                 square += g * g;
             }
             magnitude += d.force_magnitude[i] + model_.bodies[i].moments(3, 3) * model_.velocity_tolerance * model_.timestep;
@@ -189,17 +256,17 @@ private:
     }
 
     bool find_direction(HessianKind kind, Direction& direction) {
-        energy::ChartDerivatives d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
-        bool definite = dofs_.count == 0 || linear_.factorise(d.hessian);
+        energy::ChartDerivatives d = derivatives(kind);
+        bool definite = dofs_.count == 0 || factorise(d.hessian);
         if (!definite && kind == HessianKind::exact) {
             projected_iterations_ = 1;
             kind = HessianKind::projected;
-            d = energy::chart_derivatives(problem_, points_, result_.poses, contacts_, kind);
-            definite = linear_.factorise(d.hessian);
+            d = derivatives(kind);
+            definite = factorise(d.hessian);
         }
         for (double shift = 1e-12; !definite && shift < 1e3; shift *= 100) {
             for (Matrix6& block : d.hessian.diagonal) block.diagonal() *= 1 + shift;
-            definite = linear_.factorise(d.hessian);
+            definite = factorise(d.hessian);
         }
         if (!definite) return false;
         direction.kind = kind;
@@ -226,6 +293,7 @@ private:
         if (dofs_.count > 0) {
             VectorX rhs = -gather(dofs_, d.gradient);
             if (direction.remaining_norm > 0) rhs -= gather(dofs_, multiply(d.hessian, direction.step));
+            const auto span = clock_.charge(SolvePhase::linear_solve);
             scatter(dofs_, linear_.solve(rhs), direction.step);
         }
         for (std::size_t i = 0; i < n; ++i) {
@@ -254,7 +322,7 @@ private:
     double least_penalty(double remaining) const {
         double mass = 0;
         for (const model::Body& body : model_.bodies) mass += body.moments(3, 3);
-        return 100 * problem_.weight * model_.kappa * model_.dhat + 10 * mass * remaining;
+        return 100 * problem_.weight * problem_.kappa * model_.dhat + 10 * mass * remaining;
     }
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
@@ -268,6 +336,7 @@ private:
         const std::vector<PathSegment> segments = segments_to(moved(direction, 1));
         on_segments_ = contact::covered_fraction(candidates_, segments) < 1;
         if (on_segments_) find_candidates(segments);
+        const auto span = clock_.charge(SolvePhase::ccd);
         return contact::longest_safe_step(
             model_, candidates_, segments,
             on_segments_ ? std::vector<double>(segments.size(), 0) : displacements(model_, candidates_, segments));
@@ -284,7 +353,7 @@ private:
             std::vector<ChartPoint> trial = moved(direction, fraction);
             std::vector<Pose> poses = poses_of(problem_, trial);
             if (on_segments_) candidates_.poses = poses;
-            const double value = energy::incremental_potential(problem_, poses, candidates_);
+            const double value = potential(trial, poses);
             const double change = value - value_ - penalty_ * fraction * remaining;
             if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
             points_ = std::move(trial);
@@ -302,59 +371,16 @@ private:
     }
 
     std::string failure_message(const Direction& direction, const std::string& cause) const {
-        std::ostringstream out;
-        int held = -1;
-        double most = 0;
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            const Vector6& r = direction.remaining[i];
-            const double left = r.head<3>().norm() + r.tail<3>().norm() * model_.bodies[i].radius;
-            if (left > most) {
-                most = left;
-                held = static_cast<int>(i);
-            }
-        }
-        if (held >= 0) out << "body '" << model_.bodies[held].name << "' cannot follow its script (" << most << " m short): ";
-        out << cause;
-        if (limiting_.limiting_a >= 0)
-            out << "; '" << model_.bodies[limiting_.limiting_a].name << "' against '" << model_.bodies[limiting_.limiting_b].name << "'";
-        out << describe_closest() << "; residual " << direction.residual << ", kappa " << model_.kappa << " N/m";
-        const double wanted = sufficient_kappa();
-        if (wanted > model_.kappa) out << " (with kappa " << wanted << " N/m the same forces would leave half of dhat)";
-        return out.str();
+        return describe_failure({problem_, contacts_, direction.remaining, limiting_, direction.residual, cause});
     }
 
-    // The force of the closest pair, kappa b'(d) d, at half the activation distance.
-    double sufficient_kappa() const {
-        const double d = contacts_.minimum_distance, half = model_.dmin + 0.5 * model_.dhat;
-        if (!(d > model_.dmin) || d >= half) return 0;
-        const auto slope = [&](double at) {
-            return at * contact::barrier(at * at - model_.dmin * model_.dmin, problem_.barrier.gap_hat).first;
-        };
-        return model_.kappa * slope(d) / slope(half);
-    }
-
-    std::string describe_closest() const {
-        const contact::BodyPairContacts* closest = nullptr;
-        double least = 0;
-        for (const contact::BodyPairContacts& pair : contacts_.pairs)
-            for (const contact::ContactPair& c : pair.contacts)
-                if (!closest || c.closest.distance_squared < least) {
-                    closest = &pair;
-                    least = c.closest.distance_squared;
-                }
-        if (!closest) return {};
-        std::ostringstream out;
-        out << "; closest pair '" << model_.bodies[closest->first].name << "' and '" << model_.bodies[closest->second].name << "' at "
-            << std::sqrt(least) << " m";
-        return out.str();
-    }
-
-    const energy::StepProblem& problem_;
+    energy::StepProblem problem_;  // kappa and the friction lag change from round to round
     const model::Model& model_;
     const std::vector<Vector6>& targets_;
     const FreeDofs& dofs_;
     LinearSolver& linear_;
     contact::Candidates& candidates_;
+    base::PhaseClock<SolvePhase>& clock_;
     const NewtonOptions& options_;
     std::vector<ChartPoint> points_;
     contact::ContactSet contacts_;
@@ -363,7 +389,8 @@ private:
     double value_ = 0;
     double penalty_ = 0;
     double drive_ = 1;
-    int resting_ = 0;  // iterations that leave the prescribed coordinates where they are
+    int resting_ = 0;         // iterations that leave the prescribed coordinates where they are
+    int first_of_round_ = 0;  // iterations before this round of friction
     int projected_iterations_ = 0;
     int stalled_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
@@ -373,9 +400,9 @@ private:
 
 }  // namespace
 
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options) {
-    return Minimiser(problem, targets, workspace, options).run();
+    return Minimiser(std::move(problem), targets, workspace, options).run();
 }
 
 }  // namespace fettle::core::solver

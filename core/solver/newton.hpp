@@ -6,12 +6,20 @@
 /// and the free ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact
 /// stops larger ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and
 /// Wright, Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere.
+///
+/// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
+/// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from
+/// sliding.
+///
+/// Where the model lets kappa adapt, it is multiplied by four whenever a pair comes within a hundredth of dhat; the stepper lets it fall
+/// again.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "fettle/core/base/phase_clock.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/solver/linear_solver.hpp"
 
@@ -32,9 +40,22 @@ struct NewtonResult {
     std::vector<std::vector<kinematics::ChartPoint>> path;  ///< the start and every accepted point
     std::vector<kinematics::Pose> poses;                    ///< at the end of the path
     int iterations = 0;
-    int contacts = 0;
-    double minimum_distance = 0;  ///< [m]
-    double residual = 0;          ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
+    int friction_rounds = 0;
+    contact::ContactSet contacts;   ///< at the end of the path
+    contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
+    double kappa = 0;               ///< at the end; may be above the problem's
+    double residual = 0;            ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
+};
+
+/// What a solve spends its time on.
+enum class SolvePhase {
+    broad_phase,   ///< candidates
+    contacts,      ///< which candidates are in contact, and their distances
+    derivatives,   ///< gradient and Hessian
+    linear_solve,  ///< factorisation and solve
+    ccd,           ///< longest safe steps
+    potential,     ///< values for the line search
+    count
 };
 
 /// What is worth keeping from one solve to the next; the result does not depend on it.
@@ -42,11 +63,12 @@ struct NewtonWorkspace {
     FreeDofs dofs;
     LinearSolver linear;             ///< its symbolic factor
     contact::Candidates candidates;  ///< complete near where the last solve ended
+    base::PhaseClock<SolvePhase> clock;
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
 };
 
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
-NewtonResult minimise(const energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options);
 
 }  // namespace fettle::core::solver

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/simulate.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
 
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/stepper/step.hpp"
 
 namespace fettle::core::stepper {
@@ -35,17 +37,45 @@ const char* to_string(SimulationStatus status) {
     return "unknown";
 }
 
-Simulation simulate(const model::Model& model, const SimulationOptions& options) {
-    const auto begin = std::chrono::steady_clock::now();
+namespace {
+
+// What an earlier run did up to its checkpoint; a new run if there is none.
+Simulation taken_up(const model::Model& model, const SimulationOptions& options) {
     Simulation out;
     out.trajectory.timestep = model.timestep;
     for (const model::Body& body : model.bodies) out.trajectory.body_names.push_back(body.name);
-    StepState state = start_state(model);
+    out.checkpoint = {0, start_state(model)};
+    out.trajectory.poses.push_back(out.checkpoint.state.history.poses);
+    if (!options.resume) return out;
+    const Simulation& earlier = *options.resume;
+    const int done = earlier.checkpoint.step;
+    FETTLE_ASSERT(static_cast<int>(earlier.trajectory.steps.size()) >= done, "the checkpoint lies beyond the trajectory");
+    out.checkpoint = earlier.checkpoint;
+    const auto take = [done](auto& to, const auto& from) {
+        to.assign(from.begin(), from.begin() + std::min<std::ptrdiff_t>(done, static_cast<std::ptrdiff_t>(from.size())));
+    };
+    take(out.trajectory.steps, earlier.trajectory.steps);
+    out.trajectory.poses.assign(earlier.trajectory.poses.begin(), earlier.trajectory.poses.begin() + done + 1);
+    take(out.report.steps, earlier.report.steps);
+    take(out.outputs, earlier.outputs);
+    for (const StepReport& report : out.report.steps) out.report.newton_iterations += report.newton_iterations;
+    return out;
+}
+
+}  // namespace
+
+Simulation simulate(const model::Model& model, const SimulationOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    Simulation out = taken_up(model, options);
+    StepState state = out.checkpoint.state;
     solver::NewtonWorkspace workspace(model);
-    out.trajectory.poses.push_back(state.poses);
     const int steps = step_count(model, options);
-    for (int t = 0; t < steps; ++t) {
+    for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
+        if (t % checkpoint_interval == 0) {
+            workspace.candidates = {};
+            out.checkpoint = {t, state};
+        }
         StepResult result = step(model, state, workspace, options);
         out.report.newton_iterations += result.report.newton_iterations;
         if (result.status != SimulationStatus::ok) {
@@ -57,10 +87,12 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         }
         out.report.steps.push_back(result.report);
         out.trajectory.steps.push_back(std::move(result.path));
+        if (options.outputs) out.outputs.push_back(std::move(result.outputs));
         state = std::move(result.state);
-        out.trajectory.poses.push_back(state.poses);
+        out.trajectory.poses.push_back(state.history.poses);
         if (options.on_step) options.on_step({t + 1, steps});
     }
+    out.report.phase_seconds = workspace.clock.seconds();
     out.report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return out;
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/step.hpp"
 
+#include <algorithm>
+
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/stepper/step_outputs.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -12,7 +15,7 @@ using kinematics::PathSegment;
 std::vector<PathSegment> straight_segments(const model::Model& model, const StepState& state, const std::vector<ChartPoint>& start,
                                            const std::vector<ChartPoint>& end) {
     std::vector<PathSegment> segments(model.bodies.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = path_between(state.poses[i].rotation, start[i], end[i]);
+    for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = path_between(state.history.poses[i].rotation, start[i], end[i]);
     return segments;
 }
 
@@ -46,32 +49,56 @@ SimulationStatus simulation_status(solver::NewtonStatus status) {
     return SimulationStatus::not_converged;
 }
 
+Vector6 curve_increments(const scene::PrescribedMotion& prescribed, double from, double to) {
+    Vector6 out = Vector6::Zero();
+    for (int k = 0; k < 6; ++k)
+        if (prescribed[k]) out[k] = scene::motion_value(*prescribed[k], to) - scene::motion_value(*prescribed[k], from);
+    return out;
+}
+
+// A script stops with its curves; what is left of the step after its last pose goes on with them.
+Vector6 scripted_target(const model::Body& body, const kinematics::Pose& pose, double from, double to) {
+    const auto& stop = body.prescribed[0] ? body.prescribed[0]->stop_time : std::nullopt;
+    const double stopped = stop ? std::min(to, std::max(from, *stop)) : to, end = std::min(stopped, body.script.times.back());
+    const kinematics::Pose target = model::scripted_pose(body, end);
+    const Vector6 rest = curve_increments(body.prescribed, end, to);
+    Vector6 out;
+    out << target.position + rest.head<3>(),
+        kinematics::rotation_vector(kinematics::rotation(rest.tail<3>()) * target.rotation * pose.rotation.transpose());
+    return out;
+}
+
+// Kappa was raised where pairs came close; once they are well apart it may fall again.
+double next_kappa(const model::Model& model, const solver::NewtonResult& solved) {
+    constexpr double well_apart = 0.1, fall = 0.5;
+    if (solved.contacts.minimum_distance - model.dmin < well_apart * model.dhat) return solved.kappa;
+    return std::max(model.kappa, fall * solved.kappa);
+}
+
 }  // namespace
 
 StepState start_state(const model::Model& model) {
     StepState state;
-    for (const model::Body& body : model.bodies) {
-        state.poses.push_back(body.pose_start);
-        state.velocities.push_back(body.velocity_start);
-    }
+    state.history = energy::start_history(model);
+    state.kappa = model.kappa;
     return state;
 }
 
 std::vector<Vector6> prescribed_targets(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time) {
     std::vector<Vector6> targets(model.bodies.size(), Vector6::Zero());
-    for (std::size_t i = 0; i < targets.size(); ++i)
-        for (int k = 0; k < 6; ++k) {
-            const auto& curve = model.bodies[i].prescribed[k];
-            if (!curve) continue;
-            const double increment = scene::motion_value(*curve, time + model.timestep) - scene::motion_value(*curve, time);
-            targets[i][k] = k < 3 ? poses[i].position[k] + increment : increment;
-        }
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const model::Body& body = model.bodies[i];
+        const bool scripted = !body.script.empty() && time < body.script.times.back();
+        targets[i] = scripted ? scripted_target(body, poses[i], time, time + model.timestep)
+                              : curve_increments(body.prescribed, time, time + model.timestep);
+        if (!scripted) targets[i].head<3>() += poses[i].position;
+    }
     return targets;
 }
 
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options) {
-    const energy::StepProblem problem = energy::implicit_euler_problem(model, state.poses, state.velocities);
-    const std::vector<Vector6> targets = prescribed_targets(model, state.poses, state.time);
+    const energy::StepProblem problem = energy::step_problem(model, state.history, options.for_gradient ? model.kappa : state.kappa);
+    const std::vector<Vector6> targets = prescribed_targets(model, state.history.poses, state.time);
     solver::NewtonOptions newton;
     newton.velocity_tolerance = model.velocity_tolerance;
     newton.max_iterations = model.max_newton_iterations;
@@ -82,15 +109,16 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     StepResult result;
     result.status = simulation_status(solved.status);
     result.message = solved.message;
-    result.report = {solved.iterations, solved.contacts, solved.minimum_distance, solved.residual};
+    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual};
     result.state = state;
     if (result.status != SimulationStatus::ok) return result;
     result.path = stored_path(model, state, solved.path);
     result.state.time = state.time + model.timestep;
-    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        result.state.poses[i] = {kinematics::orthonormalised(solved.poses[i].rotation), solved.poses[i].position};
-        result.state.velocities[i] = (pose_matrix(result.state.poses[i]) - pose_matrix(state.poses[i])) / model.timestep;
-    }
+    result.state.kappa = next_kappa(model, solved);
+    std::vector<kinematics::Pose> end = solved.poses;
+    for (kinematics::Pose& pose : end) pose.rotation = kinematics::orthonormalised(pose.rotation);
+    result.state.history = energy::advanced(model, state.history, problem, std::move(end));
+    if (options.outputs) result.outputs = step_outputs(model, problem, solved, result.state);
     return result;
 }
 

@@ -10,12 +10,6 @@
 
 namespace fettle::core::stepper {
 
-/// What is carried from step to step.
-struct StepState {
-    double time = 0;  ///< at the start of the step [s]
-    std::vector<kinematics::Pose> poses;
-    std::vector<Matrix34> velocities;  ///< Pdot
-};
 StepState start_state(const model::Model& model);
 
 struct StepResult {
@@ -24,11 +18,13 @@ struct StepResult {
     TrajectoryStep path;
     StepState state;  ///< at the end; the start's when not ok
     StepReport report;
+    StepOutputs outputs;  ///< if asked for
 };
 
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options);
 
-/// Chart coordinates of the prescribed DOFs at the end of a step that starts at `time` from `poses`.
+/// Chart coordinates of the prescribed DOFs at the end of a step that starts at `time` from `poses`: by the curves' increments, or where
+/// the script has the body (and, after its end, on with the curves' increments).
 std::vector<Vector6> prescribed_targets(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time);
 
 }  // namespace fettle::core::stepper

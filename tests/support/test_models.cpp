@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/model/build_model.hpp"
 
 namespace fettle::tests::support {
 
@@ -33,11 +33,7 @@ void refresh(Body& body) {
     body.moments.setZero();
     if (body.type == BodyType::dynamic_body)
         body.moments = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-    body.radius = body.mesh.vertices.colwise().norm().maxCoeff();
-    body.edge_length_squared.clear();
-    for (const core::geometry::Edge& e : body.mesh.edges)
-        body.edge_length_squared.push_back((body.mesh.vertices.col(e[1]) - body.mesh.vertices.col(e[0])).squaredNorm());
-    body.hierarchy = std::make_shared<const core::contact::BodyHierarchy>(body.mesh);
+    core::model::complete_geometry(body);
 }
 
 Body make_body(std::string name, core::geometry::Mesh mesh, const core::kinematics::Pose& pose, BodyType type, double density) {

@@ -32,6 +32,7 @@ Setup setup() {
     s.model.dhat = 0.2;
     s.model.kappa = 2e4;
     s.model.bodies[0].force = Vector3(3, -2, 5);
+    s.model.bodies[1].torque = Vector3(1, 4, -2);
     std::vector<Matrix34> velocities;
     std::vector<kinematics::Pose> poses;
     for (model::Body& body : s.model.bodies) {
@@ -79,8 +80,8 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
     const double h = 1e-6;
     for (int k = 0; k < 12; ++k) {
         const auto plus = moved(s.points, k, h), minus = moved(s.points, k, -h);
-        difference[k] = (incremental_potential(s.problem, poses_of(s.problem, plus), candidates) -
-                         incremental_potential(s.problem, poses_of(s.problem, minus), candidates)) /
+        difference[k] = (incremental_potential(s.problem, plus, poses_of(s.problem, plus), candidates) -
+                         incremental_potential(s.problem, minus, poses_of(s.problem, minus), candidates)) /
                         (2 * h);
         const auto gp = derivatives_at(plus, contact::HessianKind::exact).gradient,
                    gm = derivatives_at(minus, contact::HessianKind::exact).gradient;
@@ -99,7 +100,7 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
 TEST_CASE("the potential does not depend on where the candidates were found", "[incremental_potential]") {
     const Setup s = setup();
     const auto poses = poses_of(s.problem, s.points);
-    const double here = incremental_potential(s.problem, poses, all_candidates(s, poses));
-    const double there = incremental_potential(s.problem, poses, contact::find_candidates(s.model, s.problem.poses_t0, {{1, 1}, {1, 1}}));
+    const double here = incremental_potential(s.problem, s.points, poses, all_candidates(s, poses));
+    const double there = incremental_potential(s.problem, s.points, poses, contact::find_candidates(s.model, s.problem.poses_t0, {{1, 1}, {1, 1}}));
     CHECK(here == there);  // to the last bit: sums are ordered by primitives
 }

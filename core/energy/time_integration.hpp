@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Time integration as choices of P_hat and of the potentials' weight. method.md section 3.
+/// A step minimises 1/2 tr((P - P_hat) M (P - P_hat)^T) + weight (potentials), and its end velocity is V = (P - P_slip) / slip_time.
+///   implicit Euler  P_hat = P0 + h V0 + h^2 a                weight h^2        P_slip = P0                slip_time = h
+///   BDF2            P_hat = P_slip + 2h/3 (4 V0 - V_-1)/3    weight (2h/3)^2   P_slip = (4 P0 - P_-1)/3   slip_time = 2h/3
+///                           + (2h/3)^2 a;  the first step is one of implicit Euler
+///   Newmark 1/4,1/2 P_hat = P0 + h V0 + h^2/4 (A0 + a)       weight h^2/4      P_slip = P0 + h/2 V0       slip_time = h/2
+///                   and A = (P - P0 - h V0) / (h^2/4) - A0
+/// with a the acceleration of gravity. Bodies that are prescribed altogether have V = (P - P0) / h.
+/// Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps energy, and rings in stiff contact.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::energy {
+
+/// What a step needs of those before it.
+struct History {
+    std::vector<kinematics::Pose> poses;      ///< P0
+    std::vector<Matrix34> velocities;         ///< V0 = Pdot
+    std::vector<Matrix34> poses_before;       ///< P_-1 (BDF2; empty before the first step)
+    std::vector<Matrix34> velocities_before;  ///< V_-1 (BDF2)
+    std::vector<Matrix34> accelerations;      ///< A0 (Newmark)
+};
+
+/// At the start of a simulation. Newmark's A0 is that of each body on its own, without contact.
+History start_history(const model::Model& model);
+
+struct IntegrationStep {
+    std::vector<Matrix34> pose_hat;  ///< gravity included, other loads not
+    double weight = 0;               ///< [s^2]
+    std::vector<Matrix34> slip_reference;
+    double slip_time = 0;  ///< [s]
+};
+IntegrationStep integration_step(const model::Model& model, const History& history);
+
+/// The history after the step, whose end is `poses`.
+History advanced(const model::Model& model, const History& history, const IntegrationStep& step, std::vector<kinematics::Pose> poses);
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// What to tell about a step that could not be solved: which body is held, by what, how close, and what stiffness would do.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/energy/incremental_potential.hpp"
+
+namespace fettle::core::solver {
+
+struct FailedStep {
+    const energy::StepProblem& problem;
+    const contact::ContactSet& contacts;    ///< where the solver gave up
+    const std::vector<Vector6>& remaining;  ///< of the prescribed coordinates, per body
+    const contact::SafeStep& limiting;      ///< of the last search
+    double residual = 0;
+    const std::string& cause;
+};
+
+std::string describe_failure(const FailedStep& step);
+
+}  // namespace fettle::core::solver
