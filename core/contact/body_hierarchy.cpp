@@ -16,6 +16,17 @@ constexpr int leaf_size = 2;
 
 double rounded_up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
+void name_corners(const geometry::Mesh& mesh, HierarchyElement& element) {
+    const auto corner = [&](int v) {
+        return static_cast<int>(std::find(element.vertices.begin(), element.vertices.end(), v) - element.vertices.begin());
+    };
+    for (int k = 0; k < element.owned_vertex_count; ++k) element.owned_vertex_corner[k] = corner(element.owned_vertices[k]);
+    for (int k = 0; k < element.owned_edge_count; ++k) {
+        const geometry::Edge& edge = mesh.edges[element.owned_edges[k]];
+        element.owned_edge_corners[k] = {corner(edge[0]), corner(edge[1])};
+    }
+}
+
 // Every vertex and edge goes to the first element that contains it.
 std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
     std::vector<HierarchyElement> elements;
@@ -64,7 +75,10 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         own_vertex(element, v);
         elements.push_back(element);
     }
-    for (int i = 0; i < static_cast<int>(elements.size()); ++i) elements[i].face = i;
+    for (int i = 0; i < static_cast<int>(elements.size()); ++i) {
+        elements[i].face = i;
+        name_corners(mesh, elements[i]);
+    }
     return elements;
 }
 

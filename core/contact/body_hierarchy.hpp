@@ -30,6 +30,8 @@ struct HierarchyElement {
     int owned_vertex_count = 0, owned_edge_count = 0;
     std::array<int, 3> owned_vertices{-1, -1, -1};
     std::array<int, 3> owned_edges{-1, -1, -1};
+    std::array<int, 3> owned_vertex_corner{};                ///< where in `vertices` each owned vertex stands
+    std::array<std::array<int, 2>, 3> owned_edge_corners{};  ///< the same for the ends of each owned edge, in the edge's order
 };
 
 class BodyHierarchy {

@@ -2,6 +2,7 @@
 #include "fettle/core/solver/newton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -399,6 +400,12 @@ private:
 };
 
 }  // namespace
+
+const char* to_string(SolvePhase phase) {
+    static constexpr std::array names{"broad_phase", "contacts", "derivatives", "linear_solve", "ccd", "potential"};
+    static_assert(names.size() == static_cast<std::size_t>(SolvePhase::count));
+    return names[static_cast<std::size_t>(phase)];
+}
 
 NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options) {

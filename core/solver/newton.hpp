@@ -57,6 +57,7 @@ enum class SolvePhase {
     potential,     ///< values for the line search
     count
 };
+const char* to_string(SolvePhase phase);
 
 /// What is worth keeping from one solve to the next; the result does not depend on it.
 struct NewtonWorkspace {

@@ -110,6 +110,8 @@ void describe(const Simulation& run, SceneRow& row) {
         row.contacts += step.contacts;
         row.minimum_distance = std::min(row.minimum_distance, step.minimum_distance);
     }
+    for (std::size_t i = 0; i < run.report.phase_seconds.size(); ++i)
+        row.phases[to_string(static_cast<core::solver::SolvePhase>(i))] = run.report.phase_seconds[i];
     row.bits = bits_of(run.trajectory);
     row.finite = is_finite(run.trajectory);
 }
