@@ -17,6 +17,13 @@ struct BuildOptions {
     bool check_meshes = true;               ///< closed, oriented, no self-intersection (a design's trial checks its own)
 };
 
+/// Mass of a dynamic body is by its MassKind, exactly (geometry/mass_moments.hpp); its default reference point is its centre of mass, that
+/// of other bodies too where they have one by their MassKind, else the middle of their box. Inertia of wires and points: a straight wire
+/// has none about itself. An isotropic second moment is added, the least that makes the inertia about every axis 1e-8 m r^2 (r: the largest
+/// |X|, at least dhat), which keeps the Newton matrix definite; a body that has this much already gets nothing. Friction: `friction.mu` by
+/// pairs of what bodies rub with (material, own coefficient); equal coefficients stay exactly what they are. kappa may adapt unless the
+/// scene or the options give it.
+///
 /// @return the model, or every fault found: `where` names body, mesh and element.
 Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options = {});
 

@@ -71,7 +71,7 @@ inline double friction_coefficient(const Model& model, int a, int b) {
     return model.friction.mu(model.bodies[static_cast<std::size_t>(a)].material, model.bodies[static_cast<std::size_t>(b)].material);
 }
 
-/// Where a kinematic body's script has it at `time`: its start pose before, the last pose after. Contract: the script is not empty.
+/// Where a kinematic body's script has c's frame at `time`: its start pose before, the last pose after (scene::scripted_pose).
 kinematics::Pose scripted_pose(const Body& body, double time);
 
 /// May these two bodies touch? Not a body with itself, nor bodies of one group, nor two bodies without any free degree of freedom

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/scene/fixture_state.hpp"
+#include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/core/scene/mesh_reader.hpp"
 #include "fettle/core/scene/placement.hpp"
 
@@ -76,17 +77,27 @@ BodyType body_type(const JsonNode& node, const std::array<bool, 6>& fixed) {
     return type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
 }
 
-/// What that format turns an open kinematic body about: the centroid of its surface (ours is the middle of its box).
-std::optional<Vector3> surface_centre(const geometry::Mesh& mesh) {
-    if (mesh.triangles.empty() || geometry::is_closed(mesh)) return std::nullopt;
-    const Matrix4 moments = geometry::surface_moments(mesh.vertices, mesh.triangles);
-    if (!(moments(3, 3) > 0)) return std::nullopt;
-    return moments.col(3).head<3>() / moments(3, 3);
+/// What the density is per. A solid that is inside out is turned: which side is out is not what its file meant to say.
+void decide_mass(const JsonNode& node, Body& body) {
+    geometry::Mesh& mesh = body.mesh;
+    const bool dynamic = body.type == BodyType::dynamic_body;
+    if (mesh.triangles.empty()) {
+        body.mass_kind = mesh.edges.empty() ? MassKind::vertex : MassKind::length;
+        return;
+    }
+    body.mass_kind = centre_of_mass(mesh, MassKind::volume) ? MassKind::volume : MassKind::area;
+    if (!dynamic) return;
+    if (body.mass_kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
+    if (body.mass_kind == MassKind::area || unit_moments(mesh, MassKind::volume)(3, 3) > 0) {
+        if (body.mass_kind == MassKind::volume && !geometry::is_closed(mesh))
+            node.warn("the mesh has gaps: it is a solid with these capped");
+        return;
+    }
+    node.warn("the mesh is inside out: its triangles are turned");
+    turn_triangles(mesh);
 }
 
-void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, Body& body) {
-    const JsonNode poses = node["kinematic_poses"].unless_null();
-    if (!poses.elements().empty()) poses.fail(ErrorCode::unsupported, "`kinematic_poses` are not supported yet");
+void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
     const double stop = node["kinematic_max_time"].unless_null().number().value_or(-1);
     for (int dof = 0; dof < 6; ++dof) {
         MotionCurve curve;
@@ -95,19 +106,19 @@ void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, Body
         if (stop >= 0) curve.stop_time = stop;
         body.prescribed[dof] = curve;
     }
-    body.reference_point = surface_centre(body.mesh);
+    const auto fixed_rotations = static_cast<int>(std::count(fixed.begin() + 3, fixed.end(), true));
+    const std::optional<double> stop_time = stop >= 0 ? std::optional<double>(stop) : std::nullopt;
+    body.script = read_kinematic_poses(node["kinematic_poses"].unless_null(), body, fixed_rotations, timestep, stop_time);
 }
 
-void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, Body& body) {
+void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
     body.linear_velocity = fixture_vector(node["linear_velocity"].unless_null()).value_or(Vector3::Zero());
     body.angular_velocity = radians(1) * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
     body.force = fixture_vector(node["force"].unless_null()).value_or(Vector3::Zero());
-    const JsonNode torque = node["torque"].unless_null();
-    const bool turned = fixture_vector(torque).value_or(Vector3::Zero()) != Vector3::Zero();
-    if (turned && body.type == BodyType::dynamic_body) torque.fail(ErrorCode::unsupported, "`torque` is not supported yet; `force` is");
-    if (body.type == BodyType::kinematic_body) read_kinematic(node, fixed, body);
+    body.torque = fixture_vector(node["torque"].unless_null()).value_or(Vector3::Zero());
+    if (body.type == BodyType::kinematic_body) read_kinematic(node, fixed, timestep, body);
     if (body.type != BodyType::dynamic_body) {
-        body.linear_velocity = body.angular_velocity = body.force = Vector3::Zero();
+        body.linear_velocity = body.angular_velocity = body.force = body.torque = Vector3::Zero();
     }
     if (body.type == BodyType::static_body) body.prescribed.fill(MotionCurve{});
     for (int dof = 0; dof < 6 && body.type == BodyType::dynamic_body; ++dof) {
@@ -199,17 +210,13 @@ std::optional<geometry::Mesh> FixtureBodies::mesh(const JsonNode& node) {
     return name && !name->empty() ? mesh_file(file, *name) : inline_mesh(node);
 }
 
-std::optional<Body> FixtureBodies::read(const JsonNode& node) {
-    node.warn_of_other_keys(body_keys);
-    if (!node["enabled"].unless_null().boolean().value_or(true)) return std::nullopt;
+/// Everything but mass and motion, which a component of a split body has for itself.
+Body FixtureBodies::placed(const JsonNode& node) {
     Body body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
-    if (node["split_components"].unless_null().boolean().value_or(false)) {
-        node["split_components"].fail(ErrorCode::unsupported, "`split_components` is not supported yet");
-    }
     const auto mesh = this->mesh(node);
-    if (!mesh) return std::nullopt;
+    if (!mesh) return body;
     body.mesh = *mesh;
     scale_mesh(body.mesh, scale_factors(node, body.mesh));
     const JsonNode file = node["mesh"];
@@ -223,13 +230,28 @@ std::optional<Body> FixtureBodies::read(const JsonNode& node) {
         body.pose.rotation = rotation_from_degrees(fixture_vector(rotation).value_or(Vector3::Zero()));
     }
     body.pose.position = fixture_vector(node["position"].unless_null()).value_or(Vector3::Zero());
+    body.group = std::max(-1, node["group_id"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(-1));
+    return body;
+}
+
+std::vector<Body> FixtureBodies::read(const JsonNode& node, double timestep) {
+    node.warn_of_other_keys(body_keys);
+    if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
+    Body body = placed(node);
+    if (body.mesh.vertices.cols() == 0) return {};
     const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
     body.type = body_type(node["type"].unless_null(), fixed);
     const JsonNode density = node["density"].unless_null();
     body.density = (body.type == BodyType::dynamic_body ? density.number(positive) : density.number()).value_or(1000);
-    body.group = std::max(-1, node["group_id"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(-1));
-    read_motion(node, fixed, body);
-    return body;
+    std::vector<Body> bodies;
+    const bool split = node["split_components"].unless_null().boolean().value_or(false);
+    for (geometry::Mesh& mesh : split ? split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {
+        bodies.push_back(body);
+        bodies.back().mesh = std::move(mesh);
+        decide_mass(node, bodies.back());
+        read_motion(node, fixed, timestep, bodies.back());
+    }
+    return bodies;
 }
 
 }  // namespace fettle::core::scene

@@ -18,10 +18,12 @@ public:
     /// Both outlive this object.
     FixtureBodies(JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
-    /// nullopt if the body is switched off (`enabled`) or nothing useful can be read. Faults go to the document.
-    std::optional<Body> read(const JsonNode& node);
+    /// One body, or one per facet-connected component (`split_components`); none if it is switched off (`enabled`) or nothing useful can be
+    /// read. Faults go to the document. @param timestep  [s], of the scene.
+    std::vector<Body> read(const JsonNode& node, double timestep);
 
 private:
+    Body placed(const JsonNode& node);
     std::optional<geometry::Mesh> mesh(const JsonNode& node);
     std::optional<geometry::Mesh> mesh_file(const JsonNode& node, const std::string& name);
     std::optional<geometry::Mesh> inline_mesh(const JsonNode& node);

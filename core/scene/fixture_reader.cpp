@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "fettle/core/scene/fixture_body.hpp"
+#include "fettle/core/scene/fixture_state.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -59,11 +60,13 @@ public:
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
         for (const JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
-            if (auto body = bodies_.read(node)) scene_.bodies.push_back(std::move(*body));
+            for (Body& body : bodies_.read(node, scene_.timestep)) scene_.bodies.push_back(std::move(body));
         }
         merge_groups();
         make_names_unique();
-        read_solver(root["ipc_solver"].unless_null());
+        read_solver(root["ipc_solver"].unless_null());  // its tolerance is relative to the size at the very start
+        const bool saved = !document_.root()["rigid_body_problem"].exists();
+        if (saved && document_.errors().empty()) continue_from_last_state(document_.root()["animation"].unless_null(), scene_);
         if (!document_.errors().empty()) return document_.errors();
         if (scene_.bodies.empty()) return base::Error{ErrorCode::out_of_range, problem["rigid_bodies"].where(), "a scene needs a body"};
         scene_.warnings = document_.warnings();
@@ -71,13 +74,10 @@ public:
     }
 
 private:
-    /// A saved simulation holds its scene under `args`. Its last state is in coordinates that only the program that wrote it can invert.
+    /// A saved simulation holds its scene under `args`.
     JsonNode scene_root() {
         const JsonNode root = document_.root();
-        if (root["rigid_body_problem"].exists()) return root;
-        if (root["animation"].exists())
-            root["animation"].warn("saved states are not used: the scene under `args` starts from its beginning");
-        return root["args"];
+        return root["rigid_body_problem"].exists() ? root : root["args"];
     }
 
     void read_scene_type(const JsonNode& node) {
@@ -100,24 +100,19 @@ private:
 
     void read_stepper(const JsonNode& node) {
         const std::string stepper = node.string().value_or("default");
-        if (stepper == "default" || stepper == "implicit_euler") return;
         if (stepper == "implicit_newmark" || stepper == "stabilized_newmark") {
-            node.fail(ErrorCode::unsupported, "`time_stepper` " + node.shown() + " is not supported; implicit_euler is");
-        } else {
+            scene_.integrator = Integrator::newmark;
+        } else if (stepper != "default" && stepper != "implicit_euler") {
             node.warn("unknown `time_stepper` " + node.shown() + "; implicit_euler is used");
         }
     }
 
     void read_friction(const JsonNode& coefficient, const JsonNode& constraints) {
         constraints.warn_of_other_keys(friction_keys);
-        const double mu = coefficient.number().value_or(0);
-        const bool switched_off = constraints["iterations"].unless_null().integer(-1'000'000).value_or(1) == 0;
-        constraints["static_friction_speed_bound"].unless_null().number(positive);
-        if (mu < 0)
-            coefficient.fail(ErrorCode::out_of_range, "`coefficient_friction` is " + coefficient.shown() + ", it must be at least 0");
-        if (mu > 0 && !switched_off) {
-            coefficient.fail(ErrorCode::unsupported, "`coefficient_friction` " + coefficient.shown() + ": friction is not supported yet");
-        }
+        Friction& friction = scene_.friction;
+        friction.mu = coefficient.number(not_negative).value_or(0);
+        friction.eps_v = constraints["static_friction_speed_bound"].unless_null().number(positive).value_or(friction.eps_v);
+        friction.rounds = std::max(-1, constraints["iterations"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(1));
     }
 
     void read_barrier(const JsonNode& node) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Reads the scene files of the source paper (key `rigid_body_problem`), as far as a Scene can hold what they say; what it cannot hold is
-/// an `unsupported` error that names the key. What is done differently from that format's own program, and why: README.md beside this file.
+/// Reads the scene files of the source paper (key `rigid_body_problem`), and its saved simulations, which go on from their last state. What
+/// a Scene cannot hold (2D) is an `unsupported` error that names the key. What is done differently from that format's own program, and
+/// why: README.md beside this file.
 #pragma once
 
 #include "fettle/core/scene/json_document.hpp"

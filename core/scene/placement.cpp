@@ -38,10 +38,38 @@ Matrix3 rotation_from_degrees(const Vector3& angles) {
 
 void scale_mesh(geometry::Mesh& mesh, const Vector3& factors) {
     mesh.vertices = factors.asDiagonal() * mesh.vertices;
-    if (factors.prod() >= 0) return;
+    if (factors.prod() < 0) turn_triangles(mesh);
+}
+
+void turn_triangles(geometry::Mesh& mesh) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     const std::vector<geometry::Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
     geometry::build_connectivity(mesh, edges);
+}
+
+std::vector<geometry::Mesh> split_shells(const geometry::Mesh& mesh) {
+    if (mesh.triangles.empty()) return {mesh};
+    std::vector<geometry::Mesh> parts(mesh.shell_names.size());
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+        std::vector<int> new_index(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+        std::vector<geometry::Triangle> triangles;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            if (mesh.triangle_shell[t] != static_cast<int>(s)) continue;
+            triangles.push_back(mesh.triangles[t]);
+            for (const int v : mesh.triangles[t]) new_index[static_cast<std::size_t>(v)] = 0;
+        }
+        std::vector<int> kept;
+        for (std::size_t v = 0; v < new_index.size(); ++v) {
+            if (new_index[v] < 0) continue;
+            new_index[v] = static_cast<int>(kept.size());
+            kept.push_back(static_cast<int>(v));
+        }
+        for (auto& triangle : triangles) {
+            for (int& v : triangle) v = new_index[static_cast<std::size_t>(v)];
+        }
+        parts[s] = geometry::make_mesh(mesh.shell_names[s], mesh.vertices(Eigen::all, kept), std::move(triangles));
+    }
+    return parts;
 }
 
 base::Result<std::string> find_mesh_file(const std::string& name, const std::string& scene_path, const std::vector<std::string>& mesh_dirs,

@@ -27,6 +27,20 @@ double motion_value(const MotionCurve& curve, double time) {
     return curve.rate * reached + table_value(curve, reached);
 }
 
+kinematics::Pose scripted_pose(const PoseScript& script, const kinematics::Pose& start, double time) {
+    FETTLE_ASSERT(script.times.size() == script.poses.size(), "a script needs one pose per time");
+    if (script.empty() || time <= 0) return start;
+    const auto after = std::upper_bound(script.times.begin(), script.times.end(), time);
+    const auto i = static_cast<std::size_t>(after - script.times.begin());
+    if (after == script.times.end()) return script.poses.back();
+    const kinematics::Pose &from = i == 0 ? start : script.poses[i - 1], &to = script.poses[i];
+    const double begin = i == 0 ? 0 : script.times[i - 1];
+    const double fraction = (time - begin) / (script.times[i] - begin);
+    if (fraction == 0) return from;
+    const Vector3 turn = kinematics::rotation_vector(to.rotation * from.rotation.transpose());
+    return {kinematics::rotation(fraction * turn) * from.rotation, from.position + fraction * (to.position - from.position)};
+}
+
 double bounding_diagonal(const Scene& scene) {
     Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
     Vector3 high = -low;

@@ -37,10 +37,12 @@ struct PoseScript {
     std::vector<kinematics::Pose> poses;  ///< of the file's frame
     bool empty() const { return times.empty(); }
 };
+/// At `time`, from `start` at time 0; before 0 the start, after the last time the last pose. Each stretch turns the shorter way round.
+kinematics::Pose scripted_pose(const PoseScript& script, const kinematics::Pose& start, double time);
 
 /// What `density` is per: decides the mass integral of a dynamic body.
 enum class MassKind {
-    volume,  ///< closed mesh [kg/m^3]
+    volume,  ///< closed mesh, or nearly (geometry/mass_moments.hpp) in a lenient scene [kg/m^3]
     area,    ///< triangles as a shell [kg/m^2]
     length,  ///< all edges as wires [kg/m]
     vertex   ///< all vertices as points [kg each]
@@ -57,7 +59,7 @@ struct Friction {
     std::map<std::string, double> materials;  ///< mu of a material against itself
     std::vector<Pair> pairs;
     double eps_v = 1e-3;  ///< static speed bound [m/s]: below it friction is smoothed
-    int rounds = 1;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree
+    int rounds = 1;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree; 0: off
 };
 
 /// Time integration (method.md section 3). First order and dissipative; second order; second order and energy keeping.

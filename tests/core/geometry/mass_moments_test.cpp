@@ -120,6 +120,125 @@ TEST_CASE("solid moments agree with Monte Carlo") {
     CHECK(deviation(3, 3) < 0.01 * moments(3, 3));
 }
 
+TEST_CASE("line and point moments in closed form") {
+    // A circle of radius r about z through c, as a polygon: second order in its side.
+    const double r = 0.7;
+    double last = 0;
+    for (const int n : {20, 40, 80, 160}) {
+        Matrix3X v(3, n);
+        std::vector<Edge> edges;
+        for (int i = 0; i < n; ++i) {
+            v.col(i) << r * std::cos(2 * M_PI * i / n), r * std::sin(2 * M_PI * i / n), 0;
+            edges.push_back({i, (i + 1) % n});
+        }
+        const double length = 2 * M_PI * r, across = length * r * r / 2;
+        const Matrix4 moments = line_moments(v, edges);
+        CHECK(moments(2, 2) == 0);
+        CHECK(moments.col(3).head<3>().norm() < 1e-14);
+        const double error = std::max(std::abs(moments(0, 0) / across - 1), std::abs(moments(3, 3) / length - 1));
+        if (last != 0) CHECK(std::log2(last / error) == Approx(2).margin(0.05));
+        last = error;
+    }
+    CHECK(last < 2e-3);
+    // One segment, anywhere, and cut in three: exact, not lumped.
+    const Vector3 a(1, 2, 3), b(4, 2, 7);  // length 5
+    Matrix3X ends(3, 4);
+    ends << a, a + (b - a) / 4, a + (b - a) / 2, b;
+    const Matrix4 whole = line_moments(ends, {{0, 3}}), parts = line_moments(ends, {{0, 1}, {1, 2}, {2, 3}});
+    CHECK((whole - parts).norm() <= 1e-14 * whole.norm());
+    CHECK(whole(3, 3) == Approx(5));
+    CHECK(whole(0, 0) == Approx(5 * (1 + 4 + 16) / 3.0));       // int x^2 from 1 to 4, scaled
+    CHECK(whole(0, 2) == Approx(5 * (3 + (4 + 9) / 2.0 + 4)));  // int (1 + 3 s)(3 + 4 s)
+    const Matrix4 points = point_moments(ends);
+    Matrix4 expected = Matrix4::Zero();
+    for (int i = 0; i < 4; ++i) {
+        const Eigen::Vector4d x = ends.col(i).homogeneous();
+        expected += x * x.transpose();
+    }
+    CHECK((points - expected).norm() <= 1e-14 * expected.norm());
+}
+
+TEST_CASE("line moments agree with Monte Carlo") {
+    std::mt19937_64 random(3);
+    const Matrix3X vertices = tests::random_matrix(6, random);
+    const std::vector<Edge> edges{{0, 1}, {1, 2}, {3, 4}, {4, 0}, {2, 5}};
+    std::vector<double> lengths;
+    for (const Edge& e : edges) lengths.push_back((vertices.col(e[1]) - vertices.col(e[0])).norm());
+    std::discrete_distribution<std::size_t> choice(lengths.begin(), lengths.end());
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const Matrix4 moments = line_moments(vertices, edges);
+    Matrix4 sum = Matrix4::Zero(), sum_of_squares = Matrix4::Zero();
+    const int count = 40000;
+    for (int i = 0; i < count; ++i) {
+        const Edge& e = edges[choice(random)];
+        const double s = uniform(random);
+        const Eigen::Vector4d x = ((1 - s) * vertices.col(e[0]) + s * vertices.col(e[1])).homogeneous();
+        const Matrix4 sample = moments(3, 3) * x * x.transpose();
+        sum += sample;
+        sum_of_squares += sample.cwiseProduct(sample);
+    }
+    const Matrix4 mean = sum / count;
+    const Matrix4 deviation = ((sum_of_squares / count - mean.cwiseProduct(mean)) / count).cwiseMax(0).cwiseSqrt();
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4 - (i == 3); ++j) CHECK(std::abs(moments(i, j) - mean(i, j)) < 4 * deviation(i, j));
+    }
+    CHECK(deviation(0, 0) < 0.02 * moments(0, 0));
+}
+
+TEST_CASE("openings, and solids with these capped") {
+    const Vector3 low(0.3, -1.2, 2), high(1.1, 0.7, 2.5);
+    const Mesh box = tests::box_mesh(low, high);
+    CHECK(openings(box.vertices, box.triangles).empty());
+    CHECK(is_nearly_closed(box.vertices, box.triangles));
+    const Matrix4 closed = solid_moments(box.vertices, box.triangles);
+    CHECK(capped_solid_moments(box.vertices, box.triangles) == closed);
+
+    SECTION("without its bottom: one opening, capped exactly, but too wide") {
+        const std::vector<Triangle> lidless(box.triangles.begin() + 2, box.triangles.end());
+        const auto found = openings(box.vertices, lidless);
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].edges.size() == 4);
+        CHECK((found[0].area.cwiseAbs() - Vector3(0, 0, 0.8 * 1.9)).norm() < 1e-15);
+        CHECK((found[0].centre - Vector3(0.7, -0.25, 2)).norm() < 1e-15);
+        CHECK((capped_solid_moments(box.vertices, lidless) - closed).norm() <= 1e-14 * closed.norm());
+        CHECK_FALSE(is_nearly_closed(box.vertices, lidless));
+    }
+    SECTION("without bottom and top, where the openings' areas cancel: two openings") {
+        const std::vector<Triangle> tube(box.triangles.begin() + 4, box.triangles.end());
+        const auto found = openings(box.vertices, tube);
+        REQUIRE(found.size() == 2);
+        CHECK((found[0].area + found[1].area).norm() < 1e-15);
+        CHECK((capped_solid_moments(box.vertices, tube) - closed).norm() <= 1e-14 * closed.norm());
+        CHECK_FALSE(is_nearly_closed(box.vertices, tube));
+    }
+    SECTION("a crack: a T-junction encloses nothing") {
+        Mesh cracked = box;  // the edge 0-2 of one triangle gets a vertex in its middle, which its neighbour does not know
+        cracked.vertices.conservativeResize(3, 9);
+        cracked.vertices.col(8) = 0.5 * (box.vertices.col(0) + box.vertices.col(2));
+        cracked.triangles[0] = {0, 8, 3};
+        cracked.triangles.push_back({8, 2, 3});
+        const auto found = openings(cracked.vertices, cracked.triangles);
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].edges.size() == 3);
+        CHECK(found[0].area.norm() < 1e-15);
+        CHECK(is_nearly_closed(cracked.vertices, cracked.triangles));
+        CHECK((capped_solid_moments(cracked.vertices, cracked.triangles) - closed).norm() <= 1e-13 * closed.norm());
+    }
+    SECTION("a hole in a fine mesh: independent of the origin") {
+        Mesh torus = tests::torus_mesh(1, 0.4, 12);
+        torus.triangles.erase(torus.triangles.begin() + 30, torus.triangles.begin() + 34);
+        CHECK(is_nearly_closed(torus.vertices, torus.triangles));
+        const Vector3 shift(5, -7, 3);
+        const Matrix3X moved = torus.vertices.colwise() - shift;
+        const Matrix4 here = capped_solid_moments(torus.vertices, torus.triangles), there = capped_solid_moments(moved, torus.triangles);
+        CHECK((shifted_moments(here, shift) - there).norm() <= 1e-12 * there.norm());
+        const Matrix4 uncapped = shifted_moments(solid_moments(torus.vertices, torus.triangles), shift);
+        CHECK((uncapped - solid_moments(moved, torus.triangles)).norm() > 1e-3 * there.norm());
+    }
+    CHECK_FALSE(is_nearly_closed(box.vertices, {}));
+    CHECK_FALSE(is_nearly_closed(box.vertices, {box.triangles[0]}));
+}
+
 TEST_CASE("moments about another origin") {
     std::mt19937_64 random(2);
     Mesh mesh = tests::torus_mesh(1, 0.4, 9);

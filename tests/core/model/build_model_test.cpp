@@ -94,6 +94,152 @@ TEST_CASE("A reference point is the caller's, the scene's, or a default", "[mode
     CHECK(reference(scene_of({ground}), {}).isApprox(Vector3(1, 1, 1)));  // middle of the box around its vertices
 }
 
+TEST_CASE("Wires and points resist being turned a little", "[model]") {
+    scene::Body wire;
+    wire.name = "wire";
+    wire.mesh.vertices.resize(3, 2);
+    wire.mesh.vertices << 0, 2, 0, 0, 0, 0;
+    geometry::build_connectivity(wire.mesh, {{0, 1}});
+    wire.density = 3;
+    wire.mass_kind = scene::MassKind::length;
+    scene::Scene scene = scene_of({wire});
+    scene.dhat = 1e-3;
+    const auto moments = [&] { return build_model(scene).value().bodies[0].moments; };
+    const Matrix4 straight = moments();  // 6 kg, 2 m, about its middle
+    CHECK(straight(3, 3) == Approx(6));
+    CHECK(straight(0, 0) == Approx(2));
+    CHECK(straight(1, 1) + straight(2, 2) == Approx(1e-8 * 6));
+    CHECK((straight - Matrix4(straight.diagonal().asDiagonal())).norm() < 1e-15);
+    scene.bodies[0].reference_point = Vector3(0, 0, 1);  // the same about another point: only what is lacking is added
+    CHECK((moments().topLeftCorner<3, 3>() - (Matrix3() << 8, 0, -6, 0, 0, 0, -6, 0, 6).finished()).norm() < 1e-6);
+    scene.bodies[0].reference_point.reset();
+    scene.bodies[0].mesh.vertices << 0, 2, 0, 0.5, 0, 0;
+    scene.bodies[0].mesh.edges.clear();
+    scene.bodies[0].mass_kind = scene::MassKind::vertex;
+    CHECK(moments()(3, 3) == 6);
+    scene.bodies[0].mesh = {};
+    scene.bodies[0].mesh.vertices = Vector3(5, 5, 5);
+    scene.bodies[0].mesh.codimensional_points = {0};
+    const Matrix4 point = moments();
+    CHECK(point(3, 3) == 3);
+    for (int i = 0; i < 3; ++i) CHECK(point(i, i) == Approx(0.5e-8 * 3 * 1e-6));
+    // A body that has inertia about every axis gets nothing.
+    scene.bodies[0] = wire;
+    scene.bodies[0].mesh.vertices.resize(3, 3);
+    scene.bodies[0].mesh.vertices << 0, 2, 0, 0, 0, 1, 0, 0, 0;
+    geometry::build_connectivity(scene.bodies[0].mesh, {{0, 1}, {0, 2}});
+    CHECK(moments()(2, 2) == 0);
+}
+
+TEST_CASE("Friction: pairs, else geometric means of what bodies have", "[model]") {
+    std::vector<scene::Body> bodies;
+    for (int i = 0; i < 5; ++i) bodies.push_back(box_body(std::to_string(i), Vector3(3.0 * i, 0, 0), Vector3(3.0 * i + 1, 1, 1)));
+    bodies[1].material = "steel";
+    bodies[2].material = "steel";
+    bodies[2].mu = 0.9;
+    bodies[3].material = "ice";
+    bodies[4].material = "wood";  // named, but not listed
+    scene::Scene scene = scene_of(bodies);
+    scene.friction.mu = 0.3;
+    scene.friction.materials = {{"steel", 0.1}, {"ice", 0.02}};
+    scene.friction.pairs = {{"ice", "steel", 0.05}};
+    scene.friction.eps_v = 1e-4;
+    scene.friction.rounds = 2;
+    const auto built = build_model(scene);
+    REQUIRE(built);
+    const auto mu = [&](int a, int b) { return friction_coefficient(*built, a, b); };
+    CHECK(mu(0, 0) == 0.3);
+    CHECK(mu(1, 1) == 0.1);
+    CHECK(mu(2, 2) == 0.9);
+    CHECK(mu(0, 4) == 0.3);  // equal ones stay exactly what they are
+    CHECK(mu(0, 1) == Approx(std::sqrt(0.03)));
+    CHECK(mu(1, 2) == Approx(0.3));
+    CHECK(mu(1, 3) == 0.05);
+    CHECK(mu(3, 2) == 0.05);
+    CHECK(mu(3, 4) == Approx(std::sqrt(0.006)));
+    CHECK(built->friction.mu == built->friction.mu.transpose());
+    CHECK(built->friction.eps_v == 1e-4);
+    CHECK(built->friction.rounds == 2);
+    scene.friction.rounds = 0;
+    CHECK(build_model(scene)->friction.mu.isZero(0));
+}
+
+TEST_CASE("Faulty friction, scripts and loads are refused", "[model]") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    scene::Scene scene = scene_of({box_body("box", {0, 0, 0}, {1, 1, 1})});
+    const auto error = [&] { return only_error(build_model(scene)); };
+    SECTION("mu") {
+        scene.friction.mu = -0.1;
+        CHECK(error().where == "a.scene.json#/friction/mu");
+    }
+    SECTION("of a material") {
+        scene.friction.materials["steel"] = nan;
+        CHECK(contains(error().message, "`steel`"));
+    }
+    SECTION("of a pair") {
+        scene.friction.pairs = {{"a", "b", -1}};
+        CHECK(contains(error().message, "`a` and `b`"));
+    }
+    SECTION("of a body") {
+        scene.bodies[0].mu = -1;
+        CHECK(error().where == "a.scene.json#/bodies/box/mu");
+    }
+    SECTION("eps_v") {
+        scene.friction.eps_v = 0;
+        CHECK(error().where == "a.scene.json#/friction/eps_v");
+    }
+    SECTION("torque") {
+        scene.bodies[0].torque.y() = nan;
+        CHECK(error().code == ErrorCode::not_finite);
+    }
+    SECTION("scripts") {
+        scene.bodies[0].script.times = {1, 2};
+        scene.bodies[0].script.poses.resize(2);
+        CHECK(error().code == ErrorCode::inconsistent);  // of a dynamic body
+        scene.bodies[0].type = BodyType::kinematic_body;
+        CHECK(build_model(scene));
+        scene.bodies[0].script.times = {1, 1};
+        CHECK(error().code == ErrorCode::out_of_range);
+        scene.bodies[0].script.times = {0, 1};
+        CHECK(error().code == ErrorCode::out_of_range);
+        scene.bodies[0].script.times = {1};
+        CHECK(error().code == ErrorCode::out_of_range);
+        scene.bodies[0].script.times = {1, 2};
+        scene.bodies[0].script.poses[1].position.x() = nan;
+        CHECK(error().code == ErrorCode::out_of_range);
+    }
+}
+
+TEST_CASE("Scripts, loads and settings arrive, about the reference point", "[model]") {
+    scene::Body box = box_body("box", {0, 0, 0}, {2, 2, 2});
+    box.torque = {1, 2, 3};
+    scene::Body driven = box_body("driven", {4, 0, 0}, {6, 2, 2});
+    driven.type = BodyType::kinematic_body;
+    driven.script.times = {0.5};
+    driven.script.poses = {{kinematics::rotation({0.1, 0.2, 0.3}), Vector3(7, 8, 9)}};
+    scene::Scene scene = scene_of({box, driven});
+    scene.integrator = scene::Integrator::bdf2;
+    scene.area_weighted = true;
+    const auto model = build_model(scene);
+    REQUIRE(model);
+    CHECK(model->bodies[0].torque == Vector3(1, 2, 3));
+    CHECK(model->integrator == scene::Integrator::bdf2);
+    CHECK(model->area_weighted);
+    CHECK(model->adaptive_kappa);
+    const Body& body = model->bodies[1];
+    CHECK(body.script.times == driven.script.times);
+    for (int i = 0; i < 8; ++i) {
+        const Vector3 expected = kinematics::world_position(driven.script.poses[0], driven.mesh.vertices.col(i));
+        CHECK((kinematics::world_position(body.script.poses[0], body.mesh.vertices.col(i)) - expected).norm() < 1e-14);
+    }
+    scene.kappa = 5;
+    CHECK_FALSE(build_model(scene)->adaptive_kappa);
+    scene.kappa.reset();
+    BuildOptions options;
+    options.kappa = 5;
+    CHECK_FALSE(build_model(scene, options)->adaptive_kappa);
+}
+
 TEST_CASE("Who may collide", "[model]") {
     std::vector<scene::Body> bodies;
     for (int i = 0; i < 5; ++i) bodies.push_back(box_body(std::to_string(i), Vector3(3.0 * i, 0, 0), Vector3(3.0 * i + 1, 1, 1)));
@@ -139,9 +285,21 @@ TEST_CASE("Meshes that cannot be a dynamic solid are refused", "[model]") {
         CHECK(contains(result.errors().front().message, "`lid`"));
         CHECK(contains(result.errors().front().where, "a.scene.json#/bodies/lid"));
     }
-    SECTION("open, lenient: not something we do yet") {
+    SECTION("open, lenient: a solid as long as what is open is small") {
         open.mesh_policy = scene::MeshPolicy::lenient;
-        CHECK(only_error(build_model(scene_of({open}))).code == ErrorCode::unsupported);
+        CHECK(build_model(scene_of({open})).value().bodies[0].moments(3, 3) == Approx(1000));
+        open.mesh.triangles.resize(10);
+        geometry::build_connectivity(open.mesh);
+        CHECK(only_error(build_model(scene_of({open}))).code == ErrorCode::mesh_invalid);
+    }
+    SECTION("open, as a shell, strict or not; but not where nothing has an area") {
+        open.mass_kind = scene::MassKind::area;
+        CHECK(build_model(scene_of({open})).value().bodies[0].moments(3, 3) == Approx(5500));
+        open.mesh.triangles.clear();
+        geometry::build_connectivity(open.mesh);
+        CHECK(contains(only_error(build_model(scene_of({open}))).message, "kg/m^2"));
+        open.mass_kind = scene::MassKind::length;
+        CHECK(contains(only_error(build_model(scene_of({open}))).message, "kg/m:"));
     }
     SECTION("open but static or kinematic is fine") {
         open.type = BodyType::static_body;
