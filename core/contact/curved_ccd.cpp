@@ -33,40 +33,55 @@ class TurningArms {
 public:
     TurningArms(const PathSegment& segment, const Vector3* X, std::size_t count)
         : theta_(segment.rotation_vector_t0), w_(segment.rotation_vector_step), count_(count) {
+        double radius_squared = 0;
         for (std::size_t i = 0; i < count; ++i) {
             arms_[i] = segment.base * X[i];
-            radius_ = std::max({radius_, X[i].norm(), arms_[i].norm()});
+            radius_squared = std::max({radius_squared, X[i].squaredNorm(), arms_[i].squaredNorm()});
         }
-        radius_ *= inflate;
+        radius_ = std::sqrt(radius_squared) * inflate;
         theta_norm_ = theta_.norm();
         speed_ = w_.norm() * inflate;
+        if (speed_ == 0 && theta_norm_ > 0) {
+            const Matrix3 r = rotation(theta_);
+            for (std::size_t i = 0; i < count; ++i) arms_[i] = r * arms_[i];
+        }
     }
 
     /// Upper bound of how far an arm's end moves over the whole segment.
     double travel() const { return speed_ * radius_ * inflate; }
-    double radius() const { return radius_; }
     double rounding(double s) const { return rotated_rounding(theta_norm_, speed_, s, radius_); }
 
     void place(double s, const Vector3& translation, Vector3* x) const {
+        if (speed_ == 0 || (s == 0 && theta_norm_ == 0)) {
+            for (std::size_t i = 0; i < count_; ++i) x[i] = arms_[i] + translation;
+            return;
+        }
         const Matrix3 r = rotation(theta_ + s * w_);
         for (std::size_t i = 0; i < count_; ++i) x[i] = r * arms_[i] + translation;
     }
 
-    /// Largest deviation over the piece [s, s + h].
-    double deviation(double s, double h, DeviationBound bound) const {
+    /// Closed form: the deviation over a piece of length h is at most h^2 times this, wherever it starts, because (theta + s w) x w does
+    /// not depend on s.
+    double deviation_rate() const {
+        double largest = 0;
+        if (speed_ > 0) {
+            for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc_deviation(theta_, w_, arms_[i]));
+        }
+        return largest * inflate;
+    }
+
+    /// Interval bound over the piece [s, s + h].
+    double interval_deviation(double s, double h) const {
         if (speed_ == 0) return 0;
         const Vector3 start = theta_ + s * w_, turn = h * w_;
         double largest = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
-            largest = std::max(largest, bound == DeviationBound::interval ? arc_deviation_interval(start, turn, arms_[i])
-                                                                          : arc_deviation(start, turn, arms_[i]));
-        }
+        for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc_deviation_interval(start, turn, arms_[i]));
         return largest * inflate;
     }
 
 private:
     Vector3 theta_, w_;
-    std::array<Vector3, 3> arms_;
+    std::array<Vector3, 3> arms_;  // of a body that does not turn: with its rotation
     std::size_t count_;
     double radius_ = 0, theta_norm_ = 0, speed_ = 0;
 };
@@ -91,6 +106,7 @@ public:
         double gap = gap_at(0, x);
         if (!(gap > 0)) return {true, 0};
         if (gap > (a_.travel() + b_.travel() + offset_step_.norm()) * inflate) return {};
+        if (options_.deviation == DeviationBound::closed_form) deviation_rate_ = a_.deviation_rate() + b_.deviation_rate();
         const double threshold = std::min(options_.linear.tolerance, gap_share * gap);
         double s = 0;
         for (int piece = 0; piece < options_.max_pieces && gap > threshold; ++piece) {
@@ -118,7 +134,8 @@ private:
     double gap_at(double s, const PairVertices& x) const { return (distance_lower_bound(type_, x) - dmin_ - rounding(s)) * (1 - 4 * u); }
 
     double deviation(double s, double h) const {
-        return (a_.deviation(s, h, options_.deviation) + b_.deviation(s, h, options_.deviation)) * inflate;
+        if (options_.deviation == DeviationBound::interval) return (a_.interval_deviation(s, h) + b_.interval_deviation(s, h)) * inflate;
+        return deviation_rate_ * (h * h) * inflate;
     }
 
     /// Advances from s over the longest piece whose deviation is small against the gap, or as far in it as is proven to be clear.
@@ -157,7 +174,8 @@ private:
     double offset_rounding_ = 0;
     double dmin_;
     const CurvedCcdOptions& options_;
-    double piece_ = 1;  ///< length of the last piece; the next may be four times as long
+    double deviation_rate_ = 0;  ///< closed form: over h^2
+    double piece_ = 1;           ///< length of the last piece; the next may be four times as long
 };
 
 }  // namespace

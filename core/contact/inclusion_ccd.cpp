@@ -31,7 +31,7 @@ struct Later {
 };
 
 struct Range {
-    Vector3 low, high;
+    double low, high;
 };
 
 class InclusionSearch {
@@ -66,39 +66,56 @@ public:
         for (int i = 0; !queue.empty(); ++i) {
             const Box box = queue.top();
             queue.pop();
-            const Range range = range_over(box);
-            if ((range.low.array() > reach_).any() || (range.high.array() < -reach_).any()) continue;
-            if (i >= options_.max_iterations || is_small(box, range)) return {true, box.low[0]};
+            const Verdict verdict = judge(box);
+            if (verdict == Verdict::clear) continue;
+            if (verdict == Verdict::hit || i >= options_.max_iterations) return {true, box.low[0]};
             halve(box, queue);
         }
         return {};
     }
 
 private:
-    Vector3 difference(const PairVertices& x, double u, double v) const {
-        if (type_ == PairType::point_triangle) return x[0] - ((x[2] - x[1]) * u + (x[3] - x[1]) * v + x[1]);
-        return ((x[1] - x[0]) * u + x[0]) - ((x[3] - x[2]) * v + x[2]);
-    }
-
-    PairVertices vertices_at(double t) const {
-        PairVertices x;
-        for (std::size_t i = 0; i < 4; ++i) x[i] = (x_t1_[i] - x_t0_[i]) * t + x_t0_[i];
-        return x;
-    }
-
-    Range range_over(const Box& box) const {
-        Range r{Vector3::Constant(INFINITY), Vector3::Constant(-INFINITY)};
+    /// Least and largest corner value on one axis. Rounding is monotone, so the extremes of a sum over all corners are the sums of each
+    /// term's extremes, bit for bit: four ends instead of eight corners.
+    Range range_over(const Box& box, int k) const {
+        Range r{INFINITY, -INFINITY};
+        const double u0 = box.low[1], u1 = u0 + box.width[1], v0 = box.low[2], v1 = v0 + box.width[2];
         for (const double t : {box.low[0], box.low[0] + box.width[0]}) {
-            const PairVertices x = vertices_at(t);
-            for (const double u : {box.low[1], box.low[1] + box.width[1]}) {
-                for (const double v : {box.low[2], box.low[2] + box.width[2]}) {
-                    const Vector3 f = difference(x, u, v);
-                    r.low = r.low.cwiseMin(f);
-                    r.high = r.high.cwiseMax(f);
-                }
+            const auto at = [&](std::size_t i) { return (x_t1_[i][k] - x_t0_[i][k]) * t + x_t0_[i][k]; };
+            const double x0 = at(0), x1 = at(1), x2 = at(2), x3 = at(3);
+            if (type_ == PairType::point_triangle) {
+                const double a = (x2 - x1) * u0, b = (x2 - x1) * u1, c = (x3 - x1) * v0, d = (x3 - x1) * v1;
+                r.low = std::min(r.low, x0 - (std::max(a, b) + std::max(c, d) + x1));
+                r.high = std::max(r.high, x0 - (std::min(a, b) + std::min(c, d) + x1));
+            } else {
+                const double a = (x1 - x0) * u0 + x0, b = (x1 - x0) * u1 + x0, c = (x3 - x2) * v0 + x2, d = (x3 - x2) * v1 + x2;
+                r.low = std::min(r.low, std::min(a, b) - std::max(c, d));
+                r.high = std::max(r.high, std::max(a, b) - std::min(c, d));
             }
         }
         return r;
+    }
+
+    enum class Verdict { clear, hit, halve };
+    Verdict judge(const Box& box) const {
+        bool small_image = true, inside = true;
+        for (int k = 0; k < 3; ++k) {
+            const Range r = range_over(box, k);
+            if (r.low > reach_ || r.high < -reach_) return Verdict::clear;
+            small_image = small_image && r.high - r.low <= tolerance_;
+            inside = inside && r.low >= -reach_ && r.high <= reach_;
+        }
+        bool narrow = true, least = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            narrow = narrow && box.width[k] <= dimension_tolerance_[k];
+            least = least && box.width[k] <= least_width;
+        }
+        return small_image || inside || narrow || least ? Verdict::hit : Verdict::halve;
+    }
+
+    Vector3 difference(const PairVertices& x, double u, double v) const {
+        if (type_ == PairType::point_triangle) return x[0] - ((x[2] - x[1]) * u + (x[3] - x[1]) * v + x[1]);
+        return ((x[1] - x[0]) * u + x[0]) - ((x[3] - x[2]) * v + x[2]);
     }
 
     /// Width that keeps the box's image within the tolerance: a third of it per dimension, by the longest edge of the corner hexahedron.
@@ -116,17 +133,6 @@ private:
             }
         }
         for (std::size_t k = 0; k < 3; ++k) dimension_tolerance_[k] = std::max(least_width, tolerance_ / (3 * std::max(length[k], 1e-300)));
-    }
-
-    bool is_small(const Box& box, const Range& range) const {
-        bool narrow = true, least = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-            narrow = narrow && box.width[k] <= dimension_tolerance_[k];
-            least = least && box.width[k] <= least_width;
-        }
-        const bool small_image = (range.high - range.low).maxCoeff() <= tolerance_;
-        const bool inside = (range.low.array() >= -reach_).all() && (range.high.array() <= reach_).all();
-        return narrow || least || small_image || inside;
     }
 
     template <class Queue>

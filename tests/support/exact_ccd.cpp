@@ -2,238 +2,141 @@
 #include "exact_ccd.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/gmp.hpp>
-#include <vector>
+#include <cmath>
+#include <optional>
+
+#include "fettle/tests/support/exact_system.hpp"
 
 namespace fettle::tests {
 
 using core::contact::PairType;
 using core::contact::PairVertices;
+using Number = Rational;
 
 namespace {
 
-using Number = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+template <class Integer>
+using Point = std::array<Polynomial<Integer>, 3>;
 
-int sign_of(const Number& x) { return x > 0 ? 1 : (x < 0 ? -1 : 0); }
-
-/// Coefficients from the constant up, no leading zeros; empty is 0.
-struct Polynomial {
-    std::vector<Number> c;
-
-    void trim() {
-        while (!c.empty() && c.back() == 0) c.pop_back();
-    }
-    bool zero() const { return c.empty(); }
-    std::size_t size() const { return c.size(); }
-    Number at(const Number& t) const {
-        Number v = 0;
-        for (auto it = c.rbegin(); it != c.rend(); ++it) v = v * t + *it;
-        return v;
-    }
-};
-
-Polynomial operator+(const Polynomial& a, const Polynomial& b) {
-    Polynomial r{a.c};
-    if (r.size() < b.size()) r.c.resize(b.size());
-    for (std::size_t i = 0; i < b.size(); ++i) r.c[i] += b.c[i];
-    r.trim();
-    return r;
+template <class Integer>
+Point<Integer> operator-(const Point<Integer>& a, const Point<Integer>& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-Polynomial operator-(const Polynomial& a) {
-    Polynomial r{a.c};
-    for (Number& x : r.c) x = -x;
-    return r;
+template <class Integer>
+Polynomial<Integer> dot(const Point<Integer>& a, const Point<Integer>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-Polynomial operator-(const Polynomial& a, const Polynomial& b) { return a + (-b); }
-Polynomial operator*(const Polynomial& a, const Polynomial& b) {
-    if (a.zero() || b.zero()) return {};
-    Polynomial r;
-    r.c.resize(a.size() + b.size() - 1);
-    for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t j = 0; j < b.size(); ++j) r.c[i + j] += a.c[i] * b.c[j];
-    return r;
-}
-Polynomial derivative(const Polynomial& a) {
-    Polynomial r;
-    for (std::size_t i = 1; i < a.size(); ++i) r.c.push_back(a.c[i] * static_cast<int>(i));
-    return r;
+template <class Integer>
+Point<Integer> cross(const Point<Integer>& a, const Point<Integer>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-struct Division {
-    Polynomial quotient, remainder;
-};
-Division divide(Polynomial a, const Polynomial& b) {
-    Division d;
-    if (a.size() >= b.size()) d.quotient.c.resize(a.size() - b.size() + 1);
-    while (a.size() >= b.size()) {
-        const std::size_t shift = a.size() - b.size();
-        const Number factor = a.c.back() / b.c.back();
-        d.quotient.c[shift] = factor;
-        for (std::size_t i = 0; i + 1 < b.size(); ++i) a.c[shift + i] -= factor * b.c[i];
-        a.c.pop_back();
-        a.trim();
-    }
-    d.remainder = a;
-    return d;
-}
-Polynomial common_divisor(Polynomial a, Polynomial b) {
-    while (!b.zero()) {
-        Polynomial r = divide(a, b).remainder;
-        a = b;
-        b = r;
-    }
-    return a;
-}
-Polynomial square_free(const Polynomial& a) {
-    const Polynomial d = common_divisor(a, derivative(a));
-    return d.size() <= 1 ? a : divide(a, d).quotient;
-}
-
-/// Counts distinct roots in (low, high]. For a polynomial that is not zero.
-class Sturm {
-public:
-    explicit Sturm(const Polynomial& p) {
-        chain_.push_back(square_free(p));
-        Polynomial next = derivative(chain_.back());
-        while (!next.zero()) {
-            chain_.push_back(next);
-            next = -divide(chain_[chain_.size() - 2], next).remainder;
-        }
-    }
-    int count(const Number& low, const Number& high) const { return variations(low) - variations(high); }
-
-private:
-    int variations(const Number& t) const {
-        int changes = 0, last = 0;
-        for (const Polynomial& p : chain_) {
-            const int s = sign_of(p.at(t));
-            if (s != 0 && last != 0 && s != last) ++changes;
-            if (s != 0) last = s;
-        }
-        return changes;
-    }
-    std::vector<Polynomial> chain_;
-};
-
-/// The one root of `polynomial` (square-free) in (low, high].
-struct Root {
-    Polynomial polynomial;
-    Number low, high;
-};
-
-int sign_at(const Polynomial& h, Root root) {
-    if (h.zero()) return 0;
-    if (h.size() == 1) return sign_of(h.c[0]);
-    const Polynomial shared = common_divisor(root.polynomial, h);
-    if (shared.size() > 1 && Sturm(shared).count(root.low, root.high) > 0) return 0;
-    const Sturm own(root.polynomial), other(h);
-    while (other.count(root.low, root.high) > 0) {
-        const Number middle = (root.low + root.high) / 2;
-        (own.count(root.low, middle) > 0 ? root.high : root.low) = middle;
-    }
-    return sign_of(h.at(root.high));
-}
-
-void isolate(const Polynomial& p, const Sturm& sturm, const Number& low, const Number& high, std::vector<Root>& roots) {
-    const int n = sturm.count(low, high);
-    if (n == 0) return;
-    if (n == 1) {
-        roots.push_back({p, low, high});
-        return;
-    }
-    const Number middle = (low + high) / 2;
-    isolate(p, sturm, low, middle, roots);
-    isolate(p, sturm, middle, high, roots);
-}
-
-/// equations = 0, inequalities >= 0, nonzero != 0.
-struct System {
-    std::vector<Polynomial> equations, inequalities, nonzero;
-
-    bool holds_at(const Number& t) const {
-        return std::all_of(equations.begin(), equations.end(), [&](const auto& p) { return p.at(t) == 0; }) &&
-               std::all_of(inequalities.begin(), inequalities.end(), [&](const auto& p) { return p.at(t) >= 0; }) &&
-               std::all_of(nonzero.begin(), nonzero.end(), [&](const auto& p) { return p.at(t) != 0; });
-    }
-    bool holds_at(const Root& root) const {
-        return std::all_of(equations.begin(), equations.end(), [&](const auto& p) { return sign_at(p, root) == 0; }) &&
-               std::all_of(inequalities.begin(), inequalities.end(), [&](const auto& p) { return sign_at(p, root) >= 0; }) &&
-               std::all_of(nonzero.begin(), nonzero.end(), [&](const auto& p) { return sign_at(p, root) != 0; });
-    }
-    bool has_solution() const {
-        if (holds_at(Number(0)) || holds_at(Number(1))) return true;
-        Polynomial shared;
-        for (const Polynomial& p : equations) shared = common_divisor(shared, p);
-        std::vector<Polynomial> candidates{shared};
-        if (shared.zero()) candidates = inequalities;
-        for (const Polynomial& p : candidates) {
-            if (p.size() <= 1) continue;
-            const Polynomial simple = square_free(p);
-            std::vector<Root> roots;
-            isolate(simple, Sturm(simple), Number(0), Number(1), roots);
-            if (std::any_of(roots.begin(), roots.end(), [&](const Root& r) { return holds_at(r); })) return true;
-        }
-        return false;
+/// One of the two ways to decide a system.
+struct Decide {
+    bool by_algebra;
+    template <class Integer>
+    bool operator()(const System<Integer>& system) const {
+        return by_algebra ? system.has_solution_by_algebra() : system.has_solution();
     }
 };
 
-using Point = std::array<Polynomial, 3>;
-
-Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Polynomial dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-
-bool vertices_meet(const Point& a, const Point& b) {
-    const Point d = a - b;
-    return System{{d[0], d[1], d[2]}, {}, {}}.has_solution();
+template <class Integer>
+bool vertices_meet(const Point<Integer>& a, const Point<Integer>& b, Decide decide) {
+    const Point<Integer> d = a - b;
+    System<Integer> same;
+    for (const auto& p : d) same.add(Role::zero, p);
+    return decide(same);
 }
 
-bool vertex_meets_edge(const Point& p, const Point& a, const Point& b) {
-    const Point e = b - a, w = p - a, n = cross(e, w);
-    const Polynomial along = dot(e, w), length = dot(e, e);
-    return System{{n[0], n[1], n[2]}, {along, length - along}, {length}}.has_solution() || vertices_meet(p, a) || vertices_meet(p, b);
+template <class Integer>
+bool vertex_meets_edge(const Point<Integer>& p, const Point<Integer>& a, const Point<Integer>& b, Decide decide) {
+    const Point<Integer> e = b - a, w = p - a;
+    const Polynomial<Integer> along = dot(e, w), length = dot(e, e);
+    System<Integer> inside;
+    for (const auto& n : cross(e, w)) inside.add(Role::zero, n);
+    inside.add(Role::not_negative, along);
+    inside.add(Role::not_negative, length - along);
+    inside.add(Role::not_zero, length);
+    return decide(inside) || vertices_meet(p, a, decide) || vertices_meet(p, b, decide);
 }
 
-/// No contact of the interior if a cubic's Bernstein coefficients have one sign.
-bool keeps_sign(const Polynomial& f) {
-    std::array<Number, 4> c{};
-    std::copy(f.c.begin(), f.c.end(), c.begin());
-    const std::array<int, 4> s{sign_of(c[0]), sign_of(3 * c[0] + c[1]), sign_of(3 * c[0] + 2 * c[1] + c[2]),
-                               sign_of(c[0] + c[1] + c[2] + c[3])};
-    return s[0] != 0 && s[1] == s[0] && s[2] == s[0] && s[3] == s[0];
+/// Is there a time at which the normal vanishes? Only then do vertices on edges matter beyond what the interior's system says.
+template <class Integer>
+bool vanishes(const Point<Integer>& n, Decide decide) {
+    System<Integer> zero;
+    for (const auto& p : n) zero.add(Role::zero, p);
+    return decide(zero);
 }
 
-bool vertex_meets_triangle(const std::array<Point, 4>& x) {
-    const Point n = cross(x[2] - x[1], x[3] - x[1]);
-    const Polynomial f = dot(n, x[0] - x[1]);
-    if (keeps_sign(f)) return false;
-    System face{{f}, {}, {dot(n, n)}};
-    for (int i = 0; i < 3; ++i) {
-        const Point &a = x[1 + i], &b = x[1 + (i + 1) % 3];
-        face.inequalities.push_back(dot(n, cross(b - a, x[0] - a)));
+template <class Integer>
+bool vertex_meets_triangle(const std::array<Point<Integer>, 4>& x, Decide decide) {
+    const Point<Integer> n = cross(x[2] - x[1], x[3] - x[1]);
+    System<Integer> face;
+    face.add(Role::zero, dot(n, x[0] - x[1]));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point<Integer>&a = x[1 + i], &b = x[1 + (i + 1) % 3];
+        face.add(Role::not_negative, dot(n, cross(b - a, x[0] - a)));
     }
-    return face.has_solution() || vertex_meets_edge(x[0], x[1], x[2]) || vertex_meets_edge(x[0], x[2], x[3]) ||
-           vertex_meets_edge(x[0], x[3], x[1]);
+    face.add(Role::not_zero, dot(n, n));
+    if (decide(face)) return true;
+    return vanishes(n, decide) && (vertex_meets_edge(x[0], x[1], x[2], decide) || vertex_meets_edge(x[0], x[2], x[3], decide) ||
+                                   vertex_meets_edge(x[0], x[3], x[1], decide));
 }
 
-bool edges_meet(const std::array<Point, 4>& x) {
-    const Point p = x[1] - x[0], q = x[3] - x[2], w = x[2] - x[0], n = cross(p, q);
-    const Polynomial f = dot(n, w);
-    if (keeps_sign(f)) return false;
-    const Polynomial nn = dot(n, n), s = dot(cross(w, q), n), t = dot(cross(w, p), n);
-    return System{{f}, {s, nn - s, t, nn - t}, {nn}}.has_solution() || vertex_meets_edge(x[0], x[2], x[3]) ||
-           vertex_meets_edge(x[1], x[2], x[3]) || vertex_meets_edge(x[2], x[0], x[1]) || vertex_meets_edge(x[3], x[0], x[1]);
+template <class Integer>
+bool edges_meet(const std::array<Point<Integer>, 4>& x, Decide decide) {
+    const Point<Integer> p = x[1] - x[0], q = x[3] - x[2], w = x[2] - x[0], n = cross(p, q);
+    const Polynomial<Integer> nn = dot(n, n), s = dot(cross(w, q), n), t = dot(cross(w, p), n);
+    System<Integer> interior;
+    interior.add(Role::zero, dot(n, w));
+    for (const auto& h : {s, nn - s, t, nn - t}) interior.add(Role::not_negative, h);
+    interior.add(Role::not_zero, nn);
+    if (decide(interior)) return true;
+    return vanishes(n, decide) && (vertex_meets_edge(x[0], x[2], x[3], decide) || vertex_meets_edge(x[1], x[2], x[3], decide) ||
+                                   vertex_meets_edge(x[2], x[0], x[1], decide) || vertex_meets_edge(x[3], x[0], x[1], decide));
 }
 
-std::array<Point, 4> moving(const PairVertices& t0, const PairVertices& t1) {
-    std::array<Point, 4> x;
+/// The power of two that makes a whole number of every coordinate, and how many bits the largest then has.
+struct Scale {
+    int exponent = 0, bits = 0;
+};
+Scale scale_of(const PairVertices& t0, const PairVertices& t1) {
+    int least = 0, most = 0;
+    bool first = true;
+    for (const PairVertices* x : {&t0, &t1})
+        for (const Vector3& v : *x)
+            for (int k = 0; k < 3; ++k) {
+                if (v[k] == 0) continue;
+                int exponent = 0;
+                const auto mantissa = static_cast<long long>(std::ldexp(std::frexp(v[k], &exponent), 53));
+                const int low = exponent - 53 + __builtin_ctzll(static_cast<unsigned long long>(std::abs(mantissa)));
+                least = first ? low : std::min(least, low);
+                most = first ? exponent : std::max(most, exponent);
+                first = false;
+            }
+    return {-least, most - least};
+}
+
+WideInteger scaled(double x, int exponent, WideInteger) { return static_cast<WideInteger>(std::ldexp(x, exponent)); }
+BigInteger scaled(double x, int exponent, const BigInteger&) {
+    int own = 0;
+    const auto mantissa = static_cast<long long>(std::ldexp(std::frexp(x, &own), 53));
+    const int shift = own - 53 + exponent;
+    return shift >= 0 ? BigInteger(mantissa) << shift : BigInteger(mantissa) / (BigInteger(1) << -shift);
+}
+
+template <class Integer>
+bool contact(PairType type, const PairVertices& t0, const PairVertices& t1, int exponent, Decide decide) {
+    std::array<Point<Integer>, 4> x;
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k) {
-            const Number a(t0[i][k]), b(t1[i][k]);
-            x[i][static_cast<std::size_t>(k)].c = {a, b - a};
-            x[i][static_cast<std::size_t>(k)].trim();
+            const Integer a = scaled(t0[i][k], exponent, Integer()), b = scaled(t1[i][k], exponent, Integer());
+            Polynomial<Integer>& p = x[i][static_cast<std::size_t>(k)];
+            p.c[0] = a;
+            p.c[1] = b - a;
+            p.size = 2;
         }
-    return x;
+    return type == PairType::point_triangle ? vertex_meets_triangle(x, decide) : edges_meet(x, decide);
 }
 
 using Fixed = std::array<Number, 3>;
@@ -266,14 +169,71 @@ Number distance_squared(PairType type, const std::array<Fixed, 4>& x) {
                      vertex_edge_squared(x[3], x[0], x[1])});
 }
 
+// ---- a filter in 64-bit floats: directions along which the pair is apart by more than the distance and all rounding
+
+using Real = long double;
+using RealPoint = std::array<Real, 3>;
+RealPoint operator-(const RealPoint& a, const RealPoint& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Real dot(const RealPoint& a, const RealPoint& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+RealPoint cross(const RealPoint& a, const RealPoint& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Along n, whatever it is: the vertices of one primitive all beyond those of the other by more than distance |n|. With vertices off by
+/// 4 units of 2^-64 of `size`, values and their difference are off by less than 2^-58 size |n|_1.
+bool apart_along(const RealPoint& n, const std::array<RealPoint, 4>& x, std::size_t first_count, Real size, Real distance) {
+    Real low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Real value = dot(n, x[i]);
+        const int side = i < first_count ? 0 : 1;
+        low[side] = std::min(low[side], value);
+        high[side] = std::max(high[side], value);
+    }
+    const Real error = size * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2])) * 0x1p-58L;
+    const Real needed = distance * std::sqrt(dot(n, n)) * (1 + 0x1p-58L) + error;
+    return low[0] - high[1] > needed || low[1] - high[0] > needed;
+}
+
+bool surely_farther(PairType type, const PairVertices& t0, const PairVertices& t1, double t, double distance) {
+    std::array<RealPoint, 4> x;
+    Real size = 0x1p-900L;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const Real a = t0[i][k], b = t1[i][k];
+            x[i][static_cast<std::size_t>(k)] = a + static_cast<Real>(t) * (b - a);
+            size = std::max({size, std::abs(a), std::abs(b)});
+        }
+    const std::size_t first_count = type == PairType::point_triangle ? 1 : 2;
+    const auto apart = [&](const RealPoint& n) { return apart_along(n, x, first_count, size, distance); };
+    const auto apart_from_edge = [&](std::size_t p, std::size_t a, std::size_t b) {
+        const RealPoint e = x[b] - x[a];
+        RealPoint w = x[p] - x[a];
+        const Real ee = dot(e, e), s = ee > 0 ? std::clamp(dot(w, e) / ee, Real(0), Real(1)) : Real(0);
+        for (std::size_t k = 0; k < 3; ++k) w[k] -= s * e[k];
+        return apart(w);
+    };
+    if (type == PairType::point_triangle) {
+        return apart(cross(x[2] - x[1], x[3] - x[1])) || apart_from_edge(0, 1, 2) || apart_from_edge(0, 2, 3) || apart_from_edge(0, 3, 1);
+    }
+    return apart(cross(x[1] - x[0], x[3] - x[2])) || apart_from_edge(0, 2, 3) || apart_from_edge(1, 2, 3) || apart_from_edge(2, 0, 1) ||
+           apart_from_edge(3, 0, 1);
+}
+
 }  // namespace
 
 bool exact_linear_contact(PairType type, const PairVertices& t0, const PairVertices& t1) {
-    const std::array<Point, 4> x = moving(t0, t1);
-    return type == PairType::point_triangle ? vertex_meets_triangle(x) : edges_meet(x);
+    const Scale scale = scale_of(t0, t1);
+    // Below 2^11 all coefficients are below 2^62: degree 4 makes 2^(4 * 11 + 17).
+    if (scale.bits <= 11) return contact<WideInteger>(type, t0, t1, scale.exponent, {false});
+    return contact<BigInteger>(type, t0, t1, scale.exponent, {false});
+}
+
+bool exact_linear_contact_by_algebra(PairType type, const PairVertices& t0, const PairVertices& t1) {
+    return contact<BigInteger>(type, t0, t1, scale_of(t0, t1).exponent, {true});
 }
 
 bool exact_distance_at_most(PairType type, const PairVertices& t0, const PairVertices& t1, double t, double distance) {
+    if (surely_farther(type, t0, t1, t, distance)) return false;
     std::array<Fixed, 4> x;
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k)

@@ -4,8 +4,8 @@
 #include <ctime>
 #include <string>
 
+#include "fettle/core/contact/ccd_queries.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
@@ -15,10 +15,24 @@ using namespace fettle::tests;
 
 namespace {
 
+/// All queries of the files below a folder of ../shared/ccd.
+std::vector<CcdQueries> read_folder(const std::string& folder) {
+    std::vector<CcdQueries> queries;
+    const std::vector<std::string> files = find_ccd_query_files({support::shared_file("ccd/" + folder)}).value();
+    for (const std::string& file : files) queries.push_back(read_ccd_queries(file).value());
+    return queries;
+}
+
 struct Tally {
     long queries = 0, hits = 0, false_negatives = 0, false_positives = 0, far = 0, zero = 0;
     double microseconds = 0, worst = 0;
 };
+
+#ifdef __OPTIMIZE__
+constexpr bool optimised = true;
+#else
+constexpr bool optimised = false;
+#endif
 
 /// Time of this thread alone: other processes do not count.
 double thread_microseconds() {
@@ -46,8 +60,8 @@ bool comes_near(const LinearQuery& q, double toi, double dmin) {
 /// apart.
 Tally run(const std::string& folder, const LinearCcdOptions& options, double dmin) {
     Tally t;
-    for (const auto& file : files_below(support::shared_file("ccd/" + folder), ".csv")) {
-        for (const LinearQuery& q : read_linear_queries(file)) {
+    for (const CcdQueries& file : read_folder(folder)) {
+        for (const LinearQuery& q : file.linear) {
             LinearCcdResult r;
             const double time = microseconds([&] { r = linear_ccd(q.type, q.t0, q.t1, dmin, options); });
             ++t.queries;
@@ -81,6 +95,9 @@ TEST_CASE("advancement on the public linear queries") {
         CHECK(t.false_negatives == 0);
         CHECK(t.zero == 0);
         CHECK(t.far == 0);
+        if (!optimised) continue;
+        CHECK(t.microseconds / static_cast<double>(t.queries) <= 10);
+        CHECK(t.worst <= 5000);
     }
 }
 
@@ -110,8 +127,10 @@ TEST_CASE("inclusion on the public linear queries", "[slow]") {
 TEST_CASE("the public truth of linear queries is what exact arithmetic says", "[slow]") {
     FETTLE_NEEDS_SHARED();
     long different = 0;
-    for (const auto& file : files_below(support::shared_file("ccd"), ".csv")) {
-        for (const LinearQuery& q : read_linear_queries(file)) different += exact_linear_contact(q.type, q.t0, q.t1) != *q.truth;
+    for (const std::string folder : {"sample-queries", "scalable"}) {
+        for (const CcdQueries& file : read_folder(folder)) {
+            for (const LinearQuery& q : file.linear) different += exact_linear_contact(q.type, q.t0, q.t1) != *q.truth;
+        }
     }
     CHECK(different == 0);
 }
@@ -126,8 +145,8 @@ TEST_CASE("curved CCD on the public rigid queries") {
         for (const std::string folder : {"wrecking-ball", "kinematic"}) {
             long queries = 0, hits = 0, zero = 0;
             double total = 0;
-            for (const auto& file : files_below(support::shared_file("ccd/rigid/" + folder), ".json")) {
-                const RigidQuery q = read_rigid_query(file);
+            for (const CcdQueries& file : read_folder("rigid/" + folder)) {
+                const RigidQuery& q = file.rigid.at(0);
                 CurvedCcdResult r;
                 total += microseconds([&] { r = curved_ccd(q.type, q.a, q.b, q.X, 0, options); });
                 ++queries;
@@ -139,6 +158,7 @@ TEST_CASE("curved CCD on the public rigid queries") {
             CHECK(zero == 0);
             // No wrecking-ball query touches; every kinematic one comes within 1e-9.
             CHECK(hits == (folder == "kinematic" ? queries : 0));
+            if (optimised && closed && folder == "wrecking-ball") CHECK(total / static_cast<double>(queries) <= 5);
         }
     }
 }

@@ -117,6 +117,54 @@ TEST_CASE("chord deviation bounds hold on dense samples") {
     CHECK(violations({closed_form, interval, least, cubic}, 800, 1) == std::vector<int>{0, 0, 0, 0});
 }
 
+TEST_CASE("arc_deviation is the least of B0 and B1, and both hold") {
+    std::mt19937_64 random(5);
+    int broken = 0, below = 0, above = 0, second = 0;
+    for (int i = 0; i < 800; ++i) {
+        const Arc a = random_arc(random);
+        const Vector3 &t = a.path.rotation_vector_t0, &w = a.path.rotation_vector_step, Y = arm(a);
+        const RealVector theta{t[0], t[1], t[2]}, turn{w[0], w[1], w[2]}, exact_arm{Y[0], Y[1], Y[2]};
+        const Real speed = norm(turn), length = norm(exact_arm);
+        const Real b0 = speed * speed * length / 8;
+        const Real b1 = speed * (norm(cross(turn, exact_arm)) + norm(cross(theta, turn)) * length / 3) / 8;
+        PathSegment unbased = a.path;  // the computed arm counts as exact
+        unbased.base.setIdentity();
+        const Real deviation = sampled_deviation(unbased, Y, 12);
+        broken += deviation > b0 || deviation > b1;
+        second += b1 < b0;
+        const Real least = std::min(b0, b1), computed = arc_deviation(t, w, Y);
+        below += computed < least;
+        above += computed > least * (1 + Real(1e-14)) + Real(1e-14) * speed * length * (speed + norm(theta) * speed);
+    }
+    CHECK(broken == 0);
+    CHECK(second > 100);
+    CHECK(below == 0);
+    CHECK(above == 0);
+}
+
+TEST_CASE("over a part of an arc the deviation falls with the square of its length") {
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> uniform;
+    int broken = 0;
+    for (int i = 0; i < 800; ++i) {
+        const Arc a = random_arc(random);
+        const double s = uniform(random), h = (1 - s) * uniform(random);
+        const Vector3 Y = arm(a);
+        const RealVector exact_arm{Y[0], Y[1], Y[2]};
+        const Vector3 &t = a.path.rotation_vector_t0, &w = a.path.rotation_vector_step;
+        const RealVector x0 = turned(t, w, Real(s), exact_arm), x1 = turned(t, w, Real(s) + Real(h), exact_arm);
+        Real largest = 0;
+        for (int k = 1; k < 8; ++k) {
+            const Real part_of = Real(k) / 8;
+            RealVector x = turned(t, w, Real(s) + part_of * Real(h), exact_arm);
+            for (int j = 0; j < 3; ++j) x[j] -= (1 - part_of) * x0[j] + part_of * x1[j];
+            largest = std::max(largest, norm(x));
+        }
+        broken += largest > Real(arc_deviation(t, w, Y)) * Real(h) * Real(h);
+    }
+    CHECK(broken == 0);
+}
+
 TEST_CASE("chord deviation bounds hold on a hundred thousand dense samples", "[slow]") {
     CHECK(violations({closed_form, interval}, 100'000, 3) == std::vector<int>{0, 0});
 }
