@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
     CommonOptions common;
     add_common_options(program, common);
     const std::vector<Command> commands{add_validate(program, common), add_simulate(program, common), add_clearance(program, common),
-                                        add_gradient(program, common), add_optimise(program, common)};
+                                        add_gradient(program, common), add_optimise(program, common), add_ccd(program)};
     for (const Command& command : commands) command.app->fallthrough();
     program.require_subcommand(1);
     program.footer(

@@ -31,6 +31,7 @@ Command add_simulate(CLI::App& program, const CommonOptions& common);
 Command add_clearance(CLI::App& program, const CommonOptions& common);
 Command add_gradient(CLI::App& program, const CommonOptions& common);
 Command add_optimise(CLI::App& program, const CommonOptions& common);
+Command add_ccd(CLI::App& program);
 
 /// From now on the first Ctrl-C asks the work to stop with what it has; a second one ends the program at once.
 void catch_interrupts();

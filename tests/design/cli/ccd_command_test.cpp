@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// `fettle ccd` from outside: keys, exit codes, messages. FETTLE_PROGRAM (a definition or the environment) says where the program is.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fettle/tests/support/shared_files.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+using fettle::tests::support::shared_file;
+
+std::string program() {
+    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
+    return FETTLE_PROGRAM;
+}
+
+struct Answer {
+    int code = -1;
+    std::string out;
+    Json json() const { return Json::parse(out, nullptr, false); }
+};
+
+Answer run(const std::string& arguments, bool with_errors = false) {
+    const std::string command = "'" + program() + "' ccd " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
+    Answer answer;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
+    const int status = ::pclose(pipe);
+    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return answer;
+}
+
+/// Query files of a point that passes through, or beside, a triangle.
+class Queries {
+public:
+    Queries() : root(fs::temp_directory_path() / ("fettle_ccd_command_" + std::to_string(::getpid()))) { fs::create_directories(root); }
+    ~Queries() { fs::remove_all(root); }
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(root / name) << text;
+        return (root / name).string();
+    }
+    /// `x`: of the point, which falls from z = 1 to z = -1; the triangle is (0 0 0), (1 0 0), (0 1 0).
+    static std::string query(const std::string& x, const std::string& truth) {
+        const std::string triangle = "0,1,0,1,0,1" + truth + "\n1,1,0,1,0,1" + truth + "\n0,1,1,1,0,1" + truth + "\n";
+        return x + ",1,4,1,1" + truth + "\n" + triangle + x + ",1,4,-1,1" + truth + "\n" + triangle;
+    }
+    fs::path root;
+};
+
+}  // namespace
+
+TEST_CASE("ccd: counts, keys and exit codes") {
+    const Queries q;
+    const std::string file = q.write("a_vf.csv", Queries::query("1,4", ",1") + Queries::query("2,1", ",0") + Queries::query("4,1", ",0"));
+    for (const std::string method : {"default", "inclusion", "conservative"}) {
+        const Answer answer = run(file + " --json --method " + method);
+        CHECK(answer.code == 0);
+        const Json json = answer.json();
+        CHECK(json["status"] == "ok");
+        CHECK(json["queries"] == 3);
+        CHECK(json["truth_hits"] == 1);
+        CHECK(json["hits"] == 1);
+        CHECK(json["false_negatives"] == 0);
+        CHECK(json["false_positives"] == 0);
+        for (const char* key : {"mean_microseconds", "median_microseconds", "worst_microseconds"}) CHECK(json[key].get<double>() >= 0);
+        CHECK(json["files"].size() == 1);
+        CHECK(json["files"][0]["file"] == file);
+        CHECK(json["method"] == (method == "inclusion" ? "inclusion" : "conservative"));
+    }
+    // The point of the second query passes at 1 from the triangle: at most 1.5 is a hit, at most 0.5 is none.
+    CHECK(run(file + " --json --minimum-separation 1.5m").json()["false_positives"] == 1);
+    CHECK(run(file + " --json --minimum-separation 1.5").json()["minimum_separation"] == 1.5);
+    CHECK(run(file + " --json --minimum-separation 500mm").json()["false_positives"] == 0);
+    const Answer text = run(file);
+    CHECK(text.code == 0);
+    CHECK(text.out.find("a_vf.csv") != std::string::npos);
+    CHECK(text.out.find("in all") != std::string::npos);
+}
+
+TEST_CASE("ccd: a contact that the file claims and nobody finds is a violation, no truth is null") {
+    const Queries q;
+    const Answer missed = run(q.write("b_vf.csv", Queries::query("1,4", ",1") + Queries::query("2,1", ",1")) + " --json");
+    CHECK(missed.code == 1);
+    CHECK(missed.json()["status"] == "missed");
+    CHECK(missed.json()["false_negatives"] == 1);
+    CHECK(missed.json()["missed"][0]["query"] == 1);
+    const Answer untold = run(q.write("c_vf.csv", Queries::query("1,4", "")) + " --json");
+    CHECK(untold.code == 0);
+    CHECK(untold.json()["hits"] == 1);
+    CHECK(untold.json()["truth_hits"].is_null());
+    CHECK(untold.json()["false_negatives"].is_null());
+    CHECK(untold.json()["false_positives"].is_null());
+    // Several files, a folder: the counts of truth are over the queries that have one.
+    const Json both = run(q.root.string() + " --json").json();
+    CHECK(both["queries"] == 3);
+    CHECK(both["queries_with_truth"] == 2);
+    CHECK(both["files"].size() == 2);
+}
+
+TEST_CASE("ccd: bad input and usage end with 3 and the place") {
+    const Queries q;
+    const std::string broken = q.write("d_vf.csv", "0,1,0,1,0,1\n0,1,0,1,0,q\n");
+    const Answer answer = run(broken + " --json");
+    CHECK(answer.code == 3);
+    CHECK(answer.json()["status"] == "error");
+    CHECK(answer.json()["errors"][0]["where"] == broken + ":2");
+    CHECK(run("").code == 3);
+    CHECK(run("/nowhere/x.csv").code == 3);
+    const std::string good = q.write("e.csv", Queries::query("1,4", ",1"));
+    CHECK(run(good, true).out.find("--type") != std::string::npos);
+    CHECK(run(good).code == 3);
+    CHECK(run(good + " --type vertex-face").code == 0);
+    const std::string typed = q.write("f_vf.csv", Queries::query("1,4", ",1"));
+    for (const std::string option : {"--method nonsense", "--minimum-separation=-1mm", "--minimum-separation 1parsec", "--tolerance 0",
+                                     "--deviation none", "--type edge"}) {
+        CAPTURE(option);
+        CHECK(run(typed + " " + option).code == 3);
+    }
+    const Answer help = run("--help");
+    CHECK(help.code == 0);
+    CHECK(help.out.find("Example") != std::string::npos);
+}
+
+TEST_CASE("ccd: the public queries") {
+    FETTLE_NEEDS_SHARED();
+    const Answer linear =
+        run(shared_file("ccd/sample-queries") + " " + shared_file("ccd/scalable/cloth-funnel/queries/227vf.csv") + " --json");
+    CHECK(linear.code == 0);
+    CHECK(linear.json()["false_negatives"] == 0);
+    CHECK(linear.json()["queries"].get<int>() > 4779);
+    CHECK(linear.json()["queries_with_truth"] == linear.json()["queries"]);
+    for (const std::string bound : {"closed-form", "interval"}) {
+        const Answer rigid = run(shared_file("ccd/rigid/wrecking-ball") + " --json --deviation " + bound);
+        CHECK(rigid.code == 0);
+        CHECK(rigid.json()["queries"] == 193);
+        CHECK(rigid.json()["hits"] == 0);
+        CHECK(rigid.json()["truth_hits"].is_null());
+        CHECK(rigid.json()["files"][0]["kind"] == "rigid");
+    }
+}
