@@ -13,6 +13,9 @@ namespace {
 /// Share of the first gap at which an approach counts as a hit.
 constexpr double gap_share = 0.1;
 
+/// However many are allowed: advancement that needs more creeps within rounding, where more of it proves next to nothing.
+constexpr int most_directions = 5000;
+
 /// Steps along fixed planes before planes that turn are tried as well.
 constexpr int patience = 2;
 
@@ -43,7 +46,7 @@ public:
         SeparatingPlane s = plane_at(0);
         if (!(s.gap > 0)) return {true, 0};
         threshold_ = std::min(options_.tolerance, gap_share * s.gap);
-        for (int i = 0; i < options_.max_iterations; ++i) {
+        for (int i = 0; i < std::min(options_.max_iterations, most_directions); ++i) {
             if (i > 0) s = better(plane_at(time_), s);
             if (!(s.gap > threshold_)) break;
             if (!advance(s)) break;

@@ -31,7 +31,8 @@
 
 namespace fettle::core::contact {
 
-/// As linear_ccd; `options.method` is ignored. Past options.max_iterations directions the answer is a hit at the time proven so far.
+/// As linear_ccd; `options.method` is ignored. Past options.max_iterations directions, or 5000 of them, the answer is a hit at the time
+/// proven so far.
 LinearCcdResult conservative_advancement(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
                                          const LinearCcdOptions& options = {});
 

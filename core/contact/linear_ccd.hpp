@@ -21,7 +21,7 @@ struct LinearCcdOptions {
     LinearCcdMethod method = LinearCcdMethod::conservative_advancement;
     double tolerance = 1e-6;  ///< [m] advancement: a hit is reported where distance - dmin <= min(tolerance, a tenth of the first gap);
                               ///< inclusion: size of a box's image, so hits are within sqrt(3) (tolerance + dmin)
-    int max_iterations = 1'000'000;  ///< directions or boxes; past it the answer is a conservative hit. Advancement has needed at most 78.
+    int max_iterations = 1'000'000;  ///< directions or boxes; past it the answer is a conservative hit. Advancement: at most 5000 (78 have been needed).
 };
 
 struct LinearCcdResult {
@@ -32,8 +32,9 @@ struct LinearCcdResult {
 /// Do the primitives come within `dmin` for some time in [0, 1], the vertices moving from `t0` to `t1`?
 /// toi is 0 only for pairs that start within dmin, as far as doubles can tell (conservative_advancement.hpp). NaN and infinities are hits
 /// at 0. Contract: dmin >= 0. Vertex order: PairVertices.
-/// Measured on the public queries (one thread, -O2): advancement 0 misses, 0.23 us a query on sample-queries, 2.6 us on scalable;
-/// inclusion 0 misses, hundreds of times as long.
+/// Measured on the public queries (one thread, -O2): advancement 0 misses, 0.10 us a query on sample-queries, 1.2 us on scalable, at most
+/// 10 us; inclusion 0 misses, 500 and 260 us, at most 0.3 s. Advancement on 6 million slivers, near-parallel edges and mixed sizes from
+/// 1e-6 to 1e6 that nearly meet: 1.5 us, at most 0.3 ms.
 LinearCcdResult linear_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
                            const LinearCcdOptions& options = {});
 

@@ -67,6 +67,14 @@ PointEdges point_edges(PairType type, const Differences& r) {
     return pe;
 }
 
+/// Of a triangle: the one across from the longest edge.
+Eigen::Index corner_of_shorter_edges(const Differences& r) {
+    const double e01 = (row(r, 0) - row(r, 1)).squaredNorm(), e12 = (row(r, 1) - row(r, 2)).squaredNorm(),
+                 e20 = (row(r, 2) - row(r, 0)).squaredNorm();
+    if (e12 >= e01) return e12 >= e20 ? 0 : 1;
+    return e01 >= e20 ? 2 : 1;
+}
+
 /// The closest of the vertex-edge cases.
 ClosestDirection closest_point_edge(PairType type, const Differences& r) {
     const PointEdges pe = point_edges(type, r);
@@ -136,15 +144,16 @@ SeparatingPlane separating_plane_at_rest(const Differences& r, const Vector3& la
 }
 
 ClosestDirection closest_direction(PairType type, const Differences& r) {
-    // Triangle: edges from t0 and the point from t0. Edges: both, and from b0 to a0.
-    const Vector3 w = row(r, 0), a = type == PairType::point_triangle ? w - row(r, 1) : row(r, 2) - w,
-                  b = type == PairType::point_triangle ? w - row(r, 2) : w - row(r, 1);
+    const bool face = type == PairType::point_triangle;
+    // Triangle: the two shorter edges, and the point, from the vertex they share (in a sliver the longer ones are parallel to rounding).
+    // Edges: both, and the difference of their starts.
+    const Eigen::Index c = face ? corner_of_shorter_edges(r) : 0;
+    const Vector3 w = row(r, c), a = face ? w - row(r, (c + 1) % 3) : row(r, 2) - w, b = face ? w - row(r, (c + 2) % 3) : w - row(r, 1);
     const Vector3 n = a.cross(b);
     const double nn = n.squaredNorm();
     // By cross products rather than sums of products of lengths: resolves angles down to rounding instead of its square root.
     const double first = w.cross(b).dot(n), second = a.cross(w).dot(n);
-    const bool inside = type == PairType::point_triangle ? first > 0 && second > 0 && nn - first - second > 0
-                                                         : -first > 0 && -first < nn && second > 0 && second < nn;
+    const bool inside = face ? first > 0 && second > 0 && nn - first - second > 0 : -first > 0 && -first < nn && second > 0 && second < nn;
     if (nn > 0 && inside) {
         const double height = n.dot(w);
         return {n, height * height / nn};

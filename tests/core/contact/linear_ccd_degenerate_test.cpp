@@ -35,7 +35,7 @@ std::vector<Case> cases() {
     const PairVertices crossed{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, -1, 0), Vector3(0, 1, 0)};
     const PairVertices parallel{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
     const PairVertices beside{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(2, 0, 0), Vector3(3, 0, 0)};
-    const PairVertices nearly{Vector3(-1, 0, 1), Vector3(1, 0x1p-40, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
+    const PairVertices nearly{Vector3(-1, -0x1p-40, 1), Vector3(1, 0x1p-40, 1), Vector3(-0.5, 0, 0), Vector3(2, 0, 0)};
     const PairVertices collinear{Vector3(-3, 0, 0), Vector3(-2, 0, 0), Vector3(0, 0, 0), Vector3(2, 0, 0)};
     const PairVertices flat{Vector3(-2, -2, 0), Vector3(-1, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0)};
     const PairVertices shrunk{Vector3(0.5, 0, 1), Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
