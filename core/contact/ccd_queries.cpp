@@ -217,6 +217,15 @@ std::string lower_extension(const fs::path& path) {
     return extension;
 }
 
+/// Of files found in a folder. JSON that begins with an array is truth, or the boxes that come with it.
+bool may_hold_queries(const fs::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension != ".json") return extension == ".csv";
+    std::ifstream in(path);
+    char first = 0;
+    return !(in >> first && first == '[');
+}
+
 }  // namespace
 
 Result<CcdQueries> read_ccd_queries(const std::string& path, const std::optional<PairType>& type) {
@@ -239,10 +248,8 @@ Result<std::vector<std::string>> find_ccd_query_files(const std::vector<std::str
         } else if (fs::is_directory(path, code)) {
             std::vector<std::string> below;
             for (fs::recursive_directory_iterator it(path, code), end; !code && it != end; it.increment(code)) {
-                const std::string name = it->path().string(), extension = lower_extension(it->path());
                 std::error_code not_a_file;
-                if (!it->is_regular_file(not_a_file) || ends_in(name, truth_ending)) continue;
-                if (extension == ".csv" || extension == ".json") below.push_back(name);
+                if (it->is_regular_file(not_a_file) && may_hold_queries(it->path())) below.push_back(it->path().string());
             }
             if (code) errors.push_back({ErrorCode::file_unreadable, path, "cannot be read: " + code.message()});
             if (!code && below.empty()) errors.push_back({ErrorCode::file_not_found, path, "no .csv or .json file in this folder"});

@@ -34,7 +34,7 @@ struct RigidQuery {
     PairType type = PairType::point_triangle;
     kinematics::PathSegment a, b;  ///< base is the identity: the file's rotation vectors are interpolated as they stand; steps are
                                    ///< differences of the file's numbers, rounded
-    PairVertices X;  ///< order of curved_ccd
+    PairVertices X;                ///< order of curved_ccd
 };
 
 /// What one file holds.
@@ -51,8 +51,8 @@ struct CcdQueries {
 ///         `where` is FILE:LINE, or file and JSON pointer.
 base::Result<CcdQueries> read_ccd_queries(const std::string& path, const std::optional<PairType>& type = {});
 
-/// Each path that is a folder replaced by the .csv and .json files below it, sorted; files that hold truth alone (*_mma_bool.json) are left
-/// out. Errors: file_not_found; a folder without any such file.
+/// Each path that is a folder replaced by the .csv and .json files below it, sorted, but for JSON that is an array (truth, boxes). Files of
+/// truth (*_mma_bool.json) are passed over where they are named, too. Errors: file_not_found; a folder without any such file.
 base::Result<std::vector<std::string>> find_ccd_query_files(const std::vector<std::string>& paths);
 
 }  // namespace fettle::core::contact

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/core/geometry/interval.hpp"
 
 namespace fettle::core::contact {
 
@@ -22,14 +21,16 @@ constexpr double inflate = 1 + 32 * u;
 Interval3 exact(const Vector3& v) { return {Interval(v.x()), Interval(v.y()), Interval(v.z())}; }
 
 /// R(theta) Y = Y + sinc(x) theta x Y + 1/2 sinc(x/2)^2 theta x (theta x Y).
-Interval3 rotated(const Interval3& theta, const Interval3& Y) {
-    const Interval x = sqrt(square(theta[0]) + square(theta[1]) + square(theta[2]));
-    const Interval a = sinc(x);
-    const Interval b = Interval(0.5) * square(sinc(Interval(0.5) * x));
-    const Interval3 once = cross(theta, Y), twice = cross(theta, once);
+Interval3 rotated(const IntervalTurn& turn, const Interval3& Y) {
+    const Interval3 once = cross(turn.theta, Y), twice = cross(turn.theta, once);
     Interval3 r;
-    for (std::size_t k = 0; k < 3; ++k) r[k] = Y[k] + a * once[k] + b * twice[k];
+    for (std::size_t k = 0; k < 3; ++k) r[k] = Y[k] + turn.a * once[k] + turn.b * twice[k];
     return r;
+}
+
+IntervalTurn turn_by(const Interval3& theta) {
+    const Interval x = sqrt(square(theta[0]) + square(theta[1]) + square(theta[2]));
+    return {theta, sinc(x), Interval(0.5) * square(sinc(Interval(0.5) * x))};
 }
 
 }  // namespace
@@ -53,19 +54,28 @@ double arc_deviation_cubic(const Vector3& theta, const Vector3& w, const Vector3
     return ((middle - 0.5 * (start + end)).norm() + speed * speed * speed * arm / (72 * 1.7320508075688772)) * inflate + rounding;
 }
 
-double arc_deviation_interval(const Vector3& theta, const Vector3& w, const Vector3& Y) {
-    const Interval3 arm = exact(Y), start = exact(theta);
+IntervalArc::IntervalArc(const Vector3& theta, const Vector3& w) {
+    const Interval3 start = exact(theta);
     Interval3 end, during;
     for (std::size_t k = 0; k < 3; ++k) {
         end[k] = start[k] + Interval(w[static_cast<Eigen::Index>(k)]);
         during[k] = hull(start[k], end[k]);
     }
-    const Interval3 arc = rotated(during, arm), at_start = rotated(start, arm), at_end = rotated(end, arm);
+    start_ = turn_by(start);
+    end_ = turn_by(end);
+    during_ = turn_by(during);
+}
+
+double IntervalArc::deviation(const Vector3& Y) const {
+    const Interval3 arm = exact(Y);
+    const Interval3 arc = rotated(during_, arm), at_start = rotated(start_, arm), at_end = rotated(end_, arm);
     Interval3 difference;
     for (std::size_t k = 0; k < 3; ++k) difference[k] = arc[k] - hull(at_start[k], at_end[k]);
     const double bound = norm_bound(difference);
     return std::isnan(bound) ? INFINITY : bound;
 }
+
+double arc_deviation_interval(const Vector3& theta, const Vector3& w, const Vector3& Y) { return IntervalArc(theta, w).deviation(Y); }
 
 double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X, DeviationBound bound) {
     const Vector3 Y = segment.base * X;

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/geometry/interval.hpp"
 
 namespace fettle::core::contact {
 
@@ -22,8 +23,24 @@ double arc_deviation(const Vector3& theta, const Vector3& w, const Vector3& Y);
 /// B3 (three rotations).
 double arc_deviation_cubic(const Vector3& theta, const Vector3& w, const Vector3& Y);
 
-/// The paper's: distance of the box of the arc, by interval arithmetic over R(theta + [0, 1] w), to the box of the chord.
-/// First order in |w|; infinite if something overflows.
+/// A box of rotation vectors and the coefficients of its rotations: sinc(x), 1/2 sinc(x/2)^2.
+struct IntervalTurn {
+    geometry::Interval3 theta;
+    geometry::Interval a, b;
+};
+
+/// The paper's bound: distance of the box of the arc, by interval arithmetic over R(theta + [0, 1] w), to the box of the chord.
+/// First order in |w|; infinite if something overflows. What does not depend on the arm is worked out once.
+class IntervalArc {
+public:
+    IntervalArc(const Vector3& theta, const Vector3& w);
+    double deviation(const Vector3& Y) const;
+
+private:
+    IntervalTurn start_, end_, during_;
+};
+
+/// The same for one arm.
 double arc_deviation_interval(const Vector3& theta, const Vector3& w, const Vector3& Y);
 
 /// Bound of |computed - exact| for rotation(theta + s w) * (base * X), |X| <= radius and base orthonormal to 1e-6, s <= s_end in [0, 1]:

@@ -73,9 +73,9 @@ public:
     /// Interval bound over the piece [s, s + h].
     double interval_deviation(double s, double h) const {
         if (speed_ == 0) return 0;
-        const Vector3 start = theta_ + s * w_, turn = h * w_;
+        const IntervalArc arc(theta_ + s * w_, h * w_);
         double largest = 0;
-        for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc_deviation_interval(start, turn, arms_[i]));
+        for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc.deviation(arms_[i]));
         return largest * inflate;
     }
 

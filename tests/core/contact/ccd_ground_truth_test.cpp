@@ -135,6 +135,20 @@ TEST_CASE("the public truth of linear queries is what exact arithmetic says", "[
     CHECK(different == 0);
 }
 
+TEST_CASE("curved CCD by the inclusion method on the public rigid queries") {
+    FETTLE_NEEDS_SHARED();
+    CurvedCcdOptions options;
+    options.linear.method = LinearCcdMethod::inclusion;
+    for (const std::string folder : {"wrecking-ball", "kinematic"}) {
+        for (const CcdQueries& file : read_folder("rigid/" + folder)) {
+            const RigidQuery& q = file.rigid.at(0);
+            const CurvedCcdResult r = curved_ccd(q.type, q.a, q.b, q.X, 0, options);
+            CHECK(r.hit == (folder == "kinematic"));
+            CHECK(r.toi > 0);
+        }
+    }
+}
+
 TEST_CASE("curved CCD on the public rigid queries") {
     FETTLE_NEEDS_SHARED();
     for (const DeviationBound bound : {DeviationBound::closed_form, DeviationBound::interval}) {

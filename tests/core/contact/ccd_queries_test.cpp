@@ -150,7 +150,8 @@ TEST_CASE("folders become their files, sorted, without files of truth") {
     f.write("b/2vf.csv", "");
     f.write("b/1.json", "");
     f.write("a/3ee.csv", "");
-    f.write("mma_bool/3ee_mma_bool.json", "");
+    f.write("mma_bool/3ee_mma_bool.json", "[true]");
+    f.write("boxes/3ee.json", "\n [[1, 2]]");
     f.write("LICENSE", "");
     const std::string root = f.root.string();
     const auto files = find_ccd_query_files({root, root + "/b/2vf.csv", root + "/mma_bool/3ee_mma_bool.json"});

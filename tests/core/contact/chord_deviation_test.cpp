@@ -142,6 +142,21 @@ TEST_CASE("arc_deviation is the least of B0 and B1, and both hold") {
     CHECK(above == 0);
 }
 
+TEST_CASE("closed form and interval bound hold each other: neither is below the other's truth, and short arcs favour the closed form") {
+    std::mt19937_64 random(8);
+    int above = 0, apart = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Arc a = random_arc(random);
+        const double speed = a.path.rotation_vector_step.norm(), closed = closed_form(a), bound = interval(a);
+        if (speed <= 0.5) above += closed > bound;
+        // The interval bound is of first order: the box of the arc, no larger than the arc's length and its angle's error allow.
+        const double angle = a.path.rotation_vector_t0.norm() + speed;
+        apart += speed <= 0.5 && bound > 12 * (1 + angle) * (1 + angle) * speed * a.X.norm() + 1e-12 * a.X.norm();
+    }
+    CHECK(above == 0);
+    CHECK(apart == 0);
+}
+
 TEST_CASE("over a part of an arc the deviation falls with the square of its length") {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> uniform;
