@@ -22,14 +22,16 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double stalled_step = 1e-3;  // a step this short, again and again, means that the way is blocked
 constexpr double smallest_drive = 1e-4;
+constexpr int longest_rest = 12;         // iterations
+constexpr double relaxed_motion = 0.25;  // of dhat: pushed bodies that move no more have given way
 constexpr int stalled_iterations = 50;
-constexpr int stagnant_iterations = 12;      // without a smaller residual, when rounding is all that is left
+constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (method.md section 9)
+constexpr double largest_turn = 0.3;           // of one iteration [rad], or twice what the body turns in a step as it goes
+constexpr double largest_shift = 0.1;          // of the scene's size, or twice what the body moves
+constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
 constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
 constexpr double friction_resolution = 0.1;  // of eps_v
-constexpr double raise_below = 1e-2;         // of dhat: kappa is raised where pairs come closer
-constexpr double kappa_step = 4;
-constexpr double largest_kappa_ratio = 1e6;
-constexpr double usable_residual = 1e-8;  // of a solve to rounding that stagnates: the adjoint's accuracy
+constexpr double usable_residual = 1e-8;     // of a solve to rounding that stagnates: the adjoint's accuracy
 
 Vector6 coordinates(const ChartPoint& p) {
     Vector6 y;
@@ -81,7 +83,6 @@ public:
         } while (frictional && another_round());
         result_.contacts = std::move(contacts_);
         result_.friction = std::move(problem_.friction);
-        result_.kappa = problem_.kappa;
         return std::move(result_);
     }
 
@@ -151,19 +152,10 @@ private:
         return std::min(options_.velocity_tolerance, friction_resolution * model_.friction.eps_v);
     }
 
-    // Far inside the activation distance the barrier is as good as a wall, and a hard one to solve against.
-    void raise_kappa() {
-        if (!model_.adaptive_kappa || options_.to_rounding || problem_.kappa >= largest_kappa_ratio * model_.kappa) return;
-        if (!(contacts_.minimum_distance - model_.dmin < raise_below * model_.dhat)) return;
-        energy::set_kappa(problem_, kappa_step * problem_.kappa);
-        value_ = potential(points_, result_.poses);
-    }
-
     // One Newton iteration. @return whether to go on.
     bool iterate() {
         if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted);
         if (result_.iterations > 0) find_contacts();
-        raise_kappa();
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
         Direction direction;
@@ -186,10 +178,11 @@ private:
         const double fraction = search(direction);
         // What is pushed must have time to give way: drive less where little was possible, more where much was.
         if (resting_ > 0) {
-            --resting_;
+            const bool relaxed = fraction == 1 && direction.motion <= relaxed_motion * model_.dhat;
+            resting_ = relaxed ? 0 : resting_ - 1;
         } else if (!arrived) {
             drive_ = fraction < 0.25 ? std::max(smallest_drive, 0.25 * drive_) : std::min(1.0, 2 * drive_);
-            resting_ = fraction < 0.25 ? 2 : 0;
+            resting_ = fraction < 0.25 ? longest_rest : 0;
         }
         if (fraction == 0 && !arrived && drive_ > smallest_drive) {
             penalty_ *= 10;
@@ -200,10 +193,11 @@ private:
             return true;
         }
         if (fraction == 0) {
-            if (arrived && slow) return stop(NewtonStatus::converged);
+            if (near_enough(direction) && slow) return stop(NewtonStatus::converged);
             return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
         }
         if (direction.drive > 0) stalled_ = fraction * direction.drive < stalled_step ? stalled_ + 1 : 0;
+        if (!arrived && stalled_ >= stalled_iterations && near_enough(direction)) return stop(NewtonStatus::converged);
         if (!arrived && stalled_ >= stalled_iterations)
             return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
         // A full exact step this small leaves an error of its square over the gap: rounding.
@@ -297,6 +291,7 @@ private:
             const auto span = clock_.charge(SolvePhase::linear_solve);
             scatter(dofs_, linear_.solve(rhs), direction.step);
         }
+        shorten(direction);
         for (std::size_t i = 0; i < n; ++i) {
             direction.slope += d.gradient[i].dot(direction.step[i]);
             bool solved_for = false;
@@ -305,6 +300,22 @@ private:
                 direction.motion = std::max(
                     direction.motion, direction.step[i].head<3>().norm() + direction.step[i].tail<3>().norm() * model_.bodies[i].radius);
         }
+    }
+
+    // A nearly singular Hessian sends bodies round the world, where every search is dear and nothing is gained.
+    void shorten(Direction& direction) const {
+        double fraction = 1;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const Matrix34 stride = problem_.pose_hat[i] - pose_matrix(problem_.poses_t0[i]);
+            const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
+            const double shift = std::max(largest_shift * model_.diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
+            const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
+            fraction = std::min(fraction, shift / std::max(shift, step.head<3>().norm()));
+            fraction = std::min(fraction, turn / std::max(turn, step.tail<3>().norm()));
+        }
+        if (fraction == 1) return;
+        for (Vector6& step : direction.step) step *= fraction;
+        direction.drive *= fraction;
     }
 
     std::vector<ChartPoint> moved(const Direction& direction, double fraction) const {
@@ -367,6 +378,9 @@ private:
         return 0;
     }
 
+    // Prescribed coordinates are met to this where contact leaves no more (a gap that closes altogether).
+    bool near_enough(const Direction& direction) const { return direction.remaining_norm <= prescribed_tolerance * model_.diagonal; }
+
     NewtonStatus failure(const Direction& direction) const {
         return direction.remaining_norm > 0 ? NewtonStatus::blocked : NewtonStatus::not_converged;
     }
@@ -375,7 +389,7 @@ private:
         return describe_failure({problem_, contacts_, direction.remaining, limiting_, direction.residual, cause});
     }
 
-    energy::StepProblem problem_;  // kappa and the friction lag change from round to round
+    energy::StepProblem problem_;  // the friction lag changes from round to round
     const model::Model& model_;
     const std::vector<Vector6>& targets_;
     const FreeDofs& dofs_;

@@ -10,9 +10,6 @@
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
 /// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from
 /// sliding.
-///
-/// Where the model lets kappa adapt, it is multiplied by four whenever a pair comes within a hundredth of dhat; the stepper lets it fall
-/// again.
 #pragma once
 
 #include <functional>
@@ -43,7 +40,6 @@ struct NewtonResult {
     int friction_rounds = 0;
     contact::ContactSet contacts;   ///< at the end of the path
     contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
-    double kappa = 0;               ///< at the end; may be above the problem's
     double residual = 0;            ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
 };
 

@@ -68,11 +68,13 @@ Vector6 scripted_target(const model::Body& body, const kinematics::Pose& pose, d
     return out;
 }
 
-// Kappa was raised where pairs came close; once they are well apart it may fall again.
-double next_kappa(const model::Model& model, const solver::NewtonResult& solved) {
-    constexpr double well_apart = 0.1, fall = 0.5;
-    if (solved.contacts.minimum_distance - model.dmin < well_apart * model.dhat) return solved.kappa;
-    return std::max(model.kappa, fall * solved.kappa);
+// Far inside the activation distance the barrier is as good as a wall, and hard to solve against: the next step has a stiffer one.
+double next_kappa(const model::Model& model, double kappa, const contact::ContactSet& contacts) {
+    constexpr double close = 1e-2, well_apart = 0.1, rise = 4, fall = 0.5, largest = 1e4;
+    if (!model.adaptive_kappa) return kappa;
+    const double gap = contacts.minimum_distance - model.dmin;
+    if (gap < close * model.dhat) return std::min(largest * model.kappa, rise * kappa);
+    return gap < well_apart * model.dhat ? kappa : std::max(model.kappa, fall * kappa);
 }
 
 }  // namespace
@@ -114,7 +116,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     if (result.status != SimulationStatus::ok) return result;
     result.path = stored_path(model, state, solved.path);
     result.state.time = state.time + model.timestep;
-    result.state.kappa = next_kappa(model, solved);
+    result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     std::vector<kinematics::Pose> end = solved.poses;
     for (kinematics::Pose& pose : end) pose.rotation = kinematics::orthonormalised(pose.rotation);
     result.state.history = energy::advanced(model, state.history, problem, std::move(end));

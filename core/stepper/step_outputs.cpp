@@ -108,11 +108,10 @@ StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& p
                          const StepState& end) {
     StepOutputs out;
     out.time = end.time;
-    out.kappa = solved.kappa;
+    out.kappa = problem.kappa;
     for (std::size_t i = 0; i < model.bodies.size(); ++i)
         if (model.bodies[i].moments(3, 3) > 0) add_body(model, model.bodies[i], end.history.poses[i], end.history.velocities[i], out);
     energy::StepProblem last = problem;
-    energy::set_kappa(last, solved.kappa);
     last.friction = solved.friction;
     for (const contact::BodyPairContacts& list : solved.contacts.pairs)
         for (const contact::ContactPair& pair : list.contacts) out.contact_energy += pair_potential(pair, last.barrier) / last.weight;

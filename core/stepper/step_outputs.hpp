@@ -46,7 +46,7 @@ struct StepOutputs {
     std::vector<DriveForce> drives;      ///< of the bodies with prescribed coordinates that need any
 };
 
-/// @param problem  as it was handed to the solver; `solved` holds friction and kappa as they were at the end.
+/// @param problem  as it was handed to the solver; `solved` holds the friction of the last round.
 StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& problem, const solver::NewtonResult& solved,
                          const StepState& end);
 
