@@ -75,10 +75,11 @@ Errors check_mass(const scene::Body& body, const std::string& where) {
     const bool strict = body.mesh_policy == MeshPolicy::strict;
     if (body.mass_kind == MassKind::volume &&
         !(strict ? geometry::is_closed(mesh) : geometry::is_nearly_closed(mesh.vertices, mesh.triangles))) {
-        return {{ErrorCode::mesh_invalid, where + "/mesh",
-                 name +
-                     "its mesh is not closed, so that a density per volume gives it no mass; close it, make it static, or state what the "
-                     "density is per"}};
+        return {
+            {ErrorCode::mesh_invalid, where + "/mesh",
+             name +
+                 "its mesh is not closed, so that a density per volume gives it no mass; close it, make it static, or say with `mass_per` "
+                 "what its density is per"}};
     }
     const double amount = scene::unit_moments(mesh, body.mass_kind)(3, 3);
     if (amount > 0 && std::isfinite(amount)) return {};

@@ -7,6 +7,7 @@
 
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/scene/fixture_state.hpp"
+#include "fettle/core/scene/index_rows.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/core/scene/mesh_reader.hpp"
 #include "fettle/core/scene/placement.hpp"
@@ -124,23 +125,6 @@ void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, double 
     for (int dof = 0; dof < 6 && body.type == BodyType::dynamic_body; ++dof) {
         if (fixed[dof]) body.prescribed[dof] = MotionCurve{};
     }
-}
-
-/// Rows of vertex indices, each `columns` long and below `limit`.
-template <std::size_t columns>
-std::vector<std::array<int, columns>> index_rows(const JsonNode& node, int limit) {
-    std::vector<std::array<int, columns>> rows;
-    for (const JsonNode& row : node.elements()) {
-        const auto entries = row.elements();
-        if (entries.size() != columns) {
-            row.fail(ErrorCode::wrong_type, "a list of " + std::to_string(columns) + " vertex indices is wanted, found " + row.shown());
-            continue;
-        }
-        std::array<int, columns> indices{};
-        for (std::size_t i = 0; i < columns; ++i) indices[i] = entries[i].integer(0, limit - 1).value_or(0);
-        rows.push_back(indices);
-    }
-    return rows;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/scene/placement.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -49,25 +50,22 @@ void turn_triangles(geometry::Mesh& mesh) {
 
 std::vector<geometry::Mesh> split_shells(const geometry::Mesh& mesh) {
     if (mesh.triangles.empty()) return {mesh};
-    std::vector<geometry::Mesh> parts(mesh.shell_names.size());
-    for (std::size_t s = 0; s < parts.size(); ++s) {
-        std::vector<int> new_index(static_cast<std::size_t>(mesh.vertices.cols()), -1);
-        std::vector<geometry::Triangle> triangles;
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            if (mesh.triangle_shell[t] != static_cast<int>(s)) continue;
-            triangles.push_back(mesh.triangles[t]);
-            for (const int v : mesh.triangles[t]) new_index[static_cast<std::size_t>(v)] = 0;
-        }
+    std::vector<std::vector<geometry::Triangle>> triangles(mesh.shell_names.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        triangles[static_cast<std::size_t>(mesh.triangle_shell[t])].push_back(mesh.triangles[t]);
+    }
+    std::vector<geometry::Mesh> parts;
+    std::vector<int> new_index(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+    for (std::size_t s = 0; s < triangles.size(); ++s) {
         std::vector<int> kept;
-        for (std::size_t v = 0; v < new_index.size(); ++v) {
-            if (new_index[v] < 0) continue;
-            new_index[v] = static_cast<int>(kept.size());
-            kept.push_back(static_cast<int>(v));
-        }
-        for (auto& triangle : triangles) {
+        for (const auto& triangle : triangles[s]) kept.insert(kept.end(), triangle.begin(), triangle.end());
+        std::sort(kept.begin(), kept.end());
+        kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+        for (std::size_t i = 0; i < kept.size(); ++i) new_index[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
+        for (auto& triangle : triangles[s]) {
             for (int& v : triangle) v = new_index[static_cast<std::size_t>(v)];
         }
-        parts[s] = geometry::make_mesh(mesh.shell_names[s], mesh.vertices(Eigen::all, kept), std::move(triangles));
+        parts.push_back(geometry::make_mesh(mesh.shell_names[s], mesh.vertices(Eigen::all, kept), std::move(triangles[s])));
     }
     return parts;
 }

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/scene_body.hpp"
+
+#include <algorithm>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/scene/index_rows.hpp"
+#include "fettle/core/scene/mesh_reader.hpp"
+#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/scene/placement.hpp"
+#include "fettle/core/scene/scene_motion.hpp"
+
+namespace fettle::core::scene {
+namespace {
+
+using base::ErrorCode;
+
+const std::vector<std::string_view> body_keys{"name",
+                                              "mesh",
+                                              "mesh_unit",
+                                              "shape",
+                                              "vertices",
+                                              "edges",
+                                              "triangles",
+                                              "scale",
+                                              "density",
+                                              "mass_per",
+                                              "material",
+                                              "mu",
+                                              "type",
+                                              "position",
+                                              "rotation",
+                                              "rotation_vector",
+                                              "reference_point",
+                                              "linear_velocity",
+                                              "angular_velocity",
+                                              "fixed",
+                                              "prescribed",
+                                              "script",
+                                              "force",
+                                              "torque",
+                                              "group",
+                                              "split_components"};
+
+}  // namespace
+
+std::optional<std::string> read_material_name(const JsonNode& node, const MaterialDensities& materials) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, density] : materials) names.push_back(name);
+    if (!node.is_string() || !names.empty()) return node.choice(names);
+    node.fail(ErrorCode::inconsistent, "the material " + node.shown() + " is not described: this scene has no `materials`");
+    return std::nullopt;
+}
+
+std::vector<Body> SceneBodies::read(const JsonNode& node) {
+    Body body;
+    body.where = node.where();
+    node.allow_keys(body_keys);
+    if (!node.is_object()) return {body};
+    read_name(node.require("name"), body);
+    read_geometry(node, body);
+    body.pose = read_pose(node, unit_, {});
+    body.reference_point = node["reference_point"].length3(unit_);
+    const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
+    body.type = type == "static" ? BodyType::static_body : type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
+    read_motion(node, unit_, body);
+    read_mass(node, body);
+    read_group(node["group"], body);
+    return components(node, std::move(body));
+}
+
+void SceneBodies::read_name(const JsonNode& node, Body& body) {
+    body.name = node.string().value_or("");
+    if (!node.is_string()) return;
+    if (body.name.empty() || body.name.find_first_of(":,") != std::string::npos) {
+        node.fail(ErrorCode::out_of_range, "a body's name is not empty and holds no `:` and no `,`; found " + node.shown());
+    } else if (!names_.insert(body.name).second) {
+        node.fail(ErrorCode::inconsistent, "another body is called " + node.shown() + " already; names are unique");
+    }
+}
+
+void SceneBodies::read_geometry(const JsonNode& node, Body& body) {
+    const JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
+    const int sources = static_cast<int>(mesh.exists()) + static_cast<int>(shape.exists()) + static_cast<int>(vertices.exists());
+    if (sources != 1) {
+        node.fail(sources > 1 ? ErrorCode::inconsistent : ErrorCode::missing_key,
+                  "a body has either a `mesh` (a file), or a `shape`, or `vertices` with their `edges` and `triangles`");
+        return;
+    }
+    for (const char* key : {"edges", "triangles"}) {
+        if (node[key].exists() && !vertices.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` join `vertices`");
+    }
+    if (node["mesh_unit"].exists() && !mesh.exists())
+        node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
+    if (mesh.exists()) read_mesh_file(node, body);
+    if (shape.exists()) make_shape(shape, body);
+    if (vertices.exists()) read_inline(node, body);
+    const JsonNode scale = node["scale"];
+    if (!scale.exists()) return;
+    Vector3 factors = Vector3::Ones();
+    if (scale.is_array()) {
+        factors = scale.vector3().value_or(factors);
+        if (!(factors.minCoeff() > 0)) scale.fail(ErrorCode::out_of_range, "every scale factor must be greater than 0");
+    } else {
+        factors *= scale.number(positive).value_or(1);
+    }
+    scale_mesh(body.mesh, factors);
+}
+
+void SceneBodies::read_mesh_file(const JsonNode& node, Body& body) {
+    const JsonNode mesh = node["mesh"];
+    MeshReadOptions options;
+    options.unit = unit_;
+    options.weld = true;
+    if (const auto name = node["mesh_unit"].choice({"um", "mm", "cm", "m", "in", "ft"}))
+        options.unit = base::metres_per_unit(*name).value();
+    const auto name = mesh.string();
+    if (!name) return;
+    const auto file = find_mesh_file(*name, document_.path(), options_.mesh_dirs, mesh.where());
+    if (!file) return report(file.errors(), mesh);
+    const auto found = read_mesh(*file, options);
+    if (!found) return report(found.errors(), mesh);
+    body.mesh = *found;
+}
+
+void SceneBodies::make_shape(const JsonNode& node, Body& body) {
+    node.allow_keys({"generator", "dimensions", "counts"});
+    ShapeSpec spec;
+    spec.generator = node.require("generator").string().value_or("");
+    for (const auto& [name, value] : node["dimensions"].members()) spec.dimensions[name] = value.length(unit_).value_or(0);
+    for (const auto& [name, value] : node["counts"].members()) spec.counts[name] = value.integer(0).value_or(0);
+    body.shape = spec;
+    if (spec.generator.empty()) return;
+    if (!options_.shape_generator) {
+        node.fail(ErrorCode::unsupported, "shape \"" + spec.generator + "\" cannot be made here: this program was given no generators");
+        return;
+    }
+    auto made = options_.shape_generator(spec);
+    if (!made) return report(made.errors(), node);
+    body.mesh = std::move(made).value();
+}
+
+void SceneBodies::read_inline(const JsonNode& node, Body& body) {
+    const std::size_t faults = document_.errors().size();
+    geometry::Mesh mesh;
+    mesh.name = body.name;
+    const auto rows = node["vertices"].elements();
+    if (node["vertices"].is_array() && rows.empty()) node["vertices"].fail(ErrorCode::out_of_range, "a body needs a vertex");
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        mesh.vertices.col(static_cast<Eigen::Index>(i)) = rows[i].length3(unit_).value_or(Vector3::Zero());
+    }
+    const auto edges = index_rows<2>(node["edges"], static_cast<int>(rows.size()));
+    mesh.triangles = index_rows<3>(node["triangles"], static_cast<int>(rows.size()));
+    for (std::size_t e = 0; e < edges.size() && document_.errors().size() == faults; ++e) {
+        if (mesh.vertices.col(edges[e][0]) != mesh.vertices.col(edges[e][1])) continue;
+        node["edges"].elements()[e].fail(ErrorCode::out_of_range, "an edge joins two different places");
+    }
+    if (document_.errors().size() > faults) return;
+    geometry::build_connectivity(mesh, edges);
+    body.mesh = geometry::weld_exactly(mesh);
+}
+
+void SceneBodies::read_mass(const JsonNode& node, Body& body) {
+    const std::string per = node["mass_per"].choice({"volume", "area", "length", "vertex"}).value_or("volume");
+    body.mass_kind = per == "area"     ? MassKind::area
+                     : per == "length" ? MassKind::length
+                     : per == "vertex" ? MassKind::vertex
+                                       : MassKind::volume;
+    std::optional<double> density = node["density"].number(positive);
+    body.mu = node["mu"].number(not_negative);
+    body.material = read_material_name(node["material"], densities_).value_or("");
+    const auto known = densities_.find(body.material);
+    const bool given = node["density"].exists();
+    if (!given && known != densities_.end() && body.mass_kind == MassKind::volume) density = known->second;
+    if (body.type == BodyType::dynamic_body && !given && !density) node.require("density");
+    body.density = density.value_or(body.density);
+}
+
+void SceneBodies::read_group(const JsonNode& node, Body& body) {
+    if (!node.is_string()) {
+        body.group = node.integer(0).value_or(-1);
+        return;
+    }
+    const std::string name = node.string().value();
+    const auto place = std::find(group_names_.begin(), group_names_.end(), name);
+    body.group = -2 - static_cast<int>(place - group_names_.begin());
+    if (place == group_names_.end()) group_names_.push_back(name);
+}
+
+void SceneBodies::number_groups(std::vector<Body>& bodies) const {
+    int highest = -1;
+    for (const Body& body : bodies) highest = std::max(highest, body.group);
+    for (Body& body : bodies) {
+        if (body.group < -1) body.group = highest + (-1 - body.group);
+    }
+}
+
+std::vector<Body> SceneBodies::components(const JsonNode& node, Body body) {
+    const JsonNode key = node["split_components"];
+    if (!key.boolean().value_or(false) || body.mesh.vertices.cols() == 0) return {std::move(body)};
+    if (body.shape) key.fail(ErrorCode::inconsistent, "a generated `shape` is one part");
+    if (body.reference_point)
+        key.fail(ErrorCode::inconsistent, "each component has its own centre of mass; a `reference_point` is of one body");
+    Eigen::Index kept = 0;
+    std::vector<geometry::Mesh> parts = split_shells(body.mesh);
+    std::size_t edges = 0;
+    for (const auto& part : parts) {
+        kept += part.vertices.cols();
+        edges += part.edges.size();
+    }
+    if (body.mesh.triangles.empty() || kept < body.mesh.vertices.cols() || edges < body.mesh.edges.size()) {
+        key.fail(ErrorCode::inconsistent, "the mesh has edges or points that belong to no triangle, and so to no component");
+    }
+    if (parts.size() == 1) return {std::move(body)};
+    std::vector<Body> bodies;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        bodies.push_back(body);
+        bodies.back().name += "-" + std::to_string(i);
+        bodies.back().mesh = std::move(parts[i]);
+        if (names_.insert(bodies.back().name).second) continue;
+        key.fail(ErrorCode::inconsistent,
+                 "component " + std::to_string(i) + " would be called `" + bodies.back().name + "`, as another body is");
+    }
+    return bodies;
+}
+
+/// Errors of meshes and generators know nothing of the file: say which body asked.
+void SceneBodies::report(const base::Errors& errors, const JsonNode& node) {
+    for (const auto& error : errors) {
+        const bool placed = error.where.empty() || error.where == node.where();
+        node.fail(error.code, (placed ? "" : error.where + ": ") + error.message);
+    }
+}
+
+}  // namespace fettle::core::scene

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// One body of our own scene files (`bodies[i]`). The rest of the file: scene_reader.hpp. Keys: scene.schema.json.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fettle/core/scene/scene_reader.hpp"
+
+namespace fettle::core::scene {
+
+using MaterialDensities = std::map<std::string, std::optional<double>>;  ///< of all materials of a file, where stated [kg/m^3]
+
+/// The name of a material that is listed; out_of_range with the nearest one otherwise.
+std::optional<std::string> read_material_name(const JsonNode& node, const MaterialDensities& materials);
+
+class SceneBodies {
+public:
+    /// All outlive this object. @param unit  of lengths [m].
+    SceneBodies(JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities)
+        : document_(document), options_(options), unit_(unit), densities_(densities) {}
+
+    /// One body, or one per edge-connected component (`split_components`). Faults go to the document; values read after one are never used.
+    std::vector<Body> read(const JsonNode& node);
+
+    /// Gives numbers to the groups that have names; after all bodies have been read.
+    void number_groups(std::vector<Body>& bodies) const;
+
+private:
+    void read_name(const JsonNode& node, Body& body);
+    void read_geometry(const JsonNode& node, Body& body);
+    void read_mesh_file(const JsonNode& node, Body& body);
+    void make_shape(const JsonNode& node, Body& body);
+    void read_inline(const JsonNode& node, Body& body);
+    void read_mass(const JsonNode& node, Body& body);
+    void read_group(const JsonNode& node, Body& body);
+    std::vector<Body> components(const JsonNode& node, Body body);
+    void report(const base::Errors& errors, const JsonNode& node);
+
+    JsonDocument& document_;
+    const ReadOptions& options_;
+    double unit_;
+    const MaterialDensities& densities_;
+    std::set<std::string> names_;
+    std::vector<std::string> group_names_;  ///< of group -2, -3, ... until number_groups
+};
+
+}  // namespace fettle::core::scene
