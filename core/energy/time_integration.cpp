@@ -44,6 +44,18 @@ Matrix34 free_acceleration(const model::Model& model, const model::Body& body) {
     return out;
 }
 
+// What a rotation's first and second derivative must be: [omega] R and ([alpha] + [omega]^2) R. The rest of V and A is the trapezoidal
+// rule's own, does no work on the motion, and grows without bound where contact kicks it.
+void make_rigid(const Matrix3& R, Matrix34& velocity, Matrix34& acceleration) {
+    const auto skew_part = [&R](const Matrix34& m) {
+        const Matrix3 w = m.leftCols<3>() * R.transpose();
+        return Matrix3(0.5 * (w - w.transpose()));
+    };
+    const Matrix3 omega = skew_part(velocity), alpha = skew_part(acceleration);
+    velocity.leftCols<3>() = omega * R;
+    acceleration.leftCols<3>() = (alpha + omega * omega) * R;
+}
+
 }  // namespace
 
 History start_history(const model::Model& model) {
@@ -97,8 +109,10 @@ History advanced(const model::Model& model, const History& history, const Integr
         const Matrix34 pose = pose_matrix(poses[i]), before = pose_matrix(history.poses[i]);
         next.velocities[i] =
             is_prescribed(model.bodies[i]) ? Matrix34((pose - before) / h) : Matrix34((pose - step.slip_reference[i]) / step.slip_time);
-        if (model.integrator == Integrator::newmark)
+        if (model.integrator == Integrator::newmark) {
             next.accelerations[i] = (pose - before - h * history.velocities[i]) / (0.25 * h * h) - history.accelerations[i];
+            make_rigid(poses[i].rotation, next.velocities[i], next.accelerations[i]);
+        }
         if (model.integrator == Integrator::bdf2) next.poses_before.push_back(before);
     }
     if (model.integrator == Integrator::bdf2) next.velocities_before = history.velocities;

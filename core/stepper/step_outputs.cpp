@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/solver/newton.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 
@@ -83,6 +84,20 @@ private:
     std::map<std::pair<int, int>, ContactForce> forces_;
 };
 
+// The solver leaves out the inertia and loads of bodies that it does not solve for.
+Vector6 inertia_if_held(const energy::StepProblem& problem, std::size_t i, const kinematics::ChartPoint& point, const Pose& pose) {
+    const model::Body& body = problem.model->bodies[i];
+    bool held = body.moments(3, 3) > 0;
+    for (int k = 0; k < 6; ++k) held = held && !is_free(body, k);
+    if (!held) return Vector6::Zero();
+    kinematics::PoseGradient gradient;
+    energy::add_inertia_gradient(pose, problem.pose_hat[i], body.moments, gradient);
+    Vector6 out = tangent_gradient(gradient);
+    out.head<3>() -= problem.weight * body.force;
+    out.tail<3>() = kinematics::left_jacobian(point.rotation_vector).transpose() * out.tail<3>();
+    return out;
+}
+
 // The residual of the prescribed coordinates is what the drive supplies; in world axes, out of the chart's.
 std::vector<DriveForce> drive_forces(const model::Model& model, const energy::StepProblem& problem, const solver::NewtonResult& solved) {
     const auto& points = solved.path.back();
@@ -91,7 +106,7 @@ std::vector<DriveForce> drive_forces(const model::Model& model, const energy::St
     std::vector<DriveForce> out;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const model::Body& body = model.bodies[i];
-        Vector6 residual = d.gradient[i] / problem.weight;
+        Vector6 residual = (d.gradient[i] + inertia_if_held(problem, i, points[i], solved.poses[i])) / problem.weight;
         for (int k = 0; k < 6; ++k)
             if (is_free(body, k)) residual[k] = 0;
         if (residual.isZero(0)) continue;

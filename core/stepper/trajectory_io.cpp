@@ -125,6 +125,23 @@ void write_node(Writer& out, const ChartPoint& node) {
     out.vector(numbers);
 }
 
+void write_checkpoint(Writer& out, const Checkpoint& checkpoint) {
+    const energy::History& history = checkpoint.state.history;
+    out.text += '{';
+    out.key("step");
+    out.number(checkpoint.step);
+    out.key("kappa");
+    out.number(checkpoint.state.kappa);
+    for (const auto& [name, list] : {std::pair{"velocities", &history.velocities},
+                                     {"poses_before", &history.poses_before},
+                                     {"velocities_before", &history.velocities_before},
+                                     {"accelerations", &history.accelerations}}) {
+        out.key(name);
+        out.list(12 * list->size(), ",", [&](std::size_t i) { out.number((*list)[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)]); });
+    }
+    out.text += '}';
+}
+
 class Reader {
 public:
     explicit Reader(JsonDocument& document) : document_(document) {}
@@ -132,7 +149,7 @@ public:
     base::Result<StoredTrajectory> read() {
         const JsonNode root = document_.root();
         root.allow_keys({"fettle_trajectory", "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies",
-                         "poses", "steps"});
+                         "poses", "steps", "checkpoint"});
         root.require("fettle_trajectory").integer(1, 1);
         if (!document_.errors().empty()) return document_.errors();
         out_.path = document_.path();
@@ -147,6 +164,7 @@ public:
         read_steps(root.require("steps"));
         if (!document_.errors().empty()) return document_.errors();
         check_path(root);
+        if (root["checkpoint"].exists()) read_checkpoint(root["checkpoint"]);
         finish_model(root.require("geometry_hash"));
         if (!document_.errors().empty()) return document_.errors();
         return std::move(out_);
@@ -284,6 +302,28 @@ private:
         }
     }
 
+    void read_checkpoint(const JsonNode& node) {
+        node.allow_keys({"step", "kappa", "velocities", "poses_before", "velocities_before", "accelerations"});
+        Checkpoint checkpoint;
+        checkpoint.step = node.require("step").integer(0, static_cast<int>(out_.trajectory.steps.size())).value_or(0);
+        StepState& state = checkpoint.state;
+        state.time = checkpoint.step * out_.trajectory.timestep;
+        state.kappa = node.require("kappa").number(scene::positive).value_or(1);
+        state.history = {out_.trajectory.poses[static_cast<std::size_t>(checkpoint.step)], read_rates(node.require("velocities"), false),
+                         read_rates(node.require("poses_before"), true), read_rates(node.require("velocities_before"), true),
+                         read_rates(node.require("accelerations"), true)};
+        out_.checkpoint = std::move(checkpoint);
+    }
+
+    std::vector<Matrix34> read_rates(const JsonNode& node, bool may_be_empty) {
+        const auto numbers = node.numbers().value_or(std::vector<double>{});
+        std::vector<Matrix34> out(numbers.size() / 12);
+        for (std::size_t i = 0; i < 12 * out.size(); ++i) out[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)] = numbers[i];
+        if (numbers.size() != 12 * body_count() && !(may_be_empty && numbers.empty()))
+            node.fail(ErrorCode::inconsistent, "12 numbers per body are wanted, " + std::to_string(numbers.size()) + " found");
+        return out;
+    }
+
     void finish_model(const JsonNode& hash) {
         for (std::size_t b = 0; b < body_count(); ++b) {
             out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
@@ -327,7 +367,7 @@ std::uint64_t geometry_hash(const model::Model& model) {
 }
 
 base::Errors write_trajectory(const std::filesystem::path& path, const Trajectory& trajectory, const model::Model& model,
-                              const std::string& scene_path) {
+                              const std::string& scene_path, const Checkpoint* checkpoint) {
     FETTLE_ASSERT(trajectory.body_names.size() == model.bodies.size() && trajectory.poses.size() == trajectory.steps.size() + 1,
                   "a trajectory that is not of this model");
     Writer out;
@@ -357,8 +397,31 @@ base::Errors write_trajectory(const std::filesystem::path& path, const Trajector
         out.list(nodes.size(), ",",
                  [&](std::size_t k) { out.list(model.bodies.size(), ",", [&](std::size_t b) { write_node(out, nodes[k][b]); }); });
     });
+    if (checkpoint) {
+        out.key("checkpoint");
+        write_checkpoint(out, *checkpoint);
+    }
     out.text += "}\n";
     return base::write_file_atomically(path, out.text);
+}
+
+base::Result<Simulation> resumable(const StoredTrajectory& stored, const model::Model& model) {
+    const auto refuse = [&](const std::string& why) {
+        return base::Error{ErrorCode::inconsistent, stored.path, "cannot be continued: " + why};
+    };
+    if (!stored.checkpoint) return refuse("it holds no checkpoint; trajectories that fettle simulate writes do");
+    if (geometry_hash(stored.model) != geometry_hash(model)) return refuse("its bodies or meshes are not those of the scene");
+    if (stored.trajectory.timestep != model.timestep)
+        return refuse("its time step is " + std::to_string(stored.trajectory.timestep) + " s, the scene's " +
+                      std::to_string(model.timestep) + " s");
+    const energy::History wanted = energy::start_history(model), &found = stored.checkpoint->state.history;
+    const bool bdf2 = model.integrator == scene::Integrator::bdf2 && stored.checkpoint->step > 0;
+    if (found.accelerations.size() != wanted.accelerations.size() || found.poses_before.empty() == bdf2)
+        return refuse("it was computed with another integrator");
+    Simulation out;
+    out.trajectory = stored.trajectory;
+    out.checkpoint = *stored.checkpoint;
+    return out;
 }
 
 bool is_trajectory_file(const std::filesystem::path& path) {

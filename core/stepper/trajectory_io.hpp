@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Trajectories as files that can be certified again without anything else: they hold the bodies' meshes and the continuous path, every
-/// number as the shortest decimal that reads back to the same double, bit for bit. What they do not hold is mass: they cannot be simulated
-/// on.
+/// number as the shortest decimal that reads back to the same double, bit for bit. What they do not hold is mass: to go on with a
+/// simulation takes its scene too.
 ///
 /// One JSON object (*.trajectory.json), lengths in metres, times in seconds, angles in radians:
 ///   fettle_trajectory  1, the version of this format
@@ -17,14 +17,19 @@
 ///   steps   [t][node][body]: 6 numbers px py pz rx ry rz. Between two nodes of step t, at s in [0, 1], a body point X is at
 ///           exp([r0 + s (r1 - r0)]) R X + p0 + s (p1 - p0), with R the rotation of poses[t][body]. The k-th of n segments covers
 ///           [t + k/n, t + (k+1)/n] time steps.
+///   checkpoint  optional; what a simulation of the scene needs to go on from poses[step] with the same bits: { step, kappa, velocities,
+///           poses_before, velocities_before, accelerations }, lists of 12 numbers per body (3 x 4, column by column; energy::History),
+///           empty where the integrator has no use for them
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::core::stepper {
@@ -34,6 +39,7 @@ struct StoredTrajectory {
     model::Model model;  ///< geometry, names, groups and contact distances; no density, moments, velocities, prescribed motion or loads
     std::string scene_path;
     std::string path;  ///< of the trajectory file
+    std::optional<Checkpoint> checkpoint;
 };
 
 /// FNV-1a over names, vertices (their bits, relative to the reference point), triangles and edges of all bodies.
@@ -41,7 +47,11 @@ std::uint64_t geometry_hash(const model::Model& model);
 
 /// Written whole or not at all (base/atomic_file.hpp). Contract: the trajectory is the model's, all numbers finite.
 [[nodiscard]] base::Errors write_trajectory(const std::filesystem::path& path, const Trajectory& trajectory, const model::Model& model,
-                                            const std::string& scene_path = {});
+                                            const std::string& scene_path = {}, const Checkpoint* checkpoint = nullptr);
+
+/// What SimulationOptions::resume takes, from a stored trajectory of `model`. Reports and outputs of its steps are not stored.
+/// Errors (inconsistent): other meshes, another time step or integrator, no checkpoint.
+base::Result<Simulation> resumable(const StoredTrajectory& stored, const model::Model& model);
 
 /// Is this file a trajectory, as far as its first key tells? False for anything that cannot be read.
 bool is_trajectory_file(const std::filesystem::path& path);

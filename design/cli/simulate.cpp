@@ -11,6 +11,7 @@
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/step_tables.hpp"
 #include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -24,7 +25,7 @@ using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
 struct Options {
-    std::string path, out;
+    std::string path, out, earlier;
     int steps = -1;
     double time = -1;
 };
@@ -69,8 +70,16 @@ int exit_code(SimulationStatus status) { return status == SimulationStatus::ok ?
 Errors write_outputs(const std::string& directory, const core::model::Model& model, const Simulation& simulation,
                      const std::string& scene_path, const Json& json) {
     const std::filesystem::path folder = directory;
-    Errors errors = core::stepper::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path);
+    Errors errors =
+        core::stepper::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
     if (!errors.empty()) return errors;
+    const std::vector<std::string> names = body_names(model);
+    for (const auto& [name, text] : {std::pair{"steps.csv", core::stepper::steps_csv(simulation)},
+                                     {"contacts.csv", core::stepper::contacts_csv(simulation, names)},
+                                     {"drives.csv", core::stepper::drives_csv(simulation, names)}}) {
+        errors = core::base::write_file_atomically(folder / name, text);
+        if (!errors.empty()) return errors;
+    }
     return core::base::write_file_atomically(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -85,6 +94,17 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
                                                  : loaded->steps;
     simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     simulate_options.should_stop = interrupted;
+    simulate_options.outputs = !options.out.empty();
+    Simulation earlier;
+    if (!options.earlier.empty()) {
+        const auto stored = core::stepper::read_trajectory(options.earlier);
+        if (!stored) return console.input_errors(stored.errors());
+        Result<Simulation> resumed = core::stepper::resumable(*stored, model);
+        if (!resumed) return console.input_errors(resumed.errors());
+        earlier = *std::move(resumed);
+        simulate_options.resume = &earlier;
+        console.narrate("going on from step " + std::to_string(earlier.checkpoint.step));
+    }
     const Simulation simulation = core::stepper::simulate(model, simulate_options);
     const core::stepper::SimulationReport& report = simulation.report;
     console.narrate("certifying the path");
@@ -124,8 +144,13 @@ Command add_simulate(CLI::App& program, const CommonOptions& common) {
     CLI::Option* steps =
         app->add_option("--steps", options->steps, "How many steps (default: the scene's end time)")->check(CLI::NonNegativeNumber);
     app->add_option("--time", options->time, "How long, in seconds")->check(CLI::NonNegativeNumber)->excludes(steps);
-    app->add_option("--out", options->out, "Folder for trajectory.json and result.json");
-    app->footer("Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out");
+    app->add_option("--out", options->out,
+                    "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
+                    "(forces between bodies) and drives.csv (what motors and guides supply)");
+    app->add_option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
+    app->footer(
+        "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
+        "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");
     return {app, [options, &common](Console& console) { return run_simulate(*options, common, console); }};
 }
 

@@ -6,14 +6,18 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
+#include <set>
 #include <tuple>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
-#include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/contact/contact_set.hpp"
+#include "fettle/tests/support/test_models.hpp"
 
 using namespace fettle;
 using namespace fettle::core;
 using namespace fettle::core::contact;
+using fettle::tests::support::box_mesh;
+using fettle::tests::support::make_body;
 
 namespace {
 
@@ -141,4 +145,137 @@ TEST_CASE("coverage ends where a body leaves its allowance", "[candidates]") {
     CHECK(covered_fraction(candidates, segment(0.09, 0.09)) == 1);
     CHECK(covered_fraction(candidates, segment(0.2, 0)) == Approx(0.5));
     CHECK(covered_fraction(candidates, segment(0.05, 0.4)) == Approx(0.25));
+}
+
+namespace {
+
+geometry::Mesh loose_mesh(const Matrix3X& vertices, const std::vector<geometry::Edge>& edges) {
+    geometry::Mesh mesh;
+    mesh.name = "loose";
+    mesh.vertices = vertices;
+    geometry::build_connectivity(mesh, edges);
+    return mesh;
+}
+
+// A body's primitives as segments and triangles with repeated corners: what the distance of two bodies is the least of.
+std::vector<geometry::Triangle> primitives(const geometry::Mesh& mesh) {
+    std::vector<geometry::Triangle> out = mesh.triangles;
+    for (const auto& e : mesh.edges) out.push_back({e[0], e[1], e[1]});
+    for (int p : mesh.codimensional_points) out.push_back({p, p, p});
+    return out;
+}
+
+double least_distance(const model::Body& a, const kinematics::Pose& pa, const model::Body& b, const kinematics::Pose& pb) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto at = [](const model::Body& body, const kinematics::Pose& pose, int v) {
+        return world_position(pose, body.mesh.vertices.col(v));
+    };
+    for (const auto& s : primitives(a.mesh))
+        for (const auto& t : primitives(b.mesh)) {
+            std::array<Vector3, 3> x, y;
+            for (int k = 0; k < 3; ++k) {
+                x[k] = at(a, pa, s[k]);
+                y[k] = at(b, pb, t[k]);
+            }
+            for (int k = 0; k < 3; ++k) {
+                least = std::min(least, geometry::point_triangle_distance_squared(x[k], y[0], y[1], y[2]));
+                least = std::min(least, geometry::point_triangle_distance_squared(y[k], x[0], x[1], x[2]));
+                for (int l = 0; l < 3; ++l)
+                    least = std::min(least, geometry::edge_edge_distance_squared(x[k], x[(k + 1) % 3], y[l], y[(l + 1) % 3]));
+            }
+        }
+    return std::sqrt(least);
+}
+
+}  // namespace
+
+TEST_CASE("contacts of points, wires and solids have the bodies' least distance, each once", "[candidates]") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    const auto vertices = [&](int n) {
+        Matrix3X x(3, n);
+        for (double& value : x.reshaped()) value = uniform(random);
+        return x;
+    };
+    int close = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        model::Model model;
+        model.dhat = 0.3;
+        std::vector<kinematics::Pose> poses;
+        const auto add = [&](geometry::Mesh mesh) {
+            poses.push_back(pose_at(random_segment(random, 0.9, 0, 0), 0));
+            model.bodies.push_back(make_body("b" + std::to_string(poses.size()), std::move(mesh), poses.back()));
+        };
+        add(loose_mesh(vertices(3), {}));
+        add(loose_mesh(vertices(2), {}));
+        add(loose_mesh(vertices(4), {{0, 1}, {1, 2}, {2, 3}}));
+        add(loose_mesh(vertices(3), {{0, 1}}));  // a wire and a point
+        add(box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)));
+        const int n = static_cast<int>(poses.size());
+        const Candidates candidates = find_candidates(model, poses, std::vector<MotionAllowance>(poses.size()));
+        const ContactSet contacts = find_contacts(model, candidates, poses);
+        for (int a = 0; a < n; ++a)
+            for (int b = a + 1; b < n; ++b) {
+                double found = std::numeric_limits<double>::infinity();
+                std::set<std::pair<PairType, std::array<int, 5>>> seen;
+                for (const BodyPairContacts& list : contacts.pairs) {
+                    if (std::minmax(list.first, list.second) != std::minmax(a, b)) continue;
+                    for (const ContactPair& pair : list.contacts) {
+                        found = std::min(found, std::sqrt(pair.closest.distance_squared));
+                        REQUIRE(seen.insert({pair.type, {list.first, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]}}).second);
+                    }
+                }
+                const double expected = least_distance(model.bodies[a], poses[a], model.bodies[b], poses[b]);
+                if (expected >= model.dhat) {
+                    REQUIRE(found == std::numeric_limits<double>::infinity());
+                    continue;
+                }
+                ++close;
+                REQUIRE(found == Approx(expected).margin(1e-12));
+            }
+    }
+    CHECK(close > 200);
+}
+
+TEST_CASE("two clouds of points meet in each pair of points once", "[candidates]") {
+    model::Model model;
+    model.dhat = 10;
+    std::vector<kinematics::Pose> poses(2);
+    poses[1].position = Vector3(0, 0, 3);
+    Matrix3X x(3, 3);
+    x << 0, 1, 2, 0, 0, 0, 0, 0, 0;
+    for (const kinematics::Pose& pose : poses) model.bodies.push_back(make_body("cloud", loose_mesh(x, {}), pose));
+    CHECK(find_contacts(model, find_candidates(model, poses, {{}, {}}), poses).count == 9);
+}
+
+TEST_CASE("many bodies are searched as few are", "[candidates]") {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> uniform(-2, 2);
+    model::Model model;
+    model.dhat = 0.1;
+    std::vector<kinematics::PathSegment> segments;
+    for (int i = 0; i < 40; ++i) {
+        kinematics::PathSegment s = random_segment(random, 0.1, 0.2, 0.3);
+        s.position_t0 = Vector3(uniform(random), uniform(random), uniform(random));
+        segments.push_back(s);
+        model.bodies.push_back(make_body("box", box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)), pose_at(s, 0)));
+    }
+    const std::vector<MotionAllowance> none(segments.size());
+    const Candidates all = find_candidates(model, segments, none);
+    std::size_t pairs = 0;
+    for (int a = 0; a < 40; ++a)
+        for (int b = a + 1; b < 40; ++b) {
+            model::Model two = model;
+            two.bodies = {model.bodies[a], model.bodies[b]};
+            const Candidates found = find_candidates(two, {segments[a], segments[b]}, {{}, {}});
+            if (found.pairs.empty()) continue;
+            REQUIRE(pairs < all.pairs.size());
+            CHECK(all.pairs[pairs].a == a);
+            CHECK(all.pairs[pairs].b == b);
+            CHECK(all.pairs[pairs].edge_edge.size() == found.pairs[0].edge_edge.size());
+            CHECK(all.pairs[pairs].vertex_triangle.size() == found.pairs[0].vertex_triangle.size());
+            ++pairs;
+        }
+    CHECK(pairs == all.pairs.size());
+    CHECK(pairs > 10);
 }
