@@ -20,6 +20,7 @@ constexpr double least_width = 0x1p-50;
 /// A box of (t, u, v): lower corner and widths, all dyadic and exact.
 struct Box {
     std::array<double, 3> low{0, 0, 0}, width{1, 1, 1};
+    bool small = false;  // as far as the tolerance asks: not to be halved
 };
 
 /// Earliest first; among equals the smallest, so that the search dives.
@@ -62,13 +63,11 @@ public:
     LinearCcdResult run() const {
         if (!finite_) return {true, 0};
         std::priority_queue<Box, std::vector<Box>, Later> queue;
-        queue.push({});
-        for (int i = 0; !queue.empty(); ++i) {
+        add({}, queue);
+        for (long boxes = 1; !queue.empty(); boxes += 2) {
             const Box box = queue.top();
+            if (box.small || boxes > options_.max_iterations) return {true, box.low[0]};
             queue.pop();
-            const Verdict verdict = judge(box);
-            if (verdict == Verdict::clear) continue;
-            if (verdict == Verdict::hit || i >= options_.max_iterations) return {true, box.low[0]};
             halve(box, queue);
         }
         return {};
@@ -135,6 +134,14 @@ private:
         for (std::size_t k = 0; k < 3; ++k) dimension_tolerance_[k] = std::max(least_width, tolerance_ / (3 * std::max(length[k], 1e-300)));
     }
 
+    /// Boxes that are clear never enter the queue.
+    template <class Queue>
+    void add(Box box, Queue& queue) const {
+        const Verdict verdict = judge(box);
+        box.small = verdict == Verdict::hit;
+        if (verdict != Verdict::clear) queue.push(box);
+    }
+
     template <class Queue>
     void halve(const Box& box, Queue& queue) const {
         std::size_t k = 0;
@@ -143,11 +150,11 @@ private:
         }
         Box half = box;
         half.width[k] = 0.5 * box.width[k];
-        queue.push(half);
+        add(half, queue);
         half.low[k] += half.width[k];
         // Points of a triangle have u + v <= 1.
         if (type_ == PairType::point_triangle && half.low[1] + half.low[2] > 1) return;
-        queue.push(half);
+        add(half, queue);
     }
 
     PairType type_;
