@@ -198,10 +198,11 @@ int run_ccd(const Options& options, Console& console) {
         text += tally_text(path, tally);
         all.add(tally);
         console.progress("querying", ++done, static_cast<int>(files->size()));
-        if (interrupted()) return exit_undecided;
+        if (interrupted()) break;
     }
+    const bool whole = done == static_cast<int>(files->size());
     Json json;
-    json["status"] = misses.empty() ? "ok" : "missed";
+    json["status"] = !misses.empty() ? "missed" : whole ? "ok" : "interrupted";
     json.update(tally_json(all));
     json["method"] = settings->ccd.linear.method == LinearCcdMethod::inclusion ? "inclusion" : "conservative";
     json["deviation"] = options.deviation;
@@ -212,7 +213,8 @@ int run_ccd(const Options& options, Console& console) {
     text += tally_text("in all", all);
     for (const Miss& miss : misses) text += formatted("missed: %s, query %zu (from 0)\n", miss.file.c_str(), miss.query);
     console.result(json, text);
-    return misses.empty() ? exit_done : exit_violated;
+    if (!misses.empty()) return exit_violated;
+    return whole ? exit_done : exit_undecided;
 }
 
 }  // namespace
