@@ -13,8 +13,8 @@
 /// bodies' bounds are charged twice: once for the ends of the chord, once for the rounded piece whose deviation is bounded.
 /// For |theta| = 4e5 rad at radius 1 that is 4e-10.
 ///
-/// The closed form of a piece of length h is h^2 times one rate (the least of B0 and B1 over the whole segment, for the vertex where that is
-/// largest) wherever the piece starts: (theta + s w) x w = theta x w. B3 takes three rotations a piece and has not paid here.
+/// The closed form of a piece of length h is h^2 times one rate (the least of B0 and B1 over the whole segment, for the vertex where that
+/// is largest) wherever the piece starts: (theta + s w) x w = theta x w. B3 takes three rotations a piece and has not paid here.
 ///
 /// Measured (tests/benchmarks/ccd_benchmark, one thread): wrecking-ball 0.26 us a query by the closed form, 4.7 us by the interval bound,
 /// none reported; kinematic 2.4 us and, out of pieces, 1.7 ms; random pairs that pass closely 0.18 and 1.4 us. Hence the default.
