@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/energy/time_integration.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 
 #include "fettle/core/energy/inertia.hpp"
 
@@ -17,43 +17,76 @@ bool is_prescribed(const model::Body& body) {
     return true;
 }
 
-// Pddot of one body under gravity and its loads: the minimum of |Pddot - a|_M over what its free coordinates allow, plus [omega]^2 R.
-Matrix34 free_acceleration(const model::Model& model, const model::Body& body) {
-    const Matrix3& R = body.pose_start.rotation;
-    const Matrix3 spin = body.velocity_start.leftCols<3>() * R.transpose();
+Vector3 axial(const Matrix3& m) { return 0.5 * Vector3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)); }
+
+// Generalised force (force, torque about q) that the accelerations Pddot of a body's points take.
+Vector6 force_of(const Matrix34& pddot, const Matrix4& moments, const Matrix3& R) {
+    const Matrix34 g = pddot * moments;
+    return kinematics::tangent_gradient({g.col(3), g.leftCols<3>() * R.transpose()});
+}
+
+// (a, alpha) under a generalised force at the angular velocity omega; prescribed coordinates have those of `held`.
+Vector6 rigid_acceleration(const model::Body& body, const Matrix3& R, const Vector3& omega, const Vector6& force, const Vector6& held) {
     Matrix34 bias = Matrix34::Zero();
-    bias.leftCols<3>() = spin * spin * R;
-    Matrix34 gravity = Matrix34::Zero();
-    gravity.col(3) = model.gravity;
-    const Matrix34 force = (gravity - bias) * body.moments;
-    kinematics::PoseGradient pull{force.col(3) + body.force, force.leftCols<3>() * R.transpose()};
-    Vector6 rhs = tangent_gradient(pull);
-    rhs.tail<3>() += body.torque;
+    bias.leftCols<3>() = cross_matrix(omega) * cross_matrix(omega) * R;
     Matrix6 h = inertia_hessian(R, body.moments);
+    Vector6 rhs = force - force_of(bias, body.moments, R);
+    for (int k = 0; k < 6; ++k)
+        if (!is_free(body, k)) rhs -= held[k] * h.col(k);
     for (int k = 0; k < 6; ++k) {
         if (is_free(body, k)) continue;
         h.row(k).setZero();
         h.col(k).setZero();
         h(k, k) = 1;
-        rhs[k] = 0;
+        rhs[k] = held[k];
     }
-    const Vector6 a = h.ldlt().solve(rhs);
-    Matrix34 out = bias;
-    out.leftCols<3>() += cross_matrix(a.tail<3>()) * R;
-    out.col(3) += a.head<3>();
+    return h.ldlt().solve(rhs);
+}
+
+Matrix34 pose_acceleration(const Matrix3& R, const Vector3& omega, const Vector6& a) {
+    Matrix34 out;
+    out << (cross_matrix(a.tail<3>()) + cross_matrix(omega) * cross_matrix(omega)) * R, a.head<3>();
     return out;
 }
 
-// What a rotation's first and second derivative must be: [omega] R and ([alpha] + [omega]^2) R. The rest of V and A is the trapezoidal
-// rule's own, does no work on the motion, and grows without bound where contact kicks it.
-void make_rigid(const Matrix3& R, Matrix34& velocity, Matrix34& acceleration) {
-    const auto skew_part = [&R](const Matrix34& m) {
-        const Matrix3 w = m.leftCols<3>() * R.transpose();
-        return Matrix3(0.5 * (w - w.transpose()));
-    };
-    const Matrix3 omega = skew_part(velocity), alpha = skew_part(acceleration);
-    velocity.leftCols<3>() = omega * R;
-    acceleration.leftCols<3>() = (alpha + omega * omega) * R;
+// Newmark's V and A at the end of a step. The trapezoidal rule for the nine entries of R would leave V and A with parts that no rotation
+// has, first order in h and growing wherever contact kicks them. The force that the step has balanced is exact, though: so A' follows from
+// it by Euler's equation, and V' = V + h/2 (A + A') for v and omega.
+struct RigidRates {
+    Matrix34 velocity, acceleration;
+};
+RigidRates newmark_rates(const model::Body& body, double h, const Matrix34& before, const Matrix34& V, const Matrix34& A,
+                         const kinematics::Pose& end) {
+    const Matrix34 numeric = (pose_matrix(end) - before - h * V) / (0.25 * h * h) - A;
+    const Vector6 force = force_of(numeric, body.moments, end.rotation);
+    const Matrix3 R0 = before.leftCols<3>();
+    const Vector3 omega0 = axial(V.leftCols<3>() * R0.transpose());
+    Vector6 a0, held;
+    a0 << A.col(3), axial(A.leftCols<3>() * R0.transpose());
+    held << numeric.col(3), axial(numeric.leftCols<3>() * end.rotation.transpose());
+    Vector6 a = a0;
+    Vector3 omega = omega0 + h * a0.tail<3>();
+    constexpr int sweeps = 4;  // each gains a factor of h |omega|
+    for (int k = 0; k < sweeps; ++k) {
+        a = rigid_acceleration(body, end.rotation, omega, force, held);
+        omega = omega0 + 0.5 * h * (a0 + a).tail<3>();
+    }
+    RigidRates out;
+    out.velocity << cross_matrix(omega) * end.rotation, Vector3(V.col(3) + 0.5 * h * (a0 + a).head<3>());
+    out.acceleration = pose_acceleration(end.rotation, omega, a);
+    return out;
+}
+
+// Under gravity and the body's own loads.
+Matrix34 start_acceleration(const model::Model& model, const model::Body& body) {
+    const Matrix3& R = body.pose_start.rotation;
+    Matrix34 gravity = Matrix34::Zero();
+    gravity.col(3) = model.gravity;
+    Vector6 force = force_of(gravity, body.moments, R);
+    force.head<3>() += body.force;
+    force.tail<3>() += body.torque;
+    const Vector3 omega = axial(body.velocity_start.leftCols<3>() * R.transpose());
+    return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
 }
 
 }  // namespace
@@ -64,7 +97,7 @@ History start_history(const model::Model& model) {
         history.poses.push_back(body.pose_start);
         history.velocities.push_back(body.velocity_start);
         if (model.integrator == Integrator::newmark)
-            history.accelerations.push_back(is_prescribed(body) ? Matrix34(Matrix34::Zero()) : free_acceleration(model, body));
+            history.accelerations.push_back(is_prescribed(body) ? Matrix34(Matrix34::Zero()) : start_acceleration(model, body));
     }
     return history;
 }
@@ -104,14 +137,19 @@ History advanced(const model::Model& model, const History& history, const Integr
     History next;
     const std::size_t n = poses.size();
     next.velocities.resize(n);
-    if (model.integrator == Integrator::newmark) next.accelerations.resize(n);
+    const bool newmark = model.integrator == Integrator::newmark;
+    if (newmark) next.accelerations.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Matrix34 pose = pose_matrix(poses[i]), before = pose_matrix(history.poses[i]);
-        next.velocities[i] =
-            is_prescribed(model.bodies[i]) ? Matrix34((pose - before) / h) : Matrix34((pose - step.slip_reference[i]) / step.slip_time);
-        if (model.integrator == Integrator::newmark) {
-            next.accelerations[i] = (pose - before - h * history.velocities[i]) / (0.25 * h * h) - history.accelerations[i];
-            make_rigid(poses[i].rotation, next.velocities[i], next.accelerations[i]);
+        if (is_prescribed(model.bodies[i])) {
+            next.velocities[i] = (pose - before) / h;
+            if (newmark) next.accelerations[i].setZero();
+        } else if (newmark) {
+            const RigidRates rates = newmark_rates(model.bodies[i], h, before, history.velocities[i], history.accelerations[i], poses[i]);
+            next.velocities[i] = rates.velocity;
+            next.accelerations[i] = rates.acceleration;
+        } else {
+            next.velocities[i] = (pose - step.slip_reference[i]) / step.slip_time;
         }
         if (model.integrator == Integrator::bdf2) next.poses_before.push_back(before);
     }

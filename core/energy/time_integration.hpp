@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Time integration as choices of P_hat and of the potentials' weight. method.md section 3.
-/// A step minimises 1/2 tr((P - P_hat) M (P - P_hat)^T) + weight (potentials), and its end velocity is V = (P - P_slip) / slip_time.
+/// A step minimises 1/2 tr((P - P_hat) M (P - P_hat)^T) + weight (potentials); contact slides at V = (P - P_slip) / slip_time, which is the
+/// end velocity too but for Newmark's.
 ///   implicit Euler  P_hat = P0 + h V0 + h^2 a                weight h^2        P_slip = P0                slip_time = h
 ///   BDF2            P_hat = P_slip + 2h/3 (4 V0 - V_-1)/3    weight (2h/3)^2   P_slip = (4 P0 - P_-1)/3   slip_time = 2h/3
 ///                           + (2h/3)^2 a;  the first step is one of implicit Euler
 ///   Newmark 1/4,1/2 P_hat = P0 + h V0 + h^2/4 (A0 + a)       weight h^2/4      P_slip = P0 + h/2 V0       slip_time = h/2
-///                   and A = (P - P0 - h V0) / (h^2/4) - A0, both V and A then freed of what no rotation has
+///                   then A by Euler's equation from the force that the step has balanced, V = V0 + h/2 (A0 + A), for v and omega
 /// with a the acceleration of gravity. Bodies that are prescribed altogether have V = (P - P0) / h.
 /// Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps energy, and rings in stiff contact.
 #pragma once
