@@ -21,7 +21,7 @@ struct LinearCcdOptions {
     LinearCcdMethod method = LinearCcdMethod::conservative_advancement;
     double tolerance = 1e-6;  ///< [m] advancement: a hit is reported where distance - dmin <= min(tolerance, a tenth of the first gap);
                               ///< inclusion: size of a box's image, so hits are within sqrt(3) (tolerance + dmin)
-    /// Directions (of which never more than 5000; 78 have been needed) or boxes; past it the answer is a conservative hit.
+    /// Directions (never more than 5000; 78 on the public queries) or boxes; past it the answer is a conservative hit.
     int max_iterations = 1'000'000;
 };
 
