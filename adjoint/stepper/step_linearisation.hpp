@@ -28,9 +28,11 @@ Errors factorise(const core::stepper::Trajectory& trajectory, int t, const Linea
 MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
                       const core::kinematics::BlockHessian& hessian, const MatrixX& rhs);
 
-/// What the sweeps cannot differentiate, by name: a body that moves freely whose moments are not density * solid_moments(vertices)
-/// (unsupported); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range).
-/// Contract: the trajectory belongs to the model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: integrators other than implicit Euler, the area-weighted barrier, friction (a coefficient
+/// above 0 between two bodies that may touch), torques, scripts of poses, and a body that moves freely whose moments are not
+/// density * solid_moments(vertices): a shell, a wire, points, a solid with capped openings (all unsupported); a step that turns a body by
+/// a full revolution or more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies,
+/// time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 #include "fettle/tests/support/test_models.hpp"
@@ -205,6 +206,54 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         CHECK(result.errors()[0].code == core::base::ErrorCode::unsupported);
         CHECK(result.errors()[0].message.find("brick") != std::string::npos);
         CHECK_FALSE(tangent_sweep(scene.model, trajectory, fettle::adjoint::zero_model_tangent(scene.model, scene.steps)));
+    }
+    const auto refused = [&](const std::string& what) {
+        const auto result = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(result.errors().size() == 1);
+        CAPTURE(result.errors()[0].message);
+        CHECK(result.errors()[0].code == core::base::ErrorCode::unsupported);
+        CHECK(result.errors()[0].message.find(what) != std::string::npos);
+        CHECK(tangent_sweep(scene.model, trajectory, fettle::adjoint::zero_model_tangent(scene.model, scene.steps)).errors().size() == 1);
+    };
+    SECTION("integrators") {
+        scene.model.integrator = core::scene::Integrator::bdf2;
+        refused("bdf2");
+        scene.model.integrator = core::scene::Integrator::newmark;
+        refused("newmark");
+    }
+    SECTION("area weights") {
+        scene.model.area_weighted = true;
+        refused("area_weighted");
+    }
+    SECTION("torque") {
+        scene.model.bodies[0].torque = {0, 1, 0};
+        refused("torque on 'brick'");
+    }
+    SECTION("shells, wires and points") {
+        core::model::Body& brick = scene.model.bodies[0];
+        brick.moments = brick.density * core::geometry::surface_moments(brick.mesh.vertices, brick.mesh.triangles);
+        refused("'brick'");
+        brick.mesh.triangles.clear();  // no solid at all
+        refused("'brick'");
+    }
+    SECTION("scripts") {
+        core::model::Body& brick = scene.model.bodies[0];
+        brick.type = core::scene::BodyType::kinematic_body;
+        brick.prescribed.fill(core::scene::MotionCurve{});
+        brick.script.times = {1};
+        brick.script.poses = {brick.pose_start};
+        refused("'brick' follows a script");
+    }
+    SECTION("friction, between bodies that may touch") {
+        SweepScene two = stack();
+        const core::stepper::Trajectory path = trajectory_of(two);
+        const std::vector<TrajectoryGradient> end{end_position(two, 0, 0)};
+        two.model.friction.mu.setConstant(0.5);
+        const auto result = reverse_sweep(two.model, path, end);
+        REQUIRE(result.errors().size() == 1);
+        CHECK(result.errors()[0].where == "friction");
+        for (core::model::Body& body : two.model.bodies) body.group = 1;
+        CHECK(reverse_sweep(two.model, path, end));
     }
     SECTION("a full turn in one step") {
         core::stepper::Trajectory fast = trajectory;
