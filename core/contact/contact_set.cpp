@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
@@ -67,22 +68,64 @@ kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, in
 
 }  // namespace
 
-ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
-    ContactSet set;
+namespace {
+
+// Contacts of one pair of bodies; vertices on the higher body come as a list of their own.
+struct ListContacts {
+    BodyPairContacts forward, backward;
+    double least = std::numeric_limits<double>::infinity();  // squared distance
+};
+
+ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double moved) {
     const double activation = model.dmin + model.dhat;
+    ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
+    for_each_pair(model, list, poses, activation + moved, [&](int first, int, ContactPair& pair) {
+        pair.closest = closest_points(pair.type, pair.x);
+        if (pair.closest.distance_squared >= activation * activation) return;
+        out.least = std::min(out.least, pair.closest.distance_squared);
+        (first == list.a ? out.forward : out.backward).contacts.push_back(pair);
+    });
+    for (BodyPairContacts* contacts : {&out.forward, &out.backward})
+        std::sort(contacts->contacts.begin(), contacts->contacts.end(),
+                  [](const ContactPair& x, const ContactPair& y) { return key_of(x) < key_of(y); });
+    return out;
+}
+
+double potential_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double moved,
+                    const BarrierParameters& parameters) {
+    const double activation_squared = parameters.activation * parameters.activation;
+    const double dmin_squared = parameters.dmin * parameters.dmin;
+    std::vector<std::tuple<int, Key, double>> terms;
+    for_each_pair(model, list, poses, parameters.activation + moved, [&](int first, int, ContactPair& pair) {
+        pair.closest = closest_points(pair.type, pair.x);
+        if (pair.closest.distance_squared >= activation_squared) return;
+        const double value =
+            pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters) : std::numeric_limits<double>::infinity();
+        terms.emplace_back(first, key_of(pair), value);
+    });
+    std::sort(terms.begin(), terms.end());
+    double sum = 0;
+    for (const auto& [first, key, value] : terms) sum += value;
+    return sum;
+}
+
+constexpr int pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
+
+}  // namespace
+
+ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
     const std::vector<double> moved = displacements(model, candidates, poses);
+    const int count = static_cast<int>(candidates.pairs.size());
+    std::vector<ListContacts> found(candidates.pairs.size());
+    base::parallel_for(count, pairs_a_piece, [&](int k) {
+        const BodyPairCandidates& list = candidates.pairs[k];
+        found[k] = contacts_of(model, list, poses, moved[list.a] + moved[list.b]);
+    });
+    ContactSet set;
     double least = std::numeric_limits<double>::infinity();
-    for (const BodyPairCandidates& list : candidates.pairs) {
-        BodyPairContacts forward{list.a, list.b, {}}, backward{list.b, list.a, {}};
-        for_each_pair(model, list, poses, activation + moved[list.a] + moved[list.b], [&](int first, int, ContactPair& pair) {
-            pair.closest = closest_points(pair.type, pair.x);
-            if (pair.closest.distance_squared >= activation * activation) return;
-            least = std::min(least, pair.closest.distance_squared);
-            (first == list.a ? forward : backward).contacts.push_back(pair);
-        });
-        for (BodyPairContacts* contacts : {&forward, &backward}) {
-            std::sort(contacts->contacts.begin(), contacts->contacts.end(),
-                      [](const ContactPair& x, const ContactPair& y) { return key_of(x) < key_of(y); });
+    for (ListContacts& list : found) {
+        least = std::min(least, list.least);
+        for (BodyPairContacts* contacts : {&list.forward, &list.backward}) {
             set.count += static_cast<int>(contacts->contacts.size());
             if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));
         }
@@ -93,36 +136,27 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
 
 double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses,
                          const BarrierParameters& parameters) {
-    const double activation_squared = parameters.activation * parameters.activation;
-    const double dmin_squared = parameters.dmin * parameters.dmin;
     const std::vector<double> moved = displacements(model, candidates, poses);
+    const int count = static_cast<int>(candidates.pairs.size());
+    std::vector<double> values(candidates.pairs.size());
+    base::parallel_for(count, pairs_a_piece, [&](int k) {
+        const BodyPairCandidates& list = candidates.pairs[k];
+        values[k] = potential_of(model, list, poses, moved[list.a] + moved[list.b], parameters);
+    });
     double sum = 0;
-    std::vector<std::tuple<int, Key, double>> terms;
-    for (const BodyPairCandidates& list : candidates.pairs) {
-        terms.clear();
-        for_each_pair(model, list, poses, parameters.activation + moved[list.a] + moved[list.b], [&](int first, int, ContactPair& pair) {
-            pair.closest = closest_points(pair.type, pair.x);
-            if (pair.closest.distance_squared >= activation_squared) return;
-            const double value =
-                pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters) : std::numeric_limits<double>::infinity();
-            terms.emplace_back(first, key_of(pair), value);
-        });
-        std::sort(terms.begin(), terms.end());
-        double pair_sum = 0;
-        for (const auto& [first, key, value] : terms) pair_sum += value;
-        sum += pair_sum;
-    }
+    for (const double value : values) sum += value;
     return sum;
 }
 
 void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& poses, const BarrierParameters& parameters, HessianKind kind,
                              std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
-    for (const BodyPairContacts& list : set.pairs) {
-        BodyPairSum sum;
+    std::vector<BodyPairSum> sums(set.pairs.size());
+    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_a_piece, [&](int k) {
+        const BodyPairContacts& list = set.pairs[k];
         for (const ContactPair& pair : list.contacts)
-            add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sum);
-        add_body_pair(list.first, list.second, sum, gradients, hessian);
-    }
+            add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sums[k]);
+    });
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
 }
 
 void add_body_pair(int first, int second, const BodyPairSum& sum, std::vector<kinematics::PoseGradient>& gradients,
