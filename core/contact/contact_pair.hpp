@@ -31,7 +31,8 @@ struct ContactPair {
     std::array<int, 2> edge{};    ///< edge_edge: indices of the two edges
     geometry::ClosestPoints closest;
     double mollifier_eps = 0;  ///< edge_edge: eps [m^4]
-    double weight = 1;         ///< on the potential: an area [m^2] if the barrier is area-weighted
+    double weight = 1;         ///< on the potential; if the barrier is area-weighted [m^2], half the vertex's area, or half the lesser of
+                               ///< the edges' (they cannot share more)
 };
 
 /// How many of the four vertices lie on the first body.

@@ -46,7 +46,7 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
         pair.edge = {ea, eb};
         pair.vertex = {va[0], va[1], vb[0], vb[1]};
         pair.x = {vertex(a, pa, va[0]), vertex(a, pa, va[1]), vertex(b, pb, vb[0]), vertex(b, pb, vb[1])};
-        pair.weight = model.area_weighted ? 0.25 * (a.edge_area[ea] + b.edge_area[eb]) : 1;
+        pair.weight = model.area_weighted ? 0.5 * std::min(a.edge_area[ea], b.edge_area[eb]) : 1;
         pair.mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
         visit(list.a, list.b, pair);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -266,6 +267,23 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
     return friction;
 }
 
+// Without area a vertex or edge would have no barrier.
+Errors check_areas(const Model& model) {
+    Errors errors;
+    if (!model.area_weighted) return errors;
+    for (const Body& body : model.bodies) {
+        const auto none = [](double area) { return !(area > 0); };
+        if (std::none_of(body.vertex_area.begin(), body.vertex_area.end(), none) &&
+            std::none_of(body.edge_area.begin(), body.edge_area.end(), none))
+            continue;
+        errors.push_back(
+            {ErrorCode::inconsistent, "body `" + body.name + "`",
+             "an area-weighted barrier needs surfaces: this body has points or edges without area; set `area_weighted` to false, "
+             "or give the body triangles"});
+    }
+    return errors;
+}
+
 }  // namespace
 
 void complete_geometry(Body& body) {
@@ -284,7 +302,10 @@ double choose_kappa(const Model& model) {
         if (body.type != BodyType::dynamic_body) continue;
         const double mass = body.moments(3, 3);
         const double acceleration = (model.gravity + body.force / mass).norm();
-        kappa = std::max({kappa, 0.1 * mass / (model.timestep * model.timestep), 4 * mass * acceleration / model.dhat});
+        const double wanted = std::max(0.1 * mass / (model.timestep * model.timestep), 4 * mass * acceleration / model.dhat);
+        // Half of a twentieth of its surface is what a body may rest on.
+        const double area = std::accumulate(body.vertex_area.begin(), body.vertex_area.end(), 0.0) / 40;
+        kappa = std::max(kappa, model.area_weighted && area > 0 ? wanted / area : wanted);
     }
     return kappa > 0 ? kappa : 1;
 }
@@ -316,6 +337,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     model.integrator = scene.integrator;
     model.area_weighted = scene.area_weighted;
     model.adaptive_kappa = !options.kappa && !scene.kappa;
+    if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
     errors = check_start(model);
     for (Error& error : errors) error.where = (scene.path.empty() ? "" : scene.path + ": ") + error.where;
