@@ -339,7 +339,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
-    errors = check_start(model);
+    if (options.check_start) errors = check_start(model);
     for (Error& error : errors) error.where = (scene.path.empty() ? "" : scene.path + ": ") + error.where;
     if (!errors.empty()) return errors;
     return model;

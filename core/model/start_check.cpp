@@ -231,6 +231,11 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
 
 }  // namespace
 
+std::optional<base::Error> check_start_pair(const Model& model, int a, int b) {
+    return check_pair(place(model.bodies[static_cast<std::size_t>(a)]), place(model.bodies[static_cast<std::size_t>(b)]), model,
+                      Messages(model));
+}
+
 base::Errors check_start(const Model& model) {
     std::vector<PlacedBody> bodies;
     for (const Body& body : model.bodies) bodies.push_back(place(body));

@@ -2,6 +2,8 @@
 /// Does a simulation start from a legal configuration? Intersections are decided exactly, on the world positions as rounded.
 #pragma once
 
+#include <optional>
+
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
 
@@ -13,5 +15,8 @@ namespace fettle::core::model {
 ///         closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
 /// Contract: hierarchies built.
 base::Errors check_start(const Model& model);
+
+/// The same of one pair, whether the model lets it collide or not; nothing if there is no fault.
+std::optional<base::Error> check_start_pair(const Model& model, int a, int b);
 
 }  // namespace fettle::core::model

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int default_steps = 1000;
 
+}  // namespace
+
 int step_count(const model::Model& model, const SimulationOptions& options) {
     if (options.steps >= 0) return options.steps;
     // A hair below an integer is that integer: end_time = 100 h must give 100 steps.
     if (model.end_time >= 0) return static_cast<int>(std::ceil(model.end_time / model.timestep - 1e-9));
     return default_steps;
 }
-
-}  // namespace
 
 const char* to_string(SimulationStatus status) {
     switch (status) {

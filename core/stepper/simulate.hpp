@@ -52,6 +52,9 @@ struct SimulationOptions {
     std::function<bool()> should_stop;             ///< optional, asked after each Newton iteration
 };
 
+/// How many steps that is for a model.
+int step_count(const model::Model& model, const SimulationOptions& options);
+
 struct StepReport {
     int newton_iterations = 0;
     int friction_rounds = 0;

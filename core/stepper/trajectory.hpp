@@ -20,7 +20,8 @@ struct TrajectoryStep {
 
 struct Trajectory {
     double time_start = 0;
-    double timestep = 0;  ///< h [s]
+    double timestep = 0;        ///< h [s]; of uneven steps the mean
+    std::vector<double> times;  ///< [s], of each of `poses`, where the steps are not even; empty: time_start + t timestep
     std::vector<std::string> body_names;
     std::vector<std::vector<kinematics::Pose>> poses;  ///< [t][body], t = 0 .. steps.size()
     std::vector<TrajectoryStep> steps;                 ///< step t leads from poses[t] to poses[t + 1]
@@ -33,5 +34,18 @@ inline kinematics::PathSegment path_segment(const Trajectory& trajectory, int t,
 }
 
 inline int segment_count(const Trajectory& trajectory, int t) { return static_cast<int>(trajectory.steps[t].nodes.size()) - 1; }
+
+/// Time of poses[t] [s].
+inline double time_at(const Trajectory& trajectory, int t) {
+    return trajectory.times.empty() ? trajectory.time_start + t * trajectory.timestep : trajectory.times[t];
+}
+
+/// Time at s in [0, 1] of segment `k` of step `t`; of the start if t is -1 (no step) [s].
+inline double time_at(const Trajectory& trajectory, int t, int k, double s) {
+    if (t < 0) return time_at(trajectory, 0);
+    const double fraction = (k + s) / segment_count(trajectory, t);
+    if (trajectory.times.empty()) return trajectory.time_start + trajectory.timestep * (t + fraction);
+    return trajectory.times[t] + fraction * (trajectory.times[t + 1] - trajectory.times[t]);
+}
 
 }  // namespace fettle::core::stepper

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/trajectory_io.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <optional>
 
 #include "fettle/core/base/atomic_file.hpp"
@@ -148,8 +150,8 @@ public:
 
     base::Result<StoredTrajectory> read() {
         const JsonNode root = document_.root();
-        root.allow_keys({"fettle_trajectory", "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies",
-                         "poses", "steps", "checkpoint"});
+        root.allow_keys({"fettle_trajectory", "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "times",
+                         "bodies", "poses", "steps", "checkpoint"});
         root.require("fettle_trajectory").integer(1, 1);
         if (!document_.errors().empty()) return document_.errors();
         out_.path = document_.path();
@@ -161,6 +163,7 @@ public:
         out_.model.timestep = out_.trajectory.timestep = root.require("timestep").number(scene::positive).value_or(1);
         for (const JsonNode& body : root.require("bodies").elements()) read_body(body);
         read_poses(root.require("poses"));
+        if (root["times"].exists()) read_times(root["times"]);
         read_steps(root.require("steps"));
         if (!document_.errors().empty()) return document_.errors();
         check_path(root);
@@ -234,6 +237,14 @@ private:
             out_.trajectory.poses.push_back(std::move(poses));
         }
         if (node.is_array() && out_.trajectory.poses.empty()) node.fail(ErrorCode::inconsistent, "the start pose is missing");
+    }
+
+    void read_times(const JsonNode& node) {
+        const auto times = node.numbers().value_or(std::vector<double>{});
+        const bool as_many = times.size() == out_.trajectory.poses.size();
+        if (!as_many || std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
+            node.fail(ErrorCode::inconsistent, "one time per entry of `poses` is wanted, each later than the one before");
+        out_.trajectory.times = times;
     }
 
     Pose read_pose(const JsonNode& node) {
@@ -329,7 +340,7 @@ private:
             out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
             model::complete_geometry(out_.model.bodies[b]);
         }
-        out_.model.end_time = out_.trajectory.time_start + out_.trajectory.timestep * static_cast<double>(out_.trajectory.steps.size());
+        out_.model.end_time = time_at(out_.trajectory, static_cast<int>(out_.trajectory.steps.size()));
         const auto stored = hash.string();
         const std::string found = hexadecimal(geometry_hash(out_.model));
         if (stored && *stored != found) {
@@ -385,6 +396,10 @@ base::Errors write_trajectory(const std::filesystem::path& path, const Trajector
                                       {"timestep", trajectory.timestep}}) {
         out.key(name);
         out.number(value);
+    }
+    if (!trajectory.times.empty()) {
+        out.key("times");
+        out.list(trajectory.times.size(), ",", [&](std::size_t t) { out.number(trajectory.times[t]); });
     }
     out.key("bodies");
     out.list(model.bodies.size(), ",\n  ", [&](std::size_t b) { write_body(out, model.bodies[b]); });

@@ -10,6 +10,7 @@
 ///                      that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep
+///   times      only where the steps are not even: of each of `poses`, increasing; timestep is then their mean
 ///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mesh { name, vertices, triangles, edges }
 ///   },
 ///           vertices x y z after x y z, relative to the reference point; triangles three indices after three; edges those of no triangle
