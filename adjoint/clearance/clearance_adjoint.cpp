@@ -4,7 +4,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <array>
+#include <algorithm>
+#include <limits>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/distance.hpp"
@@ -14,28 +15,39 @@ namespace {
 
 using core::clearance::PairClearance;
 using core::clearance::Witness;
+using core::kinematics::ChartPoint;
 using core::kinematics::Pose;
 using core::stepper::Trajectory;
+using core::stepper::TrajectoryStep;
 
 struct WitnessVertex {
     int body;
     int vertex;
 };
 
+// A triangle's corners, or an edge or a vertex as one without area.
+std::array<int, 3> corners(const core::geometry::Mesh& mesh, core::clearance::Primitive kind, int index) {
+    switch (kind) {
+        case core::clearance::Primitive::triangle:
+            return mesh.triangles[index];
+        case core::clearance::Primitive::edge:
+            return {mesh.edges[index][0], mesh.edges[index][1], mesh.edges[index][1]};
+        case core::clearance::Primitive::vertex:
+            break;
+    }
+    return {index, index, index};
+}
+
 // In the order of the distance functions: vertex first, or edge of a first.
-std::array<WitnessVertex, 4> witness_vertices(const core::model::Model& model, const PairClearance& pair) {
-    const Witness& w = pair.witness;
-    const core::geometry::Mesh &a = model.bodies[pair.a].mesh, &b = model.bodies[pair.b].mesh;
+std::array<WitnessVertex, 4> witness_vertices(const core::model::Model& model, int a, int b, const Witness& w) {
+    const core::geometry::Mesh &mesh_a = model.bodies[a].mesh, &mesh_b = model.bodies[b].mesh;
     if (w.edge_edge) {
-        const auto &ea = a.edges[w.primitive_a], &eb = b.edges[w.primitive_b];
-        return {{{pair.a, ea[0]}, {pair.a, ea[1]}, {pair.b, eb[0]}, {pair.b, eb[1]}}};
+        const auto &ea = mesh_a.edges[w.primitive_a], &eb = mesh_b.edges[w.primitive_b];
+        return {{{a, ea[0]}, {a, ea[1]}, {b, eb[0]}, {b, eb[1]}}};
     }
-    if (w.vertex_on_a) {
-        const auto& t = b.triangles[w.primitive_b];
-        return {{{pair.a, w.primitive_a}, {pair.b, t[0]}, {pair.b, t[1]}, {pair.b, t[2]}}};
-    }
-    const auto& t = a.triangles[w.primitive_a];
-    return {{{pair.b, w.primitive_b}, {pair.a, t[0]}, {pair.a, t[1]}, {pair.a, t[2]}}};
+    const auto t = w.vertex_on_a ? corners(mesh_b, w.kind_b, w.primitive_b) : corners(mesh_a, w.kind_a, w.primitive_a);
+    const int single = w.vertex_on_a ? a : b, other = w.vertex_on_a ? b : a;
+    return {{{single, w.vertex_on_a ? w.primitive_a : w.primitive_b}, {other, t[0]}, {other, t[1]}, {other, t[2]}}};
 }
 
 Pose witness_pose(const Trajectory& trajectory, const Witness& witness, int body) {
@@ -47,56 +59,148 @@ struct Wrench {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // dual to dq and to phi in dR = [phi] R
 };
 
-void add_wrench(const Pose& pose, const Vector3& force, const Vector3& torque, Matrix34& bar) {
-    bar.leftCols<3>() += 0.5 * cross_matrix(torque) * pose.rotation;
-    bar.col(3) += force;
+// At the witness's instant: what the distance is made of.
+struct WitnessForces {
+    std::vector<ClearanceGradient::VertexPart> vertices;
+    Wrench on_a, on_b;
+};
+
+std::optional<WitnessForces> witness_forces(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
+                                            const Witness& witness) {
+    const auto vertices = witness_vertices(model, a, b, witness);
+    const Pose pose_a = witness_pose(trajectory, witness, a), pose_b = witness_pose(trajectory, witness, b);
+    const Vector3 offset = pose_a.position - pose_b.position;
+    std::array<Vector3, 4> arms, x;  // R X; relative to q_b, so that a place far from the origin costs no digits
+    for (std::size_t i = 0; i < 4; ++i) {
+        const bool on_a = vertices[i].body == a;
+        arms[i] = (on_a ? pose_a : pose_b).rotation * model.bodies[vertices[i].body].mesh.vertices.col(vertices[i].vertex);
+        x[i] = on_a ? Vector3(arms[i] + offset) : arms[i];
+    }
+    const core::geometry::ClosestPoints closest = witness.edge_edge ? core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3])
+                                                                    : core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3]);
+    const double distance = closest.difference.norm();
+    if (!(distance > 0)) return std::nullopt;
+    const Vector3 n = closest.difference / distance;
+    WitnessForces out;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const bool is_a = vertices[i].body == a;
+        const Vector3 force = closest.weight[i] * n;
+        Wrench& wrench = is_a ? out.on_a : out.on_b;
+        wrench.force += force;
+        wrench.torque += arms[i].cross(force);
+        out.vertices.push_back({vertices[i].body, vertices[i].vertex, (is_a ? pose_a : pose_b).rotation.transpose() * force});
+    }
+    return out;
 }
 
-void pull_to_configurations(const Trajectory& trajectory, const Witness& witness, int body, const Wrench& wrench, TrajectoryGradient& bar) {
-    if (witness.step < 0) {
-        add_wrench(trajectory.poses.front()[body], wrench.force, wrench.torque, bar.pose_bar.front()[body]);
-        return;
+Vector6 stacked(const Vector3& first, const Vector3& second) {
+    Vector6 v;
+    v << first, second;
+    return v;
+}
+
+SegmentGradient on_segment(const Trajectory& trajectory, const Witness& w, int body, const Wrench& wrench) {
+    const auto& nodes = trajectory.steps[w.step].nodes;
+    const Vector3 &from = nodes[w.segment][body].rotation_vector, &to = nodes[w.segment + 1][body].rotation_vector;
+    const Vector3 theta = from + w.s * (to - from);
+    const Vector3 theta_bar = core::kinematics::left_jacobian(theta).transpose() * wrench.torque;
+    SegmentGradient out;
+    out.base_bar = core::kinematics::rotation(theta).transpose() * wrench.torque;
+    out.node_bar = {stacked((1 - w.s) * wrench.force, (1 - w.s) * theta_bar), stacked(w.s * wrench.force, w.s * theta_bar)};
+    return out;
+}
+
+// The chain of the header's convention: from two nodes of a step to its start and end poses.
+void add_to_ends(const Trajectory& trajectory, const Witness& w, int body, double radius, const SegmentGradient& on,
+                 ClearanceGradient& out) {
+    const TrajectoryStep& step = trajectory.steps[w.step];
+    const int last = static_cast<int>(step.nodes.size()) - 1;
+    const ChartPoint &start = step.nodes.front()[body], &end = step.nodes.back()[body];
+    Vector6 to_start = stacked(Vector3::Zero(), on.base_bar), to_end = Vector6::Zero();  // to_end: of the end's chart coordinates
+    for (int i = 0; i < 2; ++i) {
+        const int k = w.segment + i;
+        const Vector6& bar = on.node_bar[static_cast<std::size_t>(i)];
+        const double sigma = k == 0 ? 0 : k == last ? 1 : node_fraction(step, k, body, radius);
+        to_start.head<3>() += (1 - sigma) * bar.head<3>();
+        to_end += sigma * bar;
+        if (k == 0 || k == last) continue;
+        const ChartPoint& node = step.nodes[static_cast<std::size_t>(k)][body];
+        const Vector3 offset = node.position - (1 - sigma) * start.position - sigma * end.position;
+        const Vector3 twist = node.rotation_vector - sigma * end.rotation_vector;
+        to_start.tail<3>() += offset.cross(bar.head<3>()) + twist.cross(bar.tail<3>());
     }
-    const int t = witness.step;
-    const double s = (witness.segment + witness.s) / core::stepper::segment_count(trajectory, t);
-    const Vector3 theta = trajectory.steps[t].nodes.back()[body].rotation_vector;
-    const Vector3 to_theta = s * core::kinematics::left_jacobian(s * theta).transpose() * wrench.torque;
-    const Vector3 to_end = core::kinematics::left_jacobian(theta).inverse().transpose() * to_theta;
-    FETTLE_ASSERT(to_end.allFinite(), "a whole turn in one step has no derivative by its end pose");
-    const Vector3 to_start =
-        core::kinematics::rotation(s * theta).transpose() * wrench.torque - core::kinematics::rotation(theta).transpose() * to_end;
-    add_wrench(trajectory.poses[t][body], (1 - s) * wrench.force, to_start, bar.pose_bar[t][body]);
-    add_wrench(trajectory.poses[t + 1][body], s * wrench.force, to_end, bar.pose_bar[t + 1][body]);
+    const Vector3 theta = end.rotation_vector;
+    const Vector3 torque = core::kinematics::left_jacobian(theta).inverse().transpose() * to_end.tail<3>();
+    FETTLE_ASSERT(torque.allFinite(), "a whole turn in one step has no derivative by its end pose");
+    to_end.tail<3>() = torque;
+    to_start.tail<3>() -= core::kinematics::rotation(theta).transpose() * torque;
+    out.poses.push_back({w.step, body, to_start});
+    out.poses.push_back({w.step + 1, body, to_end});
 }
 
 }  // namespace
 
+double node_fraction(const TrajectoryStep& step, int k, int body, double radius) {
+    const auto coordinates = [&](const std::vector<ChartPoint>& node) {
+        return stacked(node[body].position, radius * node[body].rotation_vector);
+    };
+    const Vector6 start = coordinates(step.nodes.front()), chord = coordinates(step.nodes.back()) - start;
+    const double length_squared = chord.squaredNorm();
+    if (!(length_squared > 0)) return k / static_cast<double>(step.nodes.size() - 1);
+    return std::clamp(chord.dot(coordinates(step.nodes[static_cast<std::size_t>(k)]) - start) / length_squared, 0.0, 1.0);
+}
+
+std::optional<SegmentGradient> segment_gradient(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
+                                                const Witness& witness, int body) {
+    FETTLE_ASSERT(witness.step >= 0 && (body == a || body == b), "a witness during the motion, and one of its bodies");
+    const auto forces = witness_forces(model, trajectory, a, b, witness);
+    if (!forces) return std::nullopt;
+    return on_segment(trajectory, witness, body, body == a ? forces->on_a : forces->on_b);
+}
+
+ClearanceGradient clearance_gradient(const core::model::Model& model, const Trajectory& trajectory, int a, int b, const Witness& witness) {
+    ClearanceGradient out;
+    auto forces = witness_forces(model, trajectory, a, b, witness);
+    if (!forces) return out;
+    out.vertices = std::move(forces->vertices);
+    for (const int body : {a, b}) {
+        const Wrench& wrench = body == a ? forces->on_a : forces->on_b;
+        if (witness.step < 0) {
+            out.poses.push_back({0, body, stacked(wrench.force, wrench.torque)});
+        } else {
+            add_to_ends(trajectory, witness, body, model.bodies[body].radius, on_segment(trajectory, witness, body, wrench), out);
+        }
+    }
+    return out;
+}
+
 void clearance_adjoint(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair, double scale,
                        TrajectoryGradient& trajectory_bar, ModelGradient& model_bar) {
-    const auto vertices = witness_vertices(model, pair);
-    const Pose pose_a = witness_pose(trajectory, pair.witness, pair.a), pose_b = witness_pose(trajectory, pair.witness, pair.b);
-    const Vector3 offset = pose_a.position - pose_b.position;
-    std::array<Vector3, 4> arms, x;  // R X; relative to q_b, so that a place far from the origin costs no digits
-    for (std::size_t i = 0; i < 4; ++i) {
-        const bool on_a = vertices[i].body == pair.a;
-        arms[i] = (on_a ? pose_a : pose_b).rotation * model.bodies[vertices[i].body].mesh.vertices.col(vertices[i].vertex);
-        x[i] = on_a ? Vector3(arms[i] + offset) : arms[i];
+    const ClearanceGradient gradient = clearance_gradient(model, trajectory, pair.a, pair.b, pair.witness);
+    for (const auto& part : gradient.vertices) model_bar.bodies[part.body].vertices_bar.col(part.vertex) += scale * part.bar;
+    for (const auto& part : gradient.poses) {
+        Matrix34& bar = trajectory_bar.pose_bar[part.t][part.body];
+        bar.leftCols<3>() += 0.5 * scale * cross_matrix(part.bar.tail<3>()) * trajectory.poses[part.t][part.body].rotation;
+        bar.col(3) += scale * part.bar.head<3>();
     }
-    const core::geometry::ClosestPoints closest = pair.witness.edge_edge ? core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3])
-                                                                         : core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3]);
-    const double distance = closest.difference.norm();
-    if (!(pair.upper > 0 && distance > 0)) return;
-    const Vector3 n = closest.difference * (scale / distance);
-    Wrench on_a, on_b;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const bool is_a = vertices[i].body == pair.a;
-        const Vector3 force = closest.weight[i] * n;
-        (is_a ? on_a : on_b).force += force;
-        (is_a ? on_a : on_b).torque += arms[i].cross(force);
-        model_bar.bodies[vertices[i].body].vertices_bar.col(vertices[i].vertex) += (is_a ? pose_a : pose_b).rotation.transpose() * force;
-    }
-    pull_to_configurations(trajectory, pair.witness, pair.a, on_a, trajectory_bar);
-    pull_to_configurations(trajectory, pair.witness, pair.b, on_b, trajectory_bar);
+}
+
+double directional(const ClearanceGradient& gradient, const ClearanceDirection& direction) {
+    double sum = 0;
+    for (const auto& part : gradient.poses) sum += part.bar.dot(direction.pose_dot[part.t][part.body]);
+    if (direction.vertices_dot.empty()) return sum;
+    for (const auto& part : gradient.vertices) sum += part.bar.dot(direction.vertices_dot[part.body].col(part.vertex));
+    return sum;
+}
+
+double clearance_derivative(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair,
+                            const ClearanceDirection& direction) {
+    if (!(pair.upper > 0)) return 0;
+    const std::vector<Witness> only{pair.witness};
+    double least = std::numeric_limits<double>::infinity();
+    for (const Witness& witness : pair.witnesses.empty() ? only : pair.witnesses)
+        least = std::min(least, directional(clearance_gradient(model, trajectory, pair.a, pair.b, witness), direction));
+    return least;
 }
 
 }  // namespace fettle::adjoint

@@ -1,32 +1,84 @@
 // SPDX-License-Identifier: MIT
-/// Derivative of a certified clearance's upper bound at its witness (envelope theorem): witness time and points held, path and
-/// shapes moved.
+/// Derivative of a certified clearance with respect to everything that moves it: shapes, and the path that the bodies take.
 ///
-/// The bound is d = n.(sum of w_i x_i) with the closest points' weights w_i and their unit direction n from b to a, x_i = R(s) X_i + q(s).
-/// So d(d) = n.(w_i dx_i): R^T n w_i on the vertices, force f = sum w_i n and torque tau = sum R X_i x w_i n on each body's pose at the
-/// witness.
+/// The upper bound is a distance d = n.(sum of w_i x_i) between two points at one time: closest points with weights w_i, their unit
+/// direction n from b to a, x_i = R X_i + q. It is a minimum over time, features and points, so (envelope theorem) its derivative is the
+/// partial one with all of those held: R^T n w_i on the vertices, and on each body's pose at that time a force f = sum w_i n and a torque
+/// tau = sum R X_i x w_i n, dual to dq and to phi in dR = [phi] R.
+/// Where several witnesses attain the minimum (parallel faces, the same gap twice), it is not differentiable, but it has a one-sided
+/// derivative in every direction: the least of the witnesses' (Danskin). clearance_derivative() is that; clearance_adjoint() takes one.
 ///
-/// Path: R(s) = exp(s theta) R_t, q(s) = (1 - s) q_t + s q_{t+1}, theta = the step's rotation vector (that of its last node), R_{t+1} =
-/// exp(theta) R_t. With dR = [phi] R and the left Jacobian J:
-///   phi(s) = exp(s theta) phi_t + s J(s theta) dtheta,   dtheta = J(theta)^{-1} (phi_{t+1} - exp(theta) phi_t).
-/// Steps with intermediate nodes (segments k of n) are differentiated as if straight, at s -> (k + s)/n: such nodes are accepted points of
-/// a line search and have no derivative of their own.
+/// Path. The segment from node k to node k + 1 of a step is R(s) = exp(theta(s)) R_t, theta and q linear between the nodes' coordinates:
+///   phi = exp(theta(s)) phi_t + J(theta(s)) ((1 - s) dtheta_k + s dtheta_{k+1}),   dq = (1 - s) dq_k + s dq_{k+1},
+/// J the left Jacobian. This is exact for the path as stored, its nodes taken as free: segment_gradient().
+/// A step's first and last node are its start and end poses; theta_n = log(R_{t+1} R_t^T), so dtheta_n = J(theta_n)^-1 (phi_{t+1} -
+/// exp(theta_n) phi_t). The nodes in between are accepted points of a line search and say nothing of how they would move with the poses.
+/// The convention here: each keeps its fraction sigma_k of the straight path (node_fraction()) and its offset from it, the offset turning
+/// with the body's start pose:
+///   q_k = (1 - sigma_k) q_t + sigma_k q_{t+1} + R_t e_k,   theta_k = sigma_k theta_n + R_t c_k,   sigma_k, e_k, c_k held.
+/// It is exact for a step without intermediate nodes and for moving everything together, and it is what clearance_gradient() chains.
 #pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
 
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 
 namespace fettle::adjoint {
 
-/// Adds scale * d(upper)/d(configurations) to `trajectory_bar`, and the explicit dependence on vertices to `model_bar`.
+/// Derivative of a witness's distance, sparse. Poses: (f, tau), dual to (dq, phi). Poses of one body and time may stand in several parts,
+/// which add up.
+struct ClearanceGradient {
+    struct VertexPart {
+        int body, vertex;
+        Vector3 bar;
+    };
+    struct PosePart {
+        int t, body;
+        Vector6 bar;
+    };
+    std::vector<VertexPart> vertices;
+    std::vector<PosePart> poses;
+};
+
+/// At one witness of a pair (bodies a, b); empty if the distance there is 0, which has no direction.
 /// A witness as assembled (step -1) moves with poses[0] alone.
+/// Contract: |theta_n| is not a multiple of 2 pi other than 0 (there the end pose does not determine the path).
+ClearanceGradient clearance_gradient(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
+                                     const core::clearance::Witness& witness);
+
+/// The same with respect to the stored path of one body: exact, whatever its nodes are.
+struct SegmentGradient {
+    Vector3 base_bar = Vector3::Zero();  ///< dual to phi_t in dR_t = [phi_t] R_t, the nodes' chart coordinates held
+    std::array<Vector6, 2> node_bar{Vector6::Zero(), Vector6::Zero()};  ///< (position, rotation vector) of nodes `segment`, `segment` + 1
+};
+/// Of a witness during the motion; nothing if the distance there is 0. Contract: witness.step >= 0, body is a or b.
+std::optional<SegmentGradient> segment_gradient(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
+                                                const core::clearance::Witness& witness, int body);
+
+/// Where along the straight path from the first to the last node the k-th stands: the fraction of the nearest point, in [0, 1], rotation
+/// vectors measured in units of 1 / radius [m]. k / n where the straight path has no length.
+double node_fraction(const core::stepper::TrajectoryStep& step, int k, int body, double radius);
+
+/// Adds scale * clearance_gradient at pair.witness: on poses to `trajectory_bar`, on vertices to `model_bar`.
 /// @param trajectory_bar  entries G of pose_bar are those of the 3x4 matrix with <G, [[phi] R, dq]> = tau.phi + f.dq: defined for motions
-/// of a
-///                        rigid body only, G = [[tau] R / 2, f].
-/// A pair at distance 0 has no direction and adds nothing. Contract: |theta| is not a multiple of 2 pi other than 0 (there the end pose
-/// does not determine the path).
+///                        of a rigid body only, G = [[tau] R / 2, f].
 void clearance_adjoint(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                        const core::clearance::PairClearance& pair, double scale, TrajectoryGradient& trajectory_bar,
                        ModelGradient& model_bar);
+
+/// A direction: tangents (dq, phi) of each pose [t][body] (tangent_sweep.hpp makes them), and of the model's vertices.
+struct ClearanceDirection {
+    std::vector<std::vector<Vector6>> pose_dot;
+    std::vector<Matrix3X> vertices_dot;  ///< [body]; empty: shapes held
+};
+double directional(const ClearanceGradient& gradient, const ClearanceDirection& direction);
+
+/// lim (d(x + h direction) - d(x)) / h as h -> 0+: the least over pair.witnesses (over pair.witness if there are none), 0 if the bodies
+/// touch. Exact if pair.witnesses holds all that tie: certify with a witness_tolerance.
+double clearance_derivative(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                            const core::clearance::PairClearance& pair, const ClearanceDirection& direction);
 
 }  // namespace fettle::adjoint

@@ -21,18 +21,31 @@ core::model::Body make_body(const Solid& solid) {
     return body;
 }
 
-// The trajectory through given poses, one straight segment a step.
-core::stepper::Trajectory through(const std::vector<std::vector<Pose>>& poses) {
+// A node between the poses of a step, per body: at fraction sigma of the straight path, off it by an offset that turns with the start pose.
+struct Bend {
+    double sigma;
+    Vector3 offset, twist;
+};
+using Bends = std::vector<std::vector<Bend>>;  // [node][body], the same in every step
+
+// The trajectory through given poses, one straight segment a step, or through the bends.
+core::stepper::Trajectory through(const std::vector<std::vector<Pose>>& poses, const Bends& bends = {}) {
     core::stepper::Trajectory trajectory;
     trajectory.timestep = 0.1;
     trajectory.poses = poses;
     for (std::size_t t = 0; t + 1 < poses.size(); ++t) {
         core::stepper::TrajectoryStep step;
-        step.nodes.resize(2);
+        step.nodes.resize(2 + bends.size());
         for (std::size_t i = 0; i < poses[t].size(); ++i) {
-            const Matrix3 turn = poses[t + 1][i].rotation * poses[t][i].rotation.transpose();
-            step.nodes[0].push_back({poses[t][i].position, Vector3::Zero()});
-            step.nodes[1].push_back({poses[t + 1][i].position, core::kinematics::rotation_vector(turn)});
+            const Pose &start = poses[t][i], &end = poses[t + 1][i];
+            const Vector3 theta = core::kinematics::rotation_vector(end.rotation * start.rotation.transpose());
+            step.nodes.front().push_back({start.position, Vector3::Zero()});
+            for (std::size_t k = 0; k < bends.size(); ++k) {
+                const Bend& bend = bends[k][i];
+                step.nodes[k + 1].push_back({(1 - bend.sigma) * start.position + bend.sigma * end.position + start.rotation * bend.offset,
+                                             bend.sigma * theta + start.rotation * bend.twist});
+            }
+            step.nodes.back().push_back({end.position, theta});
         }
         trajectory.steps.push_back(step);
     }
@@ -58,11 +71,16 @@ struct Case {
     std::vector<std::vector<Pose>> poses;
     bool motion = false;
     bool swapped = false;  // the pair asked for is (1, 0)
-    PairClearance certify() const {
+    Bends bends{};
+    double witness_tolerance = 0;
+    core::stepper::Trajectory trajectory() const { return through(poses, bends); }
+    PairClearance certify() const { return certify(trajectory()); }
+    PairClearance certify(const core::stepper::Trajectory& trajectory) const {
         core::clearance::ClearanceOptions options;
         options.tolerance = 1e-12;
         options.motion = motion;
-        return certify_clearance(model, through(poses),
+        options.witness_tolerance = witness_tolerance;
+        return certify_clearance(model, trajectory,
                                  {swapped ? core::clearance::PairRequest{1, 0, 0} : core::clearance::PairRequest{0, 1, 0}}, options)[0];
     }
 };
@@ -91,7 +109,7 @@ Eigen::Index coordinate_count(const Case& c) {
 }
 
 VectorX gradient_of(const Case& c, const PairClearance& pair, double scale) {
-    const auto trajectory = through(c.poses);
+    const auto trajectory = c.trajectory();
     auto trajectory_bar = zero_like(trajectory);
     auto model_bar = zero_like(c.model);
     adjoint::clearance_adjoint(c.model, trajectory, pair, scale, trajectory_bar, model_bar);
@@ -182,6 +200,125 @@ TEST_CASE("Moving everything together changes no clearance", "[clearance][adjoin
             }
         CHECK(std::abs(g.dot(turn)) < 1e-12);
     }
+}
+
+// Bends whose fractions are what node_fraction finds: offsets square to the straight path, in every step alike (so: one step).
+Case bent_case(std::mt19937& random, int nodes) {
+    Case c = random_case(random, true);
+    c.poses.pop_back();
+    for (auto& body : c.model.bodies) body.radius = body.mesh.vertices.colwise().norm().maxCoeff();
+    std::uniform_real_distribution<double> u(0.1, 0.3);
+    c.bends.resize(static_cast<std::size_t>(nodes));
+    for (std::size_t k = 0; k < c.bends.size(); ++k)
+        for (std::size_t i = 0; i < 2; ++i)
+            c.bends[k].push_back({0.3 * static_cast<double>(k + 1), random_vector(random, u(random)), random_vector(random, u(random))});
+    // Take the part along the path off the offsets, and into the fraction.
+    const auto step = c.trajectory().steps[0];
+    for (std::size_t k = 0; k < c.bends.size(); ++k)
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto& nodes_of = step.nodes;
+            const double sigma = adjoint::node_fraction(step, static_cast<int>(k) + 1, static_cast<int>(i), c.model.bodies[i].radius);
+            const Matrix3 back = c.poses[0][i].rotation.transpose();
+            c.bends[k][i] = {
+                sigma,
+                back * (nodes_of[k + 1][i].position - (1 - sigma) * nodes_of.front()[i].position - sigma * nodes_of.back()[i].position),
+                back * (nodes_of[k + 1][i].rotation_vector - sigma * nodes_of.back()[i].rotation_vector)};
+        }
+    return c;
+}
+
+TEST_CASE("Steps with intermediate nodes: the end poses carry the nodes along", "[clearance][adjoint]") {
+    std::mt19937 random(21);
+    int checked = 0, between = 0, at_node = 0;
+    for (int i = 0; i < 14; ++i) {
+        const Case c = bent_case(random, 1 + i % 2);
+        const PairClearance pair = c.certify();
+        if (pair.upper < 0.05) continue;
+        ++checked;
+        between += pair.witness.s > 0 && pair.witness.s < 1;
+        at_node += (pair.witness.s == 0 && pair.witness.segment > 0) ||
+                   (pair.witness.s == 1 && pair.witness.segment < static_cast<int>(c.bends.size()));
+        const auto upper = [&](const VectorX& d) { return moved(c, d).certify().upper; };
+        const VectorX gradient = gradient_of(c, pair, 1);
+        tests::support::StepSweep sweep;
+        sweep.largest = 1e-4;
+        sweep.count = 3;
+        const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
+        CAPTURE(i, pair.upper, pair.witness.segment, pair.witness.s, check.row, check.analytic, check.difference, check.step);
+        CHECK(check.relative_error < 1e-7);
+        // Moving everything together changes nothing.
+        const Vector3 phi(1, 0.5, -0.7), shift(0.3, -1, 2);
+        VectorX turn = VectorX::Zero(gradient.size());
+        Eigen::Index at = 0;
+        for (const auto& poses : c.poses)
+            for (const Pose& pose : poses) {
+                turn.segment<3>(at) = phi.cross(pose.position) + shift;
+                turn.segment<3>(at + 3) = phi;
+                at += 6;
+            }
+        CHECK(std::abs(gradient.dot(turn)) < 1e-12);
+    }
+    CAPTURE(checked, between, at_node);
+    CHECK(checked >= 6);
+    CHECK(between >= 2);
+    CHECK(at_node >= 1);
+}
+
+TEST_CASE("The stored path's own derivative: nodes and base, whatever moves them", "[clearance][adjoint]") {
+    std::mt19937 random(5);
+    int checked = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Case c = bent_case(random, 1 + i % 3);
+        const auto stored = c.trajectory();
+        const PairClearance pair = c.certify(stored);
+        if (pair.upper < 0.05) continue;
+        ++checked;
+        // Coordinates: base rotations of both bodies, then the six of each node; the first and last nodes are free here too.
+        const auto nodes = static_cast<Eigen::Index>(stored.steps[0].nodes.size());
+        const auto upper = [&](const VectorX& d) {
+            auto path = stored;
+            for (std::size_t b = 0; b < 2; ++b)
+                path.poses[0][b].rotation =
+                    core::kinematics::rotation(d.segment<3>(3 * static_cast<Eigen::Index>(b))) * path.poses[0][b].rotation;
+            Eigen::Index at = 6;
+            for (auto& node : path.steps[0].nodes)
+                for (auto& point : node) {
+                    point.position += d.segment<3>(at);
+                    point.rotation_vector += d.segment<3>(at + 3);
+                    at += 6;
+                }
+            return c.certify(path).upper;
+        };
+        VectorX gradient = VectorX::Zero(6 + 12 * nodes);
+        for (int b = 0; b < 2; ++b) {
+            const auto part = adjoint::segment_gradient(c.model, stored, 0, 1, pair.witness, b);
+            REQUIRE(part);
+            gradient.segment<3>(3 * b) = part->base_bar;
+            for (int k = 0; k < 2; ++k)
+                gradient.segment<6>(6 + 12 * (pair.witness.segment + k) + 6 * b) = part->node_bar[static_cast<std::size_t>(k)];
+        }
+        tests::support::StepSweep sweep;
+        sweep.largest = 1e-4;
+        sweep.count = 3;
+        const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
+        CAPTURE(i, pair.upper, pair.witness.segment, pair.witness.s, check.row, check.analytic, check.difference, check.step);
+        CHECK(check.relative_error < 1e-7);
+    }
+    CHECK(checked >= 6);
+}
+
+TEST_CASE("A node's fraction of the straight path", "[clearance][adjoint]") {
+    core::stepper::TrajectoryStep step;
+    step.nodes = {{{Vector3(0, 0, 0), Vector3::Zero()}}, {{Vector3(1, 5, 0), Vector3::Zero()}}, {{Vector3(4, 0, 0), Vector3::Zero()}}};
+    CHECK(adjoint::node_fraction(step, 1, 0, 1) == 0.25);
+    step.nodes[2][0].rotation_vector = Vector3(0, 0, 2);
+    step.nodes[1][0].rotation_vector = Vector3(0, 0, 2);
+    CHECK(adjoint::node_fraction(step, 1, 0, 0) == 0.25);
+    CHECK(adjoint::node_fraction(step, 1, 0, 2) == Approx((4.0 + 16) / 32));
+    step.nodes[1][0].position = Vector3(-9, 0, 0);
+    CHECK(adjoint::node_fraction(step, 1, 0, 0) == 0);
+    step.nodes[2][0] = step.nodes[0][0];
+    CHECK(adjoint::node_fraction(step, 1, 0, 1) == 0.5);
 }
 
 TEST_CASE("Two boxes as assembled: the gap's derivative is known", "[clearance][adjoint]") {
