@@ -60,20 +60,6 @@ Json clearance_json(const std::vector<PairClearance>& pairs, const std::vector<s
     return json;
 }
 
-std::string clearance_text(const std::vector<PairClearance>& pairs, const std::vector<std::string>& names, const std::string& unit,
-                           const Console& console) {
-    const double factor = 1 / core::base::metres_per_unit(unit).value();
-    std::string text = formatted("%-32s %12s %12s %12s   %-10s %9s   (%s, s)\n", "pair", "required", "at least", "at most", "status",
-                                 "time", unit.c_str());
-    for (const PairClearance& pair : pairs) {
-        const std::string name = names[static_cast<size_t>(pair.a)] + ":" + names[static_cast<size_t>(pair.b)];
-        const std::string status = formatted("%-10s", core::clearance::to_string(pair.status));
-        text += formatted("%-32s %12.6g %12.6g %12.6g   %s %9.4g\n", name.c_str(), pair.minimum * factor, pair.lower * factor,
-                          pair.upper * factor, console.coloured(status, pair.status == PairStatus::clear).c_str(), pair.witness.time);
-    }
-    return text;
-}
-
 Json parameters_json(const Design& design, const VectorX& values) {
     Json json = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {

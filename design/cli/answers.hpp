@@ -24,10 +24,6 @@ core::clearance::PairStatus overall_status(const std::vector<core::clearance::Pa
 /// {minimum, least, status, pairs}: the (smallest) required minimum, and the smallest proven bound.
 nlohmann::ordered_json clearance_json(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names);
 
-/// A table of pairs for people, lengths in `unit`.
-std::string clearance_text(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names,
-                           const std::string& unit, const Console& console);
-
 /// Values by parameter name, in the parameters' own units.
 nlohmann::ordered_json parameters_json(const Design& design, const VectorX& values);
 /// Unit by parameter name.

@@ -1,149 +1,154 @@
 // SPDX-License-Identifier: MIT
-/// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over the motion.
+/// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over a motion. What is judged:
+/// clearance_subject.hpp (motions), clearance_pairs.hpp (pairs and what they require); how it is told: clearance_report.hpp.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/scene/nearest_word.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/process_presets.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using core::clearance::PairStatus;
 
 struct Options {
-    std::string path, minimum, pairs, tolerance = "0.001mm";
-    bool motion = false;
+    SubjectOptions subject;
+    PairOptions pairs;
+    std::string minimum, tolerance, csv, baseline;
+    int explain = 0;
 };
 
-struct Subject {
-    core::model::Model model;
-    core::stepper::Trajectory trajectory;
-    bool motion = false;
-    std::string not_simulated;  ///< why the motion is not whole; empty: it is, or none was asked for
-};
-
-Result<int> find_body(const core::model::Model& model, const std::string& name) {
-    std::vector<std::string_view> known;
-    for (size_t i = 0; i < model.bodies.size(); ++i) {
-        if (model.bodies[i].name == name) return static_cast<int>(i);
-        known.push_back(model.bodies[i].name);
+// 1 um, or 0.1% of the least that is asked for if that is less.
+double default_tolerance(const PairSelection& selection) {
+    double tolerance = 1e-6;
+    for (const PairSpec& pair : selection.pairs) {
+        if (pair.minimum > 0) tolerance = std::min(tolerance, 1e-3 * pair.minimum);
     }
-    std::string message = "there is no body \"" + name + "\"";
-    if (const auto nearest = core::scene::nearest_word(name, known)) {
-        message += "; did you mean \"" + *nearest + "\"?";
-    } else {
-        message += "; there are";
-        for (size_t i = 0; i < known.size(); ++i) message += (i ? ", " : " ") + std::string(known[i]);
-    }
-    return Error{ErrorCode::out_of_range, "--pairs", message};
+    return tolerance;
 }
 
-// "a:b,c:d"; empty: every pair that may collide.
-Result<std::vector<core::clearance::PairRequest>> requested_pairs(const core::model::Model& model, const std::string& list,
-                                                                  double minimum) {
-    std::vector<core::clearance::PairRequest> pairs;
-    if (list.empty()) {
-        const int count = static_cast<int>(model.bodies.size());
-        for (int a = 0; a < count; ++a) {
-            for (int b = a + 1; b < count; ++b) {
-                if (core::model::may_collide(model, a, b)) pairs.push_back({a, b, minimum});
-            }
-        }
-        return pairs;
+std::vector<core::clearance::PairRequest> requests_of(const PairSelection& selection) {
+    std::vector<core::clearance::PairRequest> requests;
+    for (const PairSpec& pair : selection.pairs) {
+        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, pair.minimum});
     }
+    return requests;
+}
+
+struct Lengths {
+    std::optional<double> minimum, tolerance;
+};
+
+Result<Lengths> read_lengths(const Options& options) {
+    Lengths lengths;
     Errors errors;
-    std::istringstream parts(list);
-    for (std::string part; std::getline(parts, part, ',');) {
-        const size_t colon = part.find(':');
-        if (colon == std::string::npos) {
-            errors.push_back({ErrorCode::parse, "--pairs", "\"" + part + "\" is no pair; write A:B,C:D with names of bodies"});
-            continue;
-        }
-        const Result<int> a = find_body(model, part.substr(0, colon)), b = find_body(model, part.substr(colon + 1));
-        errors.insert(errors.end(), a.errors().begin(), a.errors().end());
-        errors.insert(errors.end(), b.errors().begin(), b.errors().end());
-        if (!a || !b) continue;
-        if (*a == *b) errors.push_back({ErrorCode::inconsistent, "--pairs", "\"" + part + "\" pairs a body with itself"});
-        pairs.push_back({*a, *b, minimum});
+    const auto read = [&](const std::string& text, const char* option, std::optional<double>& out) {
+        if (text.empty()) return;
+        const Result<double> length = core::base::parse_length(text, option);
+        errors.insert(errors.end(), length.errors().begin(), length.errors().end());
+        if (length) out = *length;
+    };
+    read(options.minimum, "--minimum", lengths.minimum);
+    read(options.tolerance, "--tolerance", lengths.tolerance);
+    if (lengths.minimum && *lengths.minimum < 0) errors.push_back({ErrorCode::out_of_range, "--minimum", "a clearance is not negative"});
+    if (lengths.tolerance && !(*lengths.tolerance > 0))
+        errors.push_back({ErrorCode::out_of_range, "--tolerance", "a tolerance is greater than 0"});
+    if (options.minimum.empty() && options.pairs.process.empty() && options.pairs.pairs.find('=') == std::string::npos)
+        errors.push_back({ErrorCode::missing_key, "command line",
+                          "how much clearance is required? say --minimum 0.3mm, --process fdm, or --pairs A:B=0.3mm"});
+    if (!options.pairs.process.empty()) {
+        const Result<ProcessPreset> preset = process_preset(options.pairs.process, "--process");
+        errors.insert(errors.end(), preset.errors().begin(), preset.errors().end());
     }
     if (!errors.empty()) return errors;
-    return pairs;
+    return lengths;
 }
 
-Result<Subject> load_subject(const Options& options, const CommonOptions& common, Console& console) {
-    Subject subject;
-    if (file_kind(options.path) == FileKind::trajectory) {
-        Result<core::stepper::StoredTrajectory> stored = core::stepper::read_trajectory(options.path);
-        if (!stored) return stored.errors();
-        subject.model = std::move(stored->model);
-        subject.trajectory = std::move(stored->trajectory);
-        subject.motion = true;
-        return subject;
-    }
-    Result<LoadedModel> loaded = load_model(options.path, common);
-    if (!loaded) return loaded.errors();
-    tell_warnings(console, loaded->warnings);
-    subject.model = std::move(loaded->model);
-    subject.trajectory = core::clearance::as_assembled(subject.model);
-    if (!options.motion) return subject;
-    core::stepper::SimulationOptions simulate_options;
-    simulate_options.steps = loaded->steps;
-    simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
-    simulate_options.should_stop = interrupted;
-    core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
-    subject.trajectory = std::move(simulation.trajectory);
-    subject.motion = true;
-    if (simulation.report.status != core::stepper::SimulationStatus::ok) {
-        subject.not_simulated = std::string(core::stepper::to_string(simulation.report.status)) + ": " + simulation.report.message;
-    }
-    return subject;
+int exit_code(PairStatus status) {
+    if (status == PairStatus::violated) return exit_violated;
+    return status == PairStatus::undecided ? exit_undecided : exit_done;
 }
 
-int exit_code(core::clearance::PairStatus status, bool whole) {
-    if (status == core::clearance::PairStatus::violated) return exit_violated;
-    return status == core::clearance::PairStatus::undecided || !whole ? exit_undecided : exit_done;
+// Bodies that push each other are closer than the tolerance; how close, and that they do not pass through each other, takes a finer one.
+void look_closer(const Subject& subject, core::clearance::ClearanceOptions certify, std::vector<core::clearance::PairClearance>& results) {
+    const double tolerance = certify.tolerance;
+    certify.max_evaluations /= 20;
+    certify.on_pair = nullptr;
+    for (core::clearance::PairClearance& pair : results) {
+        if (pair.intersecting || !(pair.upper > 0) || pair.upper > 10 * tolerance || !may_push(subject, pair.a, pair.b)) continue;
+        certify.tolerance = 1e-2 * pair.upper;
+        const auto closer =
+            core::clearance::certify_clearance(subject.model, subject.trajectory, {{pair.a, pair.b, pair.minimum}}, certify);
+        if (closer.front().lower > pair.lower && closer.front().upper <= pair.upper) pair = closer.front();
+    }
 }
 
 int run_clearance(const Options& options, const CommonOptions& common, Console& console) {
-    const Result<double> minimum = core::base::parse_length(options.minimum, "--minimum");
-    const Result<double> tolerance = core::base::parse_length(options.tolerance, "--tolerance");
-    Errors errors = minimum.errors();
-    errors.insert(errors.end(), tolerance.errors().begin(), tolerance.errors().end());
-    if (minimum && *minimum < 0) errors.push_back({ErrorCode::out_of_range, "--minimum", "a clearance is not negative"});
-    if (tolerance && !(*tolerance > 0)) errors.push_back({ErrorCode::out_of_range, "--tolerance", "a tolerance is greater than 0"});
-    if (!errors.empty()) return console.input_errors(errors);
-    const Result<Subject> subject = load_subject(options, common, console);
+    const Result<Lengths> lengths = read_lengths(options);
+    if (!lengths) return console.input_errors(lengths.errors());
+    const Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
-    const auto pairs = requested_pairs(subject->model, options.pairs, *minimum);
-    if (!pairs) return console.input_errors(pairs.errors());
+    PairOptions pair_options = options.pairs;
+    pair_options.minimum = lengths->minimum;
+    const Result<PairSelection> selection = select_pairs(subject->model, pair_options);
+    if (!selection) return console.input_errors(selection.errors());
 
     core::clearance::ClearanceOptions certify;
-    certify.tolerance = *tolerance;
-    certify.motion = subject->motion;
+    certify.tolerance = lengths->tolerance.value_or(default_tolerance(*selection));
+    certify.motion = subject->motion();
+    certify.margin_curve = !options.csv.empty();
+    certify.witness_tolerance = options.explain > 0 ? certify.tolerance : 0;
     certify.on_pair = [&](int done, int of) { console.progress("certifying", done, of); };
-    const auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, *pairs, certify);
-    const std::vector<std::string> names = body_names(subject->model);
-    Json json = clearance_json(results, names);
-    json["minimum"] = *minimum;
-    const core::clearance::PairStatus status = overall_status(results);
-    const bool whole = subject->not_simulated.empty();
-    if (!whole && status != core::clearance::PairStatus::violated) json["status"] = "undecided";
-    json["motion"] = subject->motion;
-    if (!whole) json["message"] = "the motion is known up to there only: " + subject->not_simulated;
+    certify.should_stop = interrupted;
+    auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection), certify);
+    look_closer(*subject, certify, results);
+    ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance);
+    Errors errors;
+    if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
     const std::string unit = unit_name(subject->model.length_unit);
-    std::string text = clearance_text(results, names, unit, console);
-    text += std::string("overall: ") + json["status"].get<std::string>() + (subject->motion ? ", over the motion\n" : ", as assembled\n");
-    if (!whole) text += json["message"].get<std::string>() + "\n";
-    console.result(json, text);
-    return exit_code(status, whole);
+    if (errors.empty() && !options.csv.empty())
+        errors = core::base::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
+    if (!errors.empty()) return console.input_errors(errors);
+    console.result(report_json(report, *subject), report_text(report, *subject, unit, options.explain, console));
+    return exit_code(report.status);
+}
+
+void add_options(CLI::App& app, Options& options) {
+    app.add_option("FILE", options.subject.path, "Scene, design (at its values), or trajectory")->required();
+    app.add_option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm");
+    app.add_option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
+    app.add_option("--pairs", options.pairs.pairs,
+                   "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
+                   "that may collide)");
+    app.add_option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
+    app.add_option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)")
+        ->allow_extra_args(false);
+    app.add_option("--tolerance", options.tolerance,
+                   "How far the two bounds may be apart (default: 0.001mm or 0.1% of the minimum, the less)");
+    CLI::Option* motion = app.add_flag("--motion", options.subject.motion,
+                                       "Over the motion, which is simulated first (a trajectory: always); else as assembled");
+    CLI::Option* kinematic = app.add_flag("--kinematic", options.subject.kinematic,
+                                          "Over the scripted motion without dynamics: what has no script stays where it is");
+    CLI::Option* poses = app.add_option("--poses", options.subject.poses,
+                                        "Over the poses in this file (.csv or .json, of any program); FILE supplies the meshes");
+    app.add_option("--poses-unit", options.subject.poses_unit, "Unit of lengths in a CSV that does not say px[mm]")->needs(poses);
+    kinematic->excludes(motion)->excludes(poses);
+    poses->excludes(motion);
+    CLI::Option* steps = app.add_option("--steps", options.subject.steps, "How many steps of the motion")->check(CLI::NonNegativeNumber);
+    app.add_option("--time", options.subject.time, "How long, in seconds")->check(CLI::NonNegativeNumber)->excludes(steps);
+    app.add_option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
+        ->expected(0, 1)
+        ->default_str("3")
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
+    app.add_option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
 }
 
 }  // namespace
@@ -151,12 +156,10 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
 Command add_clearance(CLI::App& program, const CommonOptions& common) {
     CLI::App* app = program.add_subcommand("clearance", "Certified least distance of each pair of bodies");
     auto options = std::make_shared<Options>();
-    app->add_option("FILE", options->path, "Scene, design (at its values), or trajectory")->required();
-    app->add_option("--minimum", options->minimum, "Required clearance, with its unit: 0.3mm")->required();
-    app->add_option("--pairs", options->pairs, "A:B,C:D by names of bodies (default: every pair that may collide)");
-    app->add_option("--tolerance", options->tolerance, "How far the two bounds may be apart (default 0.001mm)");
-    app->add_flag("--motion", options->motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
-    app->footer("Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston");
+    add_options(*app, *options);
+    app->footer(process_table() +
+                "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
+                "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
     return {app, [options, &common](Console& console) { return run_clearance(*options, common, console); }};
 }
 

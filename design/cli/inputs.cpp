@@ -24,7 +24,7 @@ FileKind file_kind(const std::string& path) {
     return is_design_file(path) ? FileKind::design : FileKind::scene;
 }
 
-Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common) {
+Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
     LoadedModel loaded;
     if (is_design_file(path)) {
         Result<Design> design = read_design(path, {common.mesh_dirs});
@@ -44,7 +44,9 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
     if (!scene) return scene.errors();
     loaded.scene_path = path;
     loaded.warnings = scene->warnings;
-    Result<core::model::Model> model = core::model::build_model(*scene);
+    core::model::BuildOptions options;
+    options.check_start = check_start;
+    Result<core::model::Model> model = core::model::build_model(*scene, options);
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
     return loaded;

@@ -23,7 +23,8 @@ struct LoadedModel {
     std::vector<std::string> warnings;
 };
 /// From a scene, or from a design at its parameters' values.
-Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common);
+/// @param check_start  false: a scene whose bodies intersect at the start is taken all the same.
+Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start = true);
 
 /// Same, with the warnings told.
 void tell_warnings(Console& console, const std::vector<std::string>& warnings);

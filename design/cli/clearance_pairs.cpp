@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/clearance_pairs.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/design/cli/clearance_subject.hpp"
+#include "fettle/design/process_presets.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using core::model::Model;
+
+// `*` stands for any letters, none included.
+bool matches(std::string_view pattern, std::string_view text) {
+    if (pattern.empty()) return text.empty();
+    if (pattern[0] != '*') return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
+    return matches(pattern.substr(1), text) || (!text.empty() && matches(pattern, text.substr(1)));
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+    return parts;
+}
+
+class Selector {
+public:
+    Selector(const Model& model, const PairOptions& options) : model_(model), options_(options) {}
+
+    Result<PairSelection> select() {
+        for (size_t i = 0; i < model_.bodies.size(); ++i) bodies_.push_back({model_.bodies[i].name, {static_cast<int>(i)}, false});
+        for (const std::string& text : options_.groups) add_group(text);
+        for (const Unit& body : bodies_) {
+            const auto holds = [&](const Unit& g) { return std::count(g.bodies.begin(), g.bodies.end(), body.bodies[0]) > 0; };
+            if (std::none_of(groups_.begin(), groups_.end(), holds)) units_.push_back(body);
+        }
+        units_.insert(units_.end(), groups_.begin(), groups_.end());
+        if (options_.pairs.empty()) {
+            add_all();
+        } else {
+            for (const std::string& token : split(options_.pairs, ',')) add_token(token);
+        }
+        for (const std::string& token : split(options_.ignore, ',')) ignore(token);
+        if (!errors_.empty()) return errors_;
+        require();
+        if (!errors_.empty()) return errors_;
+        tidy_left_out();
+        return std::move(selection_);
+    }
+
+private:
+    struct Named {
+        std::vector<Unit> units;
+        bool wildcard = false;
+    };
+
+    void fail(const char* option, ErrorCode code, std::string message) { errors_.push_back({code, option, std::move(message)}); }
+
+    void add_group(const std::string& text) {
+        const size_t equals = text.find('=');
+        Unit group{text.substr(0, equals), {}, true};
+        if (equals == std::string::npos || group.name.empty()) {
+            fail("--group", ErrorCode::parse, "\"" + text + "\" is no group; write name=a,b,c with names of bodies");
+            return;
+        }
+        for (const Unit& other : bodies_) {
+            if (other.name == group.name) fail("--group", ErrorCode::inconsistent, "\"" + group.name + "\" is a body's name already");
+        }
+        for (const std::string& part : split(text.substr(equals + 1), ',')) {
+            const Named found = find(part, bodies_, "--group");
+            for (const Unit& body : found.units) group.bodies.push_back(body.bodies[0]);
+        }
+        std::sort(group.bodies.begin(), group.bodies.end());
+        group.bodies.erase(std::unique(group.bodies.begin(), group.bodies.end()), group.bodies.end());
+        for (const Unit& other : groups_) {
+            for (const int body : group.bodies) {
+                if (std::count(other.bodies.begin(), other.bodies.end(), body))
+                    fail("--group", ErrorCode::inconsistent,
+                         "\"" + model_.bodies[static_cast<size_t>(body)].name + "\" is in both " + other.name + " and " + group.name);
+            }
+        }
+        groups_.push_back(group);
+    }
+
+    Named find(const std::string& name, const std::vector<Unit>& among, const char* option) {
+        Named found;
+        found.wildcard = name.find('*') != std::string::npos;
+        for (const Unit& unit : among) {
+            if (found.wildcard ? matches(name, unit.name) : unit.name == name) found.units.push_back(unit);
+        }
+        if (!found.units.empty()) return found;
+        std::vector<std::string_view> known;
+        for (const Unit& unit : among) known.push_back(unit.name);
+        std::string message = (found.wildcard ? "no name matches \"" : "there is no body \"") + name + "\"";
+        const auto nearest = found.wildcard ? std::nullopt : core::scene::nearest_word(name, known);
+        if (nearest) {
+            message += "; did you mean \"" + *nearest + "\"?";
+        } else {
+            for (size_t i = 0; i < known.size(); ++i) message += (i ? ", " : "; there are ") + std::string(known[i]);
+        }
+        fail(option, ErrorCode::out_of_range, message);
+        return found;
+    }
+
+    // Wildcards stand for what the report has rows of; a body of a group can still be named itself.
+    Named find_unit(const std::string& name, const char* option) {
+        if (name.find('*') != std::string::npos) return find(name, units_, option);
+        std::vector<Unit> all = bodies_;
+        all.insert(all.end(), groups_.begin(), groups_.end());
+        return find(name, all, option);
+    }
+
+    struct Token {
+        Named a, b;
+        std::optional<double> minimum;
+        bool good = false;
+    };
+
+    Token read_token(const std::string& text, const char* option, bool with_minimum) {
+        Token token;
+        const size_t equals = with_minimum ? text.rfind('=') : std::string::npos;
+        const std::string names = text.substr(0, equals);
+        const size_t colon = names.find(':');
+        if (colon == std::string::npos || names.find(':', colon + 1) != std::string::npos) {
+            fail(option, ErrorCode::parse,
+                 "\"" + text + "\" is no pair; write A:B,C:D with names of bodies" + (with_minimum ? ", or A:B=0.4mm" : ""));
+            return token;
+        }
+        const size_t errors_before = errors_.size();
+        token.a = find_unit(names.substr(0, colon), option);
+        token.b = find_unit(names.substr(colon + 1), option);
+        if (equals != std::string::npos) {
+            const Result<double> minimum = core::base::parse_length(text.substr(equals + 1), option);
+            errors_.insert(errors_.end(), minimum.errors().begin(), minimum.errors().end());
+            if (minimum) token.minimum = *minimum;
+            if (minimum && *minimum < 0) fail(option, ErrorCode::out_of_range, "\"" + text + "\": a clearance is not negative");
+        }
+        token.good = errors_.size() == errors_before;
+        return token;
+    }
+
+    static bool same(const Unit& x, const Unit& y) { return x.name == y.name; }
+    static bool overlap(const Unit& x, const Unit& y) {
+        return std::any_of(x.bodies.begin(), x.bodies.end(), [&](int i) { return std::count(y.bodies.begin(), y.bodies.end(), i) > 0; });
+    }
+
+    void add_token(const std::string& text) {
+        const Token token = read_token(text, "--pairs", true);
+        if (!token.good) return;
+        const bool named = !token.a.wildcard && !token.b.wildcard;
+        if (named && overlap(token.a.units[0], token.b.units[0])) {
+            fail("--pairs", ErrorCode::inconsistent, "\"" + text + "\" pairs a body with itself");
+            return;
+        }
+        for (const Unit& a : token.a.units) {
+            for (const Unit& b : token.b.units) {
+                if (!overlap(a, b)) add(a, b, named, token.minimum);
+            }
+        }
+    }
+
+    void add_all() {
+        for (size_t i = 0; i < units_.size(); ++i) {
+            for (size_t j = i + 1; j < units_.size(); ++j) add(units_[i], units_[j], false, std::nullopt);
+        }
+    }
+
+    // Later tokens make earlier ones more precise: `*:*,pin:plate=0.4mm`.
+    void add(const Unit& a, const Unit& b, bool named, std::optional<double> minimum) {
+        PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", named, {}};
+        for (const int i : a.bodies) {
+            for (const int j : b.bodies) {
+                if (named || judged_by_default(model_, i, j)) pair.body_pairs.emplace_back(i, j);
+            }
+        }
+        if (pair.body_pairs.empty()) {
+            if (may_meet(a, b)) selection_.left_out.push_back(a.name + ":" + b.name);
+            return;
+        }
+        for (PairSpec& known : selection_.pairs) {
+            if (!((same(known.a, a) && same(known.b, b)) || (same(known.a, b) && same(known.b, a)))) continue;
+            if (minimum) {
+                known.minimum = *minimum;
+                known.required_by = pair.required_by;
+            }
+            if (named && !known.named) {
+                known.named = true;
+                known.a = a;
+                known.b = b;
+                known.body_pairs = pair.body_pairs;
+            }
+            return;
+        }
+        selection_.pairs.push_back(pair);
+    }
+
+    // One of them moves, and the scene does not say that they belong together.
+    bool may_meet(const Unit& a, const Unit& b) const {
+        for (const int i : a.bodies) {
+            for (const int j : b.bodies) {
+                const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
+                const bool together = x.group >= 0 && x.group == y.group;
+                const auto still = core::scene::BodyType::static_body;
+                if (!together && (x.type != still || y.type != still)) return true;
+            }
+        }
+        return false;
+    }
+
+    void ignore(const std::string& text) {
+        const Token token = read_token(text, "--ignore", false);
+        if (!token.good) return;
+        const auto among = [](const Unit& unit, const Named& named) {
+            return std::any_of(named.units.begin(), named.units.end(), [&](const Unit& u) { return same(u, unit); });
+        };
+        auto& pairs = selection_.pairs;
+        const auto hit = [&](const PairSpec& p) {
+            return (among(p.a, token.a) && among(p.b, token.b)) || (among(p.a, token.b) && among(p.b, token.a));
+        };
+        for (const PairSpec& pair : pairs) {
+            if (hit(pair)) selection_.ignored.push_back(pair.a.name + ":" + pair.b.name);
+        }
+        pairs.erase(std::remove_if(pairs.begin(), pairs.end(), hit), pairs.end());
+        const auto left = [&](const std::string& name) {
+            const Unit a{name.substr(0, name.find(':')), {}, false}, b{name.substr(name.find(':') + 1), {}, false};
+            return (among(a, token.a) && among(b, token.b)) || (among(a, token.b) && among(b, token.a));
+        };
+        auto& out = selection_.left_out;
+        out.erase(std::remove_if(out.begin(), out.end(), left), out.end());
+    }
+
+    // The longest side of the box of a part as it is drawn: the largest part of a group.
+    double size_of(const Unit& unit) const {
+        double size = 0;
+        for (const int i : unit.bodies) {
+            const Matrix3X& x = model_.bodies[static_cast<size_t>(i)].mesh.vertices;
+            size = std::max(size, (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff());
+        }
+        return size;
+    }
+
+    void require() {
+        std::optional<ProcessPreset> preset;
+        if (!options_.process.empty()) {
+            const Result<ProcessPreset> found = process_preset(options_.process, "--process");
+            errors_.insert(errors_.end(), found.errors().begin(), found.errors().end());
+            if (!found) return;
+            preset = *found;
+        }
+        for (PairSpec& pair : selection_.pairs) {
+            if (!pair.required_by.empty()) continue;
+            const std::string name = pair.a.name + ":" + pair.b.name;
+            if (options_.minimum) {
+                pair.minimum = *options_.minimum;
+                pair.required_by = "--minimum";
+            } else if (preset) {
+                const Result<double> required = required_clearance(*preset, size_of(pair.a), size_of(pair.b), "pair " + name);
+                errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
+                pair.minimum = required ? *required : 0;
+                pair.required_by = "--process " + options_.process;
+            } else {
+                fail("--minimum", ErrorCode::missing_key,
+                     "what does " + name + " need? say --minimum 0.3mm, --process fdm, or --pairs " + name + "=0.3mm");
+                return;
+            }
+        }
+    }
+
+    // Each once, and not what another token named.
+    void tidy_left_out() {
+        std::vector<std::string> once;
+        for (const std::string& name : selection_.left_out) {
+            const size_t colon = name.find(':');
+            const std::string other = name.substr(colon + 1) + ":" + name.substr(0, colon);
+            const auto is = [&](const std::string& known) { return known == name || known == other; };
+            const auto judged = [&](const PairSpec& pair) { return is(pair.a.name + ":" + pair.b.name); };
+            if (std::none_of(once.begin(), once.end(), is) && std::none_of(selection_.pairs.begin(), selection_.pairs.end(), judged))
+                once.push_back(name);
+        }
+        selection_.left_out = once;
+    }
+
+    const Model& model_;
+    const PairOptions& options_;
+    std::vector<Unit> bodies_, groups_, units_;  // units: rows of the report by default
+    PairSelection selection_;
+    Errors errors_;
+};
+
+}  // namespace
+
+Result<PairSelection> select_pairs(const Model& model, const PairOptions& options) { return Selector(model, options).select(); }
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+/// The report of `fettle clearance`: pairs worst first, as JSON, as text and as CSV, and against an earlier one.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/design/cli/clearance_pairs.hpp"
+#include "fettle/design/cli/clearance_subject.hpp"
+
+namespace fettle::design::cli {
+
+/// What people read, worst first.
+enum class Finding {
+    clash,      ///< the bodies pass through each other, or one lies inside the other's material
+    below,      ///< closer than required
+    undecided,  ///< what is required lies between the bounds, or the search was cut short
+    contact,    ///< bodies that dynamics lets push each other come close enough to do so; reported, not judged
+    clear
+};
+const char* to_string(Finding finding);
+
+/// A pair in an earlier report.
+struct Before {
+    std::string status;
+    double lower = 0, upper = 0;  ///< [m]
+};
+
+struct ReportedPair {
+    PairSpec spec;
+    core::clearance::PairClearance least;                 ///< of the two bodies that are closest; bounds and status of the whole pair
+    std::vector<core::clearance::PairClearance> members;  ///< one per pair of bodies
+    Finding finding = Finding::undecided;
+    std::string overlap;           ///< says how one lies inside the other; empty: it does not
+    std::optional<Before> before;  ///< in the baseline
+    std::string change;            ///< "new", "existing", "resolved"; empty: nothing to tell, or no baseline
+};
+
+struct ClearanceReport {
+    std::vector<ReportedPair> pairs;  ///< worst first
+    std::vector<std::string> ignored, left_out;
+    std::vector<std::string> missing;  ///< findings of the baseline whose pairs were not judged now
+    std::string baseline;              ///< file; empty: none
+    double tolerance = 0;              ///< [m]
+    core::clearance::PairStatus status = core::clearance::PairStatus::clear;
+};
+
+/// `results`: one per pair of bodies, in the order of the selection.
+ClearanceReport make_report(const Subject& subject, const PairSelection& selection,
+                            const std::vector<core::clearance::PairClearance>& results, double tolerance);
+
+/// A body's pose at a witness's instant: that of its file's frame.
+core::kinematics::Pose file_pose(const Subject& subject, const core::clearance::Witness& witness, int body);
+
+/// Marks findings as new, existing or resolved. Errors: the file is no report.
+Errors compare_with_baseline(const std::string& path, ClearanceReport& report);
+
+/// Keys: interface.md, and gap, sampled, finding, pose_a, pose_b, required_by ... SI.
+nlohmann::ordered_json report_json(const ClearanceReport& report, const Subject& subject);
+
+/// Lengths in `unit`, lower bounds rounded down and upper ones up. Explains the `explain` worst pairs.
+std::string report_text(const ClearanceReport& report, const Subject& subject, const std::string& unit, int explain,
+                        const Console& console);
+
+/// One row per pair of bodies and path segment: a,b,step,segment,time_start[s],time_end[s],lower[unit],upper[unit].
+std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit);
+
+}  // namespace fettle::design::cli

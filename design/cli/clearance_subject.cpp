@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/clearance_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/model/start_check.hpp"
+#include "fettle/core/stepper/poses_file.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/inputs.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using core::scene::BodyType;
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+// What moves without dynamics is kinematic, what does not move is static: whoever reads the stored trajectory then knows.
+void mark_as_scripted(Subject& subject) {
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i) {
+        bool moves = false;
+        for (const auto& step : subject.trajectory.steps) {
+            for (const auto& node : step.nodes)
+                moves = moves || node[i].rotation_vector != Vector3::Zero() || node[i].position != subject.trajectory.poses[0][i].position;
+        }
+        subject.model.bodies[i].type = moves ? BodyType::kinematic_body : BodyType::static_body;
+    }
+}
+
+Result<Subject> from_trajectory(const SubjectOptions& options) {
+    if (!options.poses.empty() || options.kinematic)
+        return Error{ErrorCode::inconsistent, options.path,
+                     "a trajectory has its motion; --poses and --kinematic go with a scene or design"};
+    Result<core::stepper::StoredTrajectory> stored = core::stepper::read_trajectory(options.path);
+    if (!stored) return stored.errors();
+    Subject subject;
+    subject.model = std::move(stored->model);
+    subject.trajectory = std::move(stored->trajectory);
+    subject.source = SubjectSource::trajectory;
+    subject.scene_path = stored->scene_path;
+    return subject;
+}
+
+Errors take_poses(const SubjectOptions& options, Subject& subject) {
+    std::optional<double> unit;
+    if (!options.poses_unit.empty()) {
+        const Result<double> metres = core::base::metres_per_unit(options.poses_unit, "--poses-unit");
+        if (!metres) return metres.errors();
+        unit = *metres;
+    }
+    auto read = core::stepper::read_poses(options.poses, subject.model, unit);
+    if (!read) return read.errors();
+    subject.trajectory = std::move(read->trajectory);
+    subject.source = SubjectSource::poses;
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i) subject.model.bodies[i].pose_start = subject.trajectory.poses[0][i];
+    if (!read->still.empty())
+        subject.notes.push_back("not in " + options.poses + ", so held where the scene has them: " + joined(read->still));
+    if (read->largest_rotation_error > 1e-12) {
+        subject.notes.push_back(
+            formatted("rotations in %s are off by up to %.2g; the nearest rotations were taken, and bounds speak of those",
+                      options.poses.c_str(), read->largest_rotation_error));
+    }
+    const double cut = read->largest_cut, unit_length = subject.model.length_unit;
+    if (cut > 1e-6) {
+        subject.notes.push_back(
+            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
+                      "goes round an "
+                      "axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
+                      read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, unit_name(unit_length).c_str()));
+    }
+    return {};
+}
+
+void simulate(int steps, Subject& subject, Console& console) {
+    core::stepper::SimulationOptions simulate_options;
+    simulate_options.steps = steps;
+    simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
+    simulate_options.should_stop = interrupted;
+    core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
+    subject.trajectory = std::move(simulation.trajectory);
+    subject.source = SubjectSource::simulated;
+    if (simulation.report.status != core::stepper::SimulationStatus::ok)
+        subject.incomplete = std::string(core::stepper::to_string(simulation.report.status)) + ": " + simulation.report.message;
+}
+
+}  // namespace
+
+const char* to_string(SubjectSource source) {
+    switch (source) {
+        case SubjectSource::as_assembled:
+            return "as assembled";
+        case SubjectSource::simulated:
+            return "over the simulated motion";
+        case SubjectSource::scripted:
+            return "over the scripted motion, without dynamics";
+        case SubjectSource::poses:
+            return "over the poses read";
+        case SubjectSource::trajectory:
+            return "over the trajectory";
+    }
+    return "";
+}
+
+Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console) {
+    if (file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
+    Result<LoadedModel> loaded = load_model(options.path, common, false);
+    if (!loaded) return loaded.errors();
+    tell_warnings(console, loaded->warnings);
+    Subject subject;
+    subject.model = std::move(loaded->model);
+    subject.scene_path = loaded->scene_path;
+    const auto& bodies = subject.model.bodies;
+    const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
+    const int steps = options.steps >= 0  ? options.steps
+                      : options.time >= 0 ? static_cast<int>(std::ceil(options.time / subject.model.timestep - 1e-9))
+                                          : loaded->steps;
+    if (!options.poses.empty()) {
+        const Errors errors = take_poses(options, subject);
+        if (!errors.empty()) return errors;
+        mark_as_scripted(subject);
+    } else if (options.kinematic || (options.motion && all_scripted)) {
+        subject.trajectory = core::stepper::follow_scripts(subject.model, steps);
+        subject.source = SubjectSource::scripted;
+        const auto held = core::stepper::held_bodies(subject.model);
+        if (!held.empty()) subject.notes.push_back("--kinematic: what would move freely is held at its start pose: " + joined(held));
+        mark_as_scripted(subject);
+    } else if (options.motion) {
+        // Only what starts apart can be simulated; a report as assembled tells of the rest.
+        Errors errors = core::model::check_start(subject.model);
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        if (!errors.empty()) return errors;
+        simulate(steps, subject, console);
+    } else {
+        subject.trajectory = core::clearance::as_assembled(subject.model);
+    }
+    return subject;
+}
+
+bool judged_by_default(const core::model::Model& model, int a, int b) {
+    const auto dynamic = [](const core::model::Body& body) { return body.type == BodyType::dynamic_body; };
+    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
+    const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
+    if (a == b || (first.group >= 0 && first.group == second.group)) return false;
+    return first.type != BodyType::static_body || second.type != BodyType::static_body;
+}
+
+bool may_push(const Subject& subject, int a, int b) {
+    const bool dynamics = subject.source == SubjectSource::simulated || subject.source == SubjectSource::trajectory;
+    return dynamics && core::model::may_collide(subject.model, a, b);
+}
+
+}  // namespace fettle::design::cli

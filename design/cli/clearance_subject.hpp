@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// What `fettle clearance` judges: bodies and the path that they take, from any of the sources of motion.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/design/cli/session.hpp"
+
+namespace fettle::design::cli {
+
+struct SubjectOptions {
+    std::string path;               ///< scene, design or trajectory
+    std::string poses, poses_unit;  ///< file of poses, and the unit of its lengths where it does not say; empty: none
+    bool motion = false;            ///< simulate a scene or design
+    bool kinematic = false;         ///< follow scripts, no dynamics
+    int steps = -1;                 ///< of the motion; negative: the scene's
+    double time = -1;               ///< [s], instead of steps
+};
+
+enum class SubjectSource { as_assembled, simulated, scripted, poses, trajectory };
+const char* to_string(SubjectSource source);
+
+struct Subject {
+    core::model::Model model;  ///< its start poses are those of the trajectory; bodies moved by poses or scripts alone are kinematic
+    core::stepper::Trajectory trajectory;
+    SubjectSource source = SubjectSource::as_assembled;
+    std::string scene_path;
+    std::string incomplete;          ///< why the motion is not whole; empty: it is, or there is none
+    std::vector<std::string> notes;  ///< what the reader of a report should know
+
+    bool motion() const { return source != SubjectSource::as_assembled; }
+};
+
+/// Errors: of the files and options, all with their places.
+Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console);
+
+/// Are these two judged when no pairs are named? Those that may collide; where nothing is dynamic, those of which one may move.
+bool judged_by_default(const core::model::Model& model, int a, int b);
+
+/// In a motion with dynamics, can these two push each other? Then coming close is what they are for, unless someone asks for more.
+bool may_push(const Subject& subject, int a, int b);
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// The report of `fettle clearance` for people: a table, explanations, and the margin curves as CSV.
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/clearance_report.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using core::clearance::PairClearance;
+using core::clearance::Witness;
+
+// Numbers of a table in one unit: enough decimals to show the tolerance; three digits of what is smaller than that.
+class Lengths {
+public:
+    Lengths(const std::string& unit, double tolerance) : unit_(unit), metres_(core::base::metres_per_unit(unit).value()) {
+        decimals_ = std::clamp(static_cast<int>(std::ceil(-std::log10(tolerance / metres_) - 1e-9)), 0, 9);
+    }
+    // A bound that is printed is still a bound. `more` decimals than the table has.
+    std::string down(double x, int more = 0) const {
+        return rounded(x / metres_, decimals_ + more, [](double y) { return std::floor(y); });
+    }
+    std::string up(double x, int more = 0) const {
+        return rounded(x / metres_, decimals_ + more, [](double y) { return std::ceil(y); });
+    }
+    std::string plain(double x) const { return formatted("%.6g", x / metres_); }
+    std::string rough(double x) const { return formatted("%.2g", x / metres_); }
+    std::string point(const Vector3& x) const {
+        return formatted("(%.6g, %.6g, %.6g) %s", x.x() / metres_, x.y() / metres_, x.z() / metres_, unit_.c_str());
+    }
+    const std::string& unit() const { return unit_; }
+
+private:
+    template <class Round>
+    static std::string rounded(double x, int decimals, const Round& round) {
+        const double scale = std::pow(10.0, decimals);
+        if (x == 0 || !std::isfinite(x)) return formatted("%g", x);
+        if (std::abs(x) * scale >= 10) return formatted("%.*f", decimals, round(x * scale) / scale);
+        const double digit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 2);  // of the third digit
+        return formatted("%.3g", round(x / digit) * digit);
+    }
+    std::string unit_;
+    double metres_;
+    int decimals_ = 0;
+};
+
+std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" + pair.spec.b.name; }
+
+std::string table(const ClearanceReport& report, const Subject& subject, const Lengths& lengths, const Console& console) {
+    size_t width = 4;
+    for (const ReportedPair& pair : report.pairs) width = std::max(width, pair_name(pair).size());
+    const int w = static_cast<int>(width);
+    std::string text = formatted("%-*s %12s %14s %14s  %-16s%s   (lengths in %s, times in s)\n", w, "pair", "required", "at least",
+                                 "at most", "status", subject.motion() ? "  when" : "", lengths.unit().c_str());
+    for (const ReportedPair& pair : report.pairs) {
+        const PairClearance& least = pair.least;
+        const std::string status = formatted("%-16s", to_string(pair.finding));
+        const bool good = pair.finding == Finding::clear || pair.finding == Finding::contact;
+        text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(), lengths.plain(least.minimum).c_str(),
+                          lengths.down(least.lower).c_str(), lengths.up(least.upper).c_str(), console.coloured(status, good).c_str());
+        if (subject.motion()) text += formatted("  %.6g", least.witness.time);
+        text += (pair.change.empty() ? "" : "  " + pair.change) + "\n";
+    }
+    return text;
+}
+
+std::string pose_line(const std::string& name, const core::kinematics::Pose& pose, const Lengths& lengths) {
+    const Vector3 theta = core::kinematics::rotation_vector(pose.rotation);
+    const double angle = theta.norm();
+    std::string text = "   " + name + " at " + lengths.point(pose.position);
+    if (angle > 0) {
+        const Vector3 axis = theta / angle;
+        text += formatted(", turned by %.6g degrees about (%.4g, %.4g, %.4g)", angle * 180 / M_PI, axis.x(), axis.y(), axis.z());
+    }
+    return text + "\n";
+}
+
+std::string feature(core::clearance::Primitive kind, int index) {
+    const char* words[] = {"vertex", "edge", "triangle"};
+    return formatted("%s %d", words[static_cast<int>(kind)], index);
+}
+
+std::string explained(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
+    const PairClearance& least = pair.least;
+    const Witness& w = least.witness;
+    const std::string& a = subject.model.bodies[static_cast<size_t>(least.a)].name;
+    const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
+    std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
+    text += "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " + lengths.unit() +
+            " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart); required " + lengths.plain(least.minimum) +
+            " per side (" + pair.spec.required_by + ")\n";
+    if (!pair.overlap.empty()) return text + "   " + pair.overlap + "\n";
+    if (pair.finding == Finding::clash) text += "   an edge of one passes through a face of the other\n";
+    if (w.step >= 0) {
+        text += formatted("   closest at %.9g s, in step %d", w.time, w.step + 1);
+        const int segments = core::stepper::segment_count(subject.trajectory, w.step);
+        if (segments > 1) text += formatted(", part %d of %d of its path", w.segment + 1, segments);
+        text += formatted(", %.3g%% of the way\n", 100 * w.s);
+    }
+    text += "   " + feature(w.kind_a, w.primitive_a) + " of " + a + ", at " + lengths.point(w.point_a) + "\n";
+    text += "   " + feature(w.kind_b, w.primitive_b) + " of " + b + ", at " + lengths.point(w.point_b) + "\n";
+    text += pose_line(a, file_pose(subject, w, least.a), lengths) + pose_line(b, file_pose(subject, w, least.b), lengths);
+    if (subject.motion())
+        text += "   least distance at the ends of the steps, which is what sampling sees: " + lengths.plain(least.sampled) + " " +
+                lengths.unit() + "\n";
+    if (least.witnesses.size() > 1) {
+        text += formatted("   as close, to within the tolerance, at %zu more places", least.witnesses.size() - 1);
+        if (subject.motion()) {
+            text += ":";
+            for (size_t i = 1; i < std::min<size_t>(least.witnesses.size(), 4); ++i)
+                text += formatted("%s %.6g s", i > 1 ? "," : "", least.witnesses[i].time);
+            if (least.witnesses.size() > 4) text += ", ...";
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string summary(const ClearanceReport& report, const Subject& subject) {
+    std::map<Finding, int> counts;
+    for (const ReportedPair& pair : report.pairs) ++counts[pair.finding];
+    std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", to_string(subject.source));
+    if (subject.motion()) {
+        const auto steps = static_cast<int>(subject.trajectory.steps.size());
+        text += formatted(" (%d steps, %.6g s)", steps,
+                          core::stepper::time_at(subject.trajectory, steps) - core::stepper::time_at(subject.trajectory, 0));
+    }
+    const char* before = ": ";
+    for (const auto& [finding, count] : counts) {
+        text += formatted("%s%d %s", before, count, to_string(finding));
+        before = ", ";
+    }
+    return text + "\n";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& each : words) text += (text.empty() ? "" : ", ") + each;
+    return text;
+}
+
+std::string shortest(double x) {
+    char buffer[32];
+    const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, x);
+    return {buffer, code == std::errc() ? end : buffer};
+}
+
+std::string quoted(const std::string& name) {
+    if (name.find_first_of(",\"\n") == std::string::npos) return name;
+    std::string text = "\"";
+    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return text + "\"";
+}
+
+}  // namespace
+
+std::string report_text(const ClearanceReport& report, const Subject& subject, const std::string& unit, int explain,
+                        const Console& console) {
+    const Lengths lengths(unit, report.tolerance);
+    std::string text = table(report, subject, lengths, console);
+    for (int i = 0; i < std::min<int>(explain, static_cast<int>(report.pairs.size())); ++i)
+        text += "\n" + formatted("%d. ", i + 1) + explained(report.pairs[static_cast<size_t>(i)], subject, lengths);
+    text += "\n" + summary(report, subject);
+    if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
+        text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
+    if (!report.left_out.empty())
+        text += "not judged, because the simulation lets them pass through each other: " + joined(report.left_out) +
+                "; name them with --pairs\n";
+    if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
+    for (const std::string& note : subject.notes) text += "note: " + note + "\n";
+    if (!report.baseline.empty()) {
+        int changes[3] = {0, 0, 0};
+        for (const ReportedPair& pair : report.pairs)
+            for (int k = 0; k < 3; ++k)
+                changes[k] += pair.change == std::vector<const char*>{"new", "existing", "resolved"}[static_cast<size_t>(k)];
+        text += formatted("against %s: %d new, %d existing, %d resolved\n", report.baseline.c_str(), changes[0], changes[1], changes[2]);
+        if (!report.missing.empty()) text += "found there and not judged now: " + joined(report.missing) + "\n";
+    }
+    if (!subject.incomplete.empty()) text += "the motion is known up to there only: " + subject.incomplete + "\n";
+    return text + "overall: " + core::clearance::to_string(report.status) + "\n";
+}
+
+std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit) {
+    const double metres = core::base::metres_per_unit(unit).value();
+    std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
+    for (const ReportedPair& pair : report.pairs) {
+        for (const PairClearance& member : pair.members) {
+            const std::string names = quoted(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
+                                      quoted(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
+            for (const core::clearance::MarginInterval& m : member.margin) {
+                const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
+                text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +
+                        shortest(core::stepper::time_at(subject.trajectory, m.step, m.segment, 0)) + "," + shortest(end) + "," +
+                        shortest(m.lower / metres) + "," + shortest(m.upper / metres) + "\n";
+            }
+        }
+    }
+    return text;
+}
+
+}  // namespace fettle::design::cli

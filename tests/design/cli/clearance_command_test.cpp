@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+// fettle clearance from outside: sources of motion, pairs, presets, reports. FETTLE_PROGRAM says where the program is.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "fettle/tests/design/small_design.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace fettle::tests::design_support;
+
+std::string program() {
+    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
+#ifdef FETTLE_PROGRAM
+    return FETTLE_PROGRAM;
+#else
+    return {};
+#endif
+}
+
+struct Answer {
+    int code = -1;
+    std::string out;
+    Json json() const { return Json::parse(out, nullptr, false); }
+    /// The pair of two names, in either order.
+    Json pair(const std::string& a, const std::string& b) const {
+        for (const Json& p : json()["pairs"])
+            if ((p["a"] == a && p["b"] == b) || (p["a"] == b && p["b"] == a)) return p;
+        return nullptr;
+    }
+    bool says(const std::string& text) const { return out.find(text) != std::string::npos; }
+};
+
+Answer run(const std::string& arguments, bool with_errors = false) {
+    const std::string command = "'" + program() + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
+    Answer answer;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    char buffer[4096];
+    for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
+    const int status = ::pclose(pipe);
+    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return answer;
+}
+
+bool absent() {
+    if (!program().empty()) return false;
+    WARN("skipped: FETTLE_PROGRAM does not say where the program is");
+    return true;
+}
+
+// Cubes of 10 mm in a row, 0.5 mm, 0.2 mm and 3 mm apart; `slide` moves along the row, `spin` turns about its own axis.
+const char* row_scene = R"({
+  "fettle_scene": 1, "units": "mm", "timestep": 0.1, "end_time": 1,
+  "bodies": [
+    { "name": "slide", "type": "kinematic", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+      "prescribed": { "px": { "rate": -1 } } },
+    { "name": "pin1", "type": "static", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+      "position": [10.5, 0, 0] },
+    { "name": "pin2", "type": "static", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+      "position": [20.7, 0, 0] },
+    { "name": "spin", "type": "kinematic", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+      "position": [33.7, 0, 0], "prescribed": { "rz": { "rate": 90 } } }
+  ]
+})";
+
+struct RowFolder : DesignFolder {
+    RowFolder() : DesignFolder(small_design, row_scene) {}
+    std::string scene() const { return (path / "small.scene.json").string(); }
+    std::string file(const std::string& name) const { return (path / name).string(); }
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(path / name) << text;
+        return file(name);
+    }
+};
+
+std::string contents(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its minimum") {
+    if (absent()) return;
+    const RowFolder folder;
+    const std::string command = "clearance " + folder.scene() + " --json ";
+    // Everything that moves against everything: not pin1 against pin2, which are both static. Worst first.
+    const Answer all = run(command + "--minimum 0.6mm");
+    CHECK(all.code == 1);
+    REQUIRE(all.json()["pairs"].size() == 5);
+    CHECK(all.json()["pairs"][0]["b"] == "pin1");
+    CHECK(all.json()["pairs"][0]["finding"] == "below threshold");
+    CHECK(all.json()["pairs"][0]["lower"].get<double>() == Approx(0.0005).margin(1e-6));
+    CHECK(all.pair("spin", "pin2")["status"] == "clear");
+    CHECK(all.json()["minimum"] == 6e-4);
+    // Both static: by name only.
+    const Answer named = run(command + "--minimum 0.1mm --pairs pin1:pin2");
+    CHECK(named.code == 0);
+    CHECK(named.pair("pin1", "pin2")["upper"].get<double>() == Approx(0.0002).margin(1e-6));
+    const Answer wild = run(command + "--minimum 0.1mm --pairs 's*:pin*,slide:pin1=0.4mm'");
+    CHECK(wild.json()["pairs"].size() == 4);
+    CHECK(wild.pair("slide", "pin1")["minimum"] == 4e-4);
+    CHECK(wild.pair("slide", "pin1")["required_by"] == "--pairs");
+    CHECK(wild.pair("slide", "pin2")["minimum"] == 1e-4);
+    CHECK(run(command + "--pairs slide:pin1=0.4mm").code == 0);
+    CHECK(run(command + "--pairs slide:pin1=0.51mm").code == 1);
+    const Answer ignored = run(command + "--minimum 0.6mm --ignore pin1:*");
+    CHECK(ignored.code == 0);
+    CHECK(ignored.json()["pairs"].size() == 3);
+    CHECK(ignored.json()["ignored"].size() == 2);
+    // The pins as one rigid set: one row, that of the nearest; not against each other.
+    const Answer group = run(command + "--minimum 0.6mm --group frame=pin1,pin2");
+    CHECK(group.json()["pairs"].size() == 3);
+    const Json row = group.pair("frame", "slide");
+    CHECK((row["body_a"] == "pin1" || row["body_b"] == "pin1"));
+    CHECK(row["upper"].get<double>() == Approx(0.0005).margin(1e-6));
+    CHECK(group.pair("frame", "spin")["upper"].get<double>() == Approx(0.003).margin(1e-6));
+    CHECK(run(command + "--minimum 0.6mm --group frame=pin1,pin2 --pairs frame:spin").code == 0);
+}
+
+TEST_CASE("clearance: usage that is wrong is refused with what to do") {
+    if (absent()) return;
+    const RowFolder folder;
+    const auto refused = [&](const std::string& arguments, const std::string& says) {
+        const Answer answer = run("clearance " + folder.scene() + " " + arguments, true);
+        CAPTURE(arguments, answer.out);
+        CHECK(answer.code == 3);
+        CHECK(answer.says(says));
+    };
+    refused("", "how much clearance is required? say --minimum 0.3mm, --process fdm");
+    refused("--minimum 0.3", "--minimum");
+    refused("--minimum -1mm", "a clearance is not negative");
+    refused("--process fdn", "did you mean \"fdm\"?");
+    refused("--minimum 1mm --pairs slide-pin1", "is no pair");
+    refused("--minimum 1mm --pairs slide:pin3", "did you mean \"pin1\"?");
+    refused("--minimum 1mm --pairs 'x*:pin1'", "no name matches");
+    refused("--minimum 1mm --pairs slide:slide", "with itself");
+    refused("--minimum 1mm --pairs slide:pin1=1", "without a unit");
+    refused("--pairs slide:pin1=1mm,slide:pin2", "what does slide:pin2 need?");
+    refused("--minimum 1mm --group frame", "write name=a,b,c");
+    refused("--minimum 1mm --group slide=pin1", "is a body's name already");
+    refused("--minimum 1mm --group f=pin1 --group g=pin1", "is in both");
+    refused("--minimum 1mm --motion --kinematic", "");
+    refused("--minimum 1mm --poses " + folder.file("none.csv"), "none.csv");
+    refused("--minimum 1mm --baseline " + folder.file("none.json"), "none.json");
+}
+
+TEST_CASE("clearance: process presets, per side, by size of the parts") {
+    if (absent()) return;
+    const RowFolder folder;
+    const Answer sla = run("clearance " + folder.scene() + " --process sla --json");
+    CHECK(sla.code == 0);
+    CHECK(sla.pair("slide", "pin1")["minimum"].get<double>() == Approx(0.375e-3));
+    CHECK(sla.pair("slide", "pin1")["required_by"] == "--process sla");
+    const Answer fdm = run("clearance " + folder.scene() + " --process fdm --json");
+    CHECK(fdm.code == 1);
+    CHECK(fdm.pair("slide", "pin1")["minimum"].get<double>() == Approx(0.7e-3));
+    CHECK(run("clearance " + folder.scene() + " --process fdm --minimum 0.3mm --json").pair("slide", "pin1")["minimum"] == 3e-4);
+    CHECK(run("clearance --help").says("per side"));
+}
+
+TEST_CASE("clearance: over scripted motion, and over the same motion as poses") {
+    if (absent()) return;
+    const RowFolder folder;
+    const std::string command = "clearance " + folder.scene() + " --minimum 0.4mm --json ";
+    const Answer scripted = run(command + "--motion");
+    CHECK(scripted.code == 0);
+    CHECK(scripted.json()["motion"] == true);
+    CHECK(scripted.json()["steps"] == 10);
+    CHECK(scripted.json()["source"].get<std::string>().find("scripted") != std::string::npos);
+    // A corner of the turning cube comes within 13 - 5 - 5 sqrt 2 mm of the pin, half way: between two samples.
+    const double corner = 1e-3 * (13 - 5 - 5 * std::sqrt(2));
+    const Json spin = scripted.pair("spin", "pin2");
+    CHECK(spin["lower"].get<double>() <= corner + 1e-12);
+    CHECK(spin["upper"].get<double>() >= corner - 1e-12);
+    CHECK(spin["gap"].get<double>() <= 4e-7 * (1 + 1e-9));
+    CHECK(spin["time"].get<double>() == Approx(0.5).margin(1e-6));
+    CHECK(spin["sampled"].get<double>() >= spin["upper"].get<double>() - 1e-12);
+    CHECK(spin["pose_a"]["rotation"].size() == 3);
+
+    // Slide 1 mm away, spin 90 degrees, at uneven times; a body that is not named stays.
+    const std::string csv = folder.write("p.csv",
+                                         "time,body,px[mm],py[mm],pz[mm],rx[deg],ry[deg],rz[deg]\n"
+                                         "0,slide,0,0,0,0,0,0\n0,spin,33.7,0,0,0,0,0\n"
+                                         "0.2,slide,-0.2,0,0,0,0,0\n0.2,spin,33.7,0,0,0,0,18\n"
+                                         "1,slide,-1,0,0,0,0,0\n1,spin,33.7,0,0,0,0,90\n");
+    const Answer poses = run(command + "--poses " + csv);
+    CHECK(poses.code == 0);
+    CHECK(poses.json()["steps"] == 2);
+    CHECK(poses.pair("spin", "pin2")["time"].get<double>() == Approx(0.5).margin(1e-6));
+    CHECK(poses.pair("spin", "pin2")["upper"].get<double>() == Approx(corner).margin(1e-9));
+    CHECK(poses.pair("spin", "pin2")["sampled"].get<double>() > corner + 1e-4);  // what sampling misses
+    CHECK(poses.pair("slide", "pin1")["upper"].get<double>() == Approx(0.5e-3).margin(1e-6));
+    CHECK(poses.says("not in"));
+    CHECK(run("clearance " + folder.scene() + " --minimum 0.4mm --time 0.2 --motion --json").json()["steps"] == 2);
+}
+
+TEST_CASE("clearance: a clash is told, between surfaces and of a body inside another") {
+    if (absent()) return;
+    const RowFolder folder;
+    const std::string command = "clearance " + folder.scene() + " --minimum 0.1mm --json --pairs slide:pin1 --poses ";
+    const std::string head = "time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz\n";
+    const Answer clash = run(command + folder.write("c.csv", head + "0,slide,0,0,0,1,0,0,0\n1,slide,3,0.3,0.2,1,0,0,0\n"));
+    CHECK(clash.code == 1);
+    CHECK(clash.json()["pairs"][0]["status"] == "violated");
+    CHECK(clash.json()["pairs"][0]["finding"] == "clash");
+    CHECK(clash.json()["pairs"][0]["lower"] == 0);
+    // As assembled, a scene whose bodies pass through each other gets a report too.
+    const DesignFolder crossing(small_design, replaced(row_scene, "[10.5, 0, 0]", "[9.5, 0.2, 0.1]"));
+    const Answer assembled = run("clearance " + (crossing.path / "small.scene.json").string() + " --minimum 0.1mm --json");
+    CHECK(assembled.code == 1);
+    CHECK(assembled.pair("slide", "pin1")["finding"] == "clash");
+    // Inside: surfaces 2 mm apart at least, and no room at all.
+    const DesignFolder inside(
+        small_design, replaced(replaced(row_scene, "[10.5, 0, 0]", "[1, 0, 0]"), "{ \"size_x\": 10, \"size_y\": 10, \"size_z\": 10 }",
+                               "{ \"size_x\": 30, \"size_y\": 30, \"size_z\": 30 }"));
+    const Answer nested = run("clearance " + (inside.path / "small.scene.json").string() + " --minimum 0.1mm --json --pairs slide:pin1");
+    CHECK(nested.code == 1);
+    CHECK(nested.json()["pairs"][0]["finding"] == "clash");
+    CHECK(nested.json()["pairs"][0]["upper"] == 0);
+    CHECK(nested.says("lies inside"));
+}
+
+TEST_CASE("clearance: bodies that dynamics lets touch are in contact, and judged when named") {
+    if (absent()) return;
+    const DesignFolder folder;
+    const std::string command = "clearance " + (folder.path / "small.scene.json").string() + " --minimum 0.5mm --motion --steps 12 --json";
+    const Answer all = run(command);
+    CHECK(all.code == 0);
+    const Json cube = all.pair("cube", "table");
+    CHECK(cube["status"] == "contact");
+    CHECK(cube["finding"] == "contact");
+    CHECK(cube["upper"].get<double>() < 1e-4);
+    CHECK(cube["upper"].get<double>() > 0);
+    CHECK(all.pair("cube", "wall")["status"] == "clear");
+    CHECK(all.json()["left_out"] == Json::array({"table:wall"}));
+    const Answer named = run(command + " --pairs cube:table");
+    CHECK(named.code == 1);
+    CHECK(named.pair("cube", "table")["status"] == "violated");
+}
+
+TEST_CASE("clearance: explanation, margin curves and a comparison with an earlier report") {
+    if (absent()) return;
+    const RowFolder folder;
+    const std::string command = "clearance " + folder.scene() + " --motion ";
+    const Answer text = run(command + "--minimum 0.6mm --explain 1 --csv " + folder.file("m.csv"));
+    CHECK(text.code == 1);
+    CHECK(text.says("slide:pin1"));
+    CHECK(text.says("below threshold"));
+    CHECK(text.says("1. slide:pin1: below threshold"));
+    CHECK(!text.says("\n2. "));
+    CHECK(text.says("what sampling sees"));
+    CHECK(text.says("overall: violated"));
+    CHECK(run(command + "--minimum 0.6mm --explain").says("\n3. "));
+
+    std::istringstream csv(contents(folder.file("m.csv")));
+    std::string line;
+    REQUIRE(std::getline(csv, line));
+    CHECK(line == "a,b,step,segment,time_start[s],time_end[s],lower[mm],upper[mm]");
+    int rows = 0;
+    double least = 1e9;
+    while (std::getline(csv, line)) {
+        std::istringstream fields(line);
+        std::vector<std::string> f;
+        for (std::string field; std::getline(fields, field, ',');) f.push_back(field);
+        REQUIRE(f.size() == 8);
+        CHECK(std::stod(f[6]) <= std::stod(f[7]));
+        CHECK(std::stod(f[5]) - std::stod(f[4]) == Approx(0.1));
+        if (f[0] == "slide" && f[1] == "pin1") {
+            ++rows;
+            least = std::min(least, std::stod(f[6]));
+        }
+    }
+    CHECK(rows == 10);
+    CHECK(least == Approx(0.5).margin(1e-3));
+
+    const auto report = [&](const std::string& minima) { return run(command + "--pairs " + minima + " --json"); };
+    const std::string before = folder.write("before.json", report("slide:pin1=0.6mm,spin:pin2=2mm,slide:pin2=0.1mm,slide:spin=30mm").out);
+    const Answer after = run(command + "--pairs slide:pin1=0.1mm,spin:pin2=2mm,slide:pin2=20mm --json --baseline " + before);
+    CHECK(after.code == 1);
+    CHECK(after.pair("slide", "pin1")["change"] == "resolved");
+    CHECK(after.pair("slide", "pin1")["before"]["status"] == "violated");
+    CHECK(after.pair("spin", "pin2")["change"] == "existing");
+    CHECK(after.pair("slide", "pin2")["change"] == "new");
+    const Json baseline = after.json()["baseline"];
+    CHECK(baseline["new"] == 1);
+    CHECK(baseline["existing"] == 1);
+    CHECK(baseline["resolved"] == 1);
+    CHECK(baseline["missing"] == Json::array({"slide:spin"}));
+    const std::string broken = folder.write("broken.json", R"({"pairs": [{"a": "x"}]})");
+    CHECK(run(command + "--minimum 1mm --baseline " + broken).code == 3);
+}
