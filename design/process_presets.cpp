@@ -72,7 +72,7 @@ Result<double> required_clearance(const ProcessPreset& preset, double size_a, do
     const Result<double> a = part_tolerance(preset, size_a, where), b = part_tolerance(preset, size_b, where);
     if (!a) return a.errors();
     if (!b) return b.errors();
-    return preset.minimum + *a + *b;
+    return preset.minimum + (*a + *b);
 }
 
 std::string process_table() {

@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/stepper/poses_file.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step_tables.hpp"
 #include "fettle/core/stepper/trajectory_io.hpp"
@@ -25,7 +26,7 @@ using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
 struct Options {
-    std::string path, out, earlier;
+    std::string path, out, poses, earlier;
     int steps = -1;
     double time = -1;
 };
@@ -122,6 +123,10 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
         const Errors errors = write_outputs(options.out, model, simulation, loaded->scene_path, json);
         if (!errors.empty()) return console.input_errors(errors);
     }
+    if (!options.poses.empty()) {
+        const Errors errors = core::stepper::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
+        if (!errors.empty()) return console.input_errors(errors);
+    }
     const bool ok = report.status == SimulationStatus::ok;
     std::string text = formatted("%s after %zu steps, %d Newton iterations, %.3g s\n",
                                  console.coloured(core::stepper::to_string(report.status), ok).c_str(), simulation.trajectory.steps.size(),
@@ -148,6 +153,7 @@ Command add_simulate(CLI::App& program, const CommonOptions& common) {
                     "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
                     "(forces between bodies) and drives.csv (what motors and guides supply)");
     app->add_option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
+    app->add_option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
     app->footer(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
         "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");
