@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fettle/adjoint/clearance/tied_features.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/distance.hpp"
 
@@ -194,12 +195,18 @@ double directional(const ClearanceGradient& gradient, const ClearanceDirection& 
 }
 
 double clearance_derivative(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair,
-                            const ClearanceDirection& direction) {
+                            const ClearanceDirection& direction, double tolerance) {
     if (!(pair.upper > 0)) return 0;
     const std::vector<Witness> only{pair.witness};
+    const std::vector<Witness>& witnesses = pair.witnesses.empty() ? only : pair.witnesses;
     double least = std::numeric_limits<double>::infinity();
-    for (const Witness& witness : pair.witnesses.empty() ? only : pair.witnesses)
-        least = std::min(least, directional(clearance_gradient(model, trajectory, pair.a, pair.b, witness), direction));
+    for (std::size_t i = 0; i < witnesses.size(); ++i) {
+        const Witness& at = witnesses[i];
+        const auto same = [&](const Witness& w) { return w.step == at.step && w.segment == at.segment && w.s == at.s; };
+        if (std::any_of(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;  // seen: one instant
+        for (const Witness& tied : tied_features(model, trajectory, pair.a, pair.b, at, tolerance))
+            least = std::min(least, directional(clearance_gradient(model, trajectory, pair.a, pair.b, tied), direction));
+    }
     return least;
 }
 

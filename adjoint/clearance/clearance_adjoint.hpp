@@ -76,9 +76,11 @@ struct ClearanceDirection {
 };
 double directional(const ClearanceGradient& gradient, const ClearanceDirection& direction);
 
-/// lim (d(x + h direction) - d(x)) / h as h -> 0+: the least over pair.witnesses (over pair.witness if there are none), 0 if the bodies
-/// touch. Exact if pair.witnesses holds all that tie: certify with a witness_tolerance.
+/// lim (d(x + h direction) - d(x)) / h as h -> 0+: the least over all features (tied_features.hpp) that come within `tolerance` [m] of
+/// the least distance at the instants of pair.witnesses (of pair.witness if there are none); 0 if the bodies touch.
+/// Exact if those are all the instants that tie: certify with a witness_tolerance. Faces that slide along each other at one distance tie
+/// at all times; then this is an upper bound.
 double clearance_derivative(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
-                            const core::clearance::PairClearance& pair, const ClearanceDirection& direction);
+                            const core::clearance::PairClearance& pair, const ClearanceDirection& direction, double tolerance);
 
 }  // namespace fettle::adjoint
