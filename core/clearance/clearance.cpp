@@ -2,11 +2,13 @@
 #include "fettle/core/clearance/clearance.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
+#include "fettle/core/clearance/certificate_builder.hpp"
+#include "fettle/core/clearance/pair_details.hpp"
 #include "fettle/core/contact/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
@@ -19,29 +21,43 @@ kinematics::PathSegment held(const kinematics::Pose& pose) {
     return path;
 }
 
-std::vector<PairSegment> pair_segments(const stepper::Trajectory& trajectory, const PairRequest& pair, double radius_a, double radius_b,
-                                       bool motion) {
-    std::vector<PairSegment> segments;
-    if (!motion || trajectory.steps.empty()) {
-        const auto& poses = trajectory.poses.front();
-        segments.push_back(pair_segment(held(poses[pair.a]), held(poses[pair.b]), radius_a, radius_b));
-        return segments;
-    }
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t) {
-        for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) {
-            segments.push_back(pair_segment(stepper::path_segment(trajectory, t, k, pair.a),
-                                            stepper::path_segment(trajectory, t, k, pair.b), radius_a, radius_b));
-            segments.back().step = t;
-            segments.back().segment = k;
-        }
-    }
-    return segments;
+// One place of the path: step -1 is the start pose, held.
+struct SegmentPlace {
+    int step = -1, segment = 0;
+};
+
+std::vector<SegmentPlace> segment_places(const stepper::Trajectory& trajectory, bool motion) {
+    if (!motion || trajectory.steps.empty()) return {{}};
+    std::vector<SegmentPlace> places;
+    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+        for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) places.push_back({t, k});
+    return places;
 }
 
-double witness_time(const stepper::Trajectory& trajectory, const Witness& witness) {
-    if (witness.step < 0) return trajectory.time_start;
-    const int n = stepper::segment_count(trajectory, witness.step);
-    return trajectory.time_start + trajectory.timestep * (witness.step + (witness.segment + witness.s) / n);
+// What all pairs of a body share.
+struct BodyMotion {
+    PieceTree tree;
+    std::vector<BodySegment> segments;
+};
+
+BodyMotion body_motion(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places,
+                       int body) {
+    BodyMotion motion{make_piece_tree(model.bodies[body].mesh, *model.bodies[body].hierarchy), {}};
+    for (const SegmentPlace& place : places)
+        motion.segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
+                                                              : stepper::path_segment(trajectory, place.step, place.segment, body)));
+    return motion;
+}
+
+PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::Trajectory& trajectory,
+                       const std::vector<SegmentPlace>& places) {
+    PairMotion pair{a.tree, b.tree, trajectory, {}};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], a.tree.radius(), b.tree.radius()));
+        pair.segments.back().step = places[i].step;
+        pair.segments.back().segment = places[i].segment;
+    }
+    return pair;
 }
 
 PairStatus judge(const PairClearance& pair, double dhat) {
@@ -54,77 +70,71 @@ PairStatus judge(const PairClearance& pair, double dhat) {
     return pair.upper < pair.minimum ? PairStatus::violated : PairStatus::undecided;
 }
 
-struct BodyPair {
-    SearchBody a, b;
-};
-
-double time_of(const stepper::Trajectory& trajectory, const PairSegment& segment, double s) {
-    Witness at;
-    at.step = segment.step;
-    at.segment = segment.segment;
-    at.s = s;
-    return witness_time(trajectory, at);
+// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room.
+double checking_room(const ClearanceOptions& options, const PairMotion& pair) {
+    double slack = 0;
+    for (const PairSegment& segment : pair.segments) slack = std::max(slack, segment.slack);
+    return options.tolerance / 8 + 8 * slack;
 }
 
-std::vector<MarginInterval> margin_curve(const stepper::Trajectory& trajectory, const BodyPair& bodies,
-                                         const std::vector<PairSegment>& segments, const SearchResult& whole, SearchOptions options) {
-    std::vector<MarginInterval> margin;
-    const double tolerance = options.tolerance;
-    for (const PairSegment& segment : segments) {
-        SearchOptions coarse = options;
-        coarse.tolerance = std::max(tolerance, 1e-3 * whole.upper);
-        const SearchResult found = search_pair(bodies.a, bodies.b, {segment}, coarse);
-        MarginInterval interval{segment.step,
-                                segment.segment,
-                                time_of(trajectory, segment, 0),
-                                time_of(trajectory, segment, 1),
-                                std::max(found.lower, whole.lower),
-                                found.upper};
-        if (segment.step == whole.witness.step && segment.segment == whole.witness.segment)
-            interval.upper = std::min(interval.upper, whole.upper);
-        margin.push_back(interval);
+SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search, PairCertificate* record) {
+    if (record == nullptr) return search_pair(pair.a, pair.b, pair.segments, search);
+    search.tolerance *= 0.75;
+    search.proof = &record->segments;
+    SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    found.lower = std::max(0.0, found.lower - checking_room(options, pair));
+    complete_certificate(pair, found, *record);
+    return found;
+}
+
+PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, double dhat, const ClearanceOptions& options,
+                           PairCertificate* record) {
+    SearchOptions search;
+    search.tolerance = options.tolerance;
+    search.max_evaluations = options.max_evaluations;
+    search.should_stop = options.should_stop;
+    SearchResult sampled;
+    sampled.nearest.pair.distance = std::numeric_limits<double>::infinity();
+    if (options.sample_nodes) {
+        // First at the nodes of the path, as a tool that samples would: a good upper bound for the search over the motion.
+        SearchOptions at_nodes = search;
+        at_nodes.nodes_only = true;
+        at_nodes.tolerance = 0.01 * options.tolerance;
+        sampled = search_pair(pair.a, pair.b, pair.segments, at_nodes);
+        search.seed = sampled.nearest;
     }
-    return margin;
-}
-
-// The nodes of the path, each held.
-std::vector<PairSegment> node_instants(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
-    std::vector<PairSegment> nodes;
-    const auto add = [&](const PairSegment& segment, double s) {
-        nodes.push_back(
-            pair_segment(held(kinematics::pose_at(segment.a.path, s)), held(kinematics::pose_at(segment.b.path, s)), radius_a, radius_b));
-    };
-    for (const PairSegment& segment : segments) add(segment, 0);
-    add(segments.back(), 1);
-    return nodes;
-}
-
-PairClearance certify_pair(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& request,
-                           const ClearanceOptions& options) {
-    const auto bodies = static_cast<int>(model.bodies.size());
-    FETTLE_ASSERT(request.a >= 0 && request.a < bodies && request.b >= 0 && request.b < bodies && request.a != request.b,
-                  "a pair of two bodies of the model");
-    const model::Body &a = model.bodies[request.a], &b = model.bodies[request.b];
-    const double radius_a = a.hierarchy->nodes()[0].radius, radius_b = b.hierarchy->nodes()[0].radius;
-    const auto segments = pair_segments(trajectory, request, radius_a, radius_b, options.motion);
-    const BodyPair pair{{&a.mesh, a.hierarchy.get()}, {&b.mesh, b.hierarchy.get()}};
-    const SearchOptions search{options.tolerance, options.max_evaluations, 1, options.should_stop};
-    const SearchResult found = search_pair(pair.a, pair.b, segments, search);
+    search.enough = options.enough;
+    const SearchResult found = certified_search(pair, options, search, record);
     PairClearance result;
     result.a = request.a;
     result.b = request.b;
     result.minimum = request.minimum;
     result.lower = found.lower;
     result.upper = found.upper;
-    result.witness = found.witness;
-    result.witness.time = witness_time(trajectory, found.witness);
+    result.sampled = sampled.nearest.pair.distance;
     result.complete = found.complete;
-    result.intersecting = found.intersecting;
-    result.status = judge(result, model.dhat);
-    result.witnesses = {result.witness};
-    result.sampled = search_pair(pair.a, pair.b, node_instants(segments, radius_a, radius_b), search).upper;
-    if (options.margin_curve) result.margin = margin_curve(trajectory, pair, segments, found, search);
+    result.intersecting = found.intersecting || sampled.intersecting;
+    search.seed.reset();
+    if (!result.intersecting && found.lower == 0 && found.upper <= options.tolerance)
+        result.intersecting = intersects_at_nodes(pair, search);
+    result.witnesses = all_witnesses(pair, found.nearest, options.witness_tolerance, options.max_witnesses, search);
+    result.witness = result.witnesses.front();
+    result.status = judge(result, dhat);
+    if (options.margin_curve) result.margin = margin_curve(pair, found, search);
     return result;
+}
+
+std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
+    std::vector<int> bodies;
+    for (const PairRequest& pair : pairs) {
+        FETTLE_ASSERT(pair.a >= 0 && pair.a < count && pair.b >= 0 && pair.b < count && pair.a != pair.b,
+                      "a pair of two bodies of the model");
+        bodies.push_back(pair.a);
+        bodies.push_back(pair.b);
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    return bodies;
 }
 
 }  // namespace
@@ -148,12 +158,29 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
                   "a trajectory of the model's bodies");
     const auto count = static_cast<int>(pairs.size());
+    const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
+    const std::vector<SegmentPlace> places = segment_places(trajectory, options.motion);
+    std::vector<BodyMotion> motions(model.bodies.size());
+    parallel_for(static_cast<int>(bodies.size()), 1,
+                 [&](int i) { motions[bodies[i]] = body_motion(model, trajectory, places, bodies[i]); });
+    if (options.certificate != nullptr) {
+        std::vector<const PieceTree*> trees;
+        for (const BodyMotion& motion : motions) trees.push_back(motion.tree.mesh != nullptr ? &motion.tree : nullptr);
+        *options.certificate = start_certificate(model, trees, options.motion && !trajectory.steps.empty(), pairs.size());
+    }
     std::vector<PairClearance> results(pairs.size());
     std::mutex report;
     int done = 0;
     // Each pair is a search of its own: the number of threads cannot change a result.
     parallel_for(count, 1, [&](int i) {
-        results[i] = certify_pair(model, trajectory, pairs[i], options);
+        const PairRequest& request = pairs[i];
+        PairCertificate* record = options.certificate != nullptr ? &options.certificate->pairs[i] : nullptr;
+        if (record != nullptr) {
+            record->a = request.a;
+            record->b = request.b;
+        }
+        results[i] =
+            certify_pair(pair_motion(motions[request.a], motions[request.b], trajectory, places), request, model.dhat, options, record);
         if (!options.on_pair) return;
         const std::lock_guard<std::mutex> lock(report);
         options.on_pair(++done, count);

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "fettle/core/clearance/certificate.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
@@ -20,8 +22,6 @@ enum class PairStatus {
     contact     ///< minimum is 0 and the bodies come within the activation distance: reported, not judged
 };
 const char* to_string(PairStatus status);
-
-enum class Primitive { vertex, edge, triangle };
 
 /// Which two primitives are closest, when, and where. Edge against edge or vertex against triangle; of codimensional parts also vertex
 /// against edge and vertex against vertex.
@@ -61,7 +61,10 @@ struct ClearanceOptions {
     bool margin_curve = false;                      ///< fill PairClearance::margin: costs a search per path segment
     double witness_tolerance = 0;                   ///< greater than 0: fill PairClearance::witnesses with all within it of the least [m]
     int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
-    std::function<bool()> should_stop;              ///< optional, asked often, on any thread: true ends the search with true bounds
+    bool sample_nodes = true;                       ///< fill PairClearance::sampled: costs about as much as the bounds
+    double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
+    Certificate* certificate = nullptr;                       ///< optional: the proofs are recorded here; `lower` is what they claim
+    std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
 };
 
 struct PairClearance {
@@ -69,10 +72,10 @@ struct PairClearance {
     double minimum = 0;
     double lower = 0, upper = 0;  ///< [m]
     PairStatus status = PairStatus::undecided;
-    Witness witness;                     ///< attains `upper`
-    bool complete = true;                ///< false: budget or should_stop ended the search before the tolerance was reached
-    bool intersecting = false;           ///< an edge of one was found passing through a triangle of the other: a clash, not a contact
-    double sampled = 0;                  ///< least distance at the nodes of the path: what a tool that samples would say [m]
+    Witness witness;            ///< attains `upper`
+    bool complete = true;       ///< false: budget or should_stop ended the search before the tolerance was reached
+    bool intersecting = false;  ///< an edge of one was found passing through a triangle of the other: a clash, not a contact
+    double sampled = 0;  ///< least distance at the nodes of the path: what a tool that samples would say [m]; infinite if not asked for
     std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
     std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
 };

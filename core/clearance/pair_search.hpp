@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Branch and bound for the least distance of two bodies over a list of path segments: boxes of both hierarchies and intervals
-/// of time, the most promising first. Bounds: segment_bound.hpp. What callers use: clearance.hpp.
+/// Branch and bound for the least distance of two bodies over a list of path segments: pieces of both bodies and intervals of time, the
+/// most promising first. Bounds: segment_bound.hpp. What callers use: clearance.hpp.
 ///
 /// An entry is (interval, piece of a, piece of b) with a proven lower bound. The least of the entries in the queue and of those set
 /// aside (within the tolerance of the upper bound, or at the limit of rounding) bounds the distance from below at any moment, so the
@@ -9,34 +9,42 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/certificate.hpp"
 #include "fettle/core/clearance/segment_bound.hpp"
+#include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
-
-struct SearchBody {
-    const geometry::Mesh* mesh = nullptr;
-    const contact::BodyHierarchy* hierarchy = nullptr;
-};
 
 struct SearchOptions {
     double tolerance = 1e-6;
     long max_evaluations = 50'000'000;
-    double deviation_scale = 1;         ///< less than 1 breaks the proof: for tests that must notice
-    std::function<bool()> should_stop;  ///< optional
+    double deviation_scale = 1;                               ///< less than 1 breaks the proof: for tests that must notice
+    std::function<bool()> should_stop;                        ///< optional
+    double enough = std::numeric_limits<double>::infinity();  ///< a lower bound of this much ends the search, whatever the gap [m]
+    bool nodes_only = false;                                  ///< at the ends of the segments instead of over them
+    bool seek_intersection = false;  ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
+    std::optional<Encounter> seed;   ///< of the same bodies: its distance is the first upper bound
+    PairProof* proof = nullptr;      ///< the tree of entries is recorded here, one proof per segment
 };
 
 struct SearchResult {
     double lower = 0, upper = 0;  ///< [m], lower >= 0; upper - lower <= tolerance unless rounding or the budget stands in the way
-    Witness witness;              ///< of `upper`; `time` left to the caller
+    Encounter nearest;            ///< attains `upper`
     long evaluations = 0;         ///< bounds computed
     bool complete = true;         ///< false: out of budget, or stopped
-    bool intersecting = false;    ///< the witness is an edge that passes through a triangle
+    bool intersecting = false;    ///< `nearest` is an edge that passes through a triangle, deeper than rounding
 };
 
-/// Contract: at least one segment; hierarchies of triangles only.
-SearchResult search_pair(const SearchBody& a, const SearchBody& b, const std::vector<PairSegment>& segments, const SearchOptions& options);
+/// Contract: at least one segment.
+SearchResult search_pair(const PieceTree& a, const PieceTree& b, const std::vector<PairSegment>& segments, const SearchOptions& options);
+
+/// Where the bodies come within `distance` of each other: for every segment and pair of elements that does, the least distance found.
+/// Ends early, with what it has, at `most` of them.
+std::vector<Encounter> encounters_within(const PieceTree& a, const PieceTree& b, const std::vector<PairSegment>& segments, double distance,
+                                         std::size_t most, const SearchOptions& options);
 
 }  // namespace fettle::core::clearance

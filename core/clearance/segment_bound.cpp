@@ -13,6 +13,41 @@ namespace {
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double rounded_up = 1 + 64 * unit_roundoff;  // covers the few dozen operations of any formula below
 
+// Upper bound of max |n.x'''| over the segment.
+double third_derivative(const BodySegment& body, const Vector3& n, const Reach& reach) {
+    if (body.speed == 0) return 0;
+    const double y = body.base_norm * reach.radius;
+    const double w = body.speed, k = body.twist;
+    const double nw = n.cross(body.path.rotation_vector_step).norm() + 8 * unit_roundoff * w;
+    const double along_n = nw * reach.swept + k * ((reach.swept + nw * y) / 4 + k * y / 20);
+    return w * std::min(along_n, w * w * y) * rounded_up;
+}
+
+double pose_error(const BodySegment& body) {
+    const double angle = body.path.rotation_vector_t0.norm() + body.speed;
+    return (160 + 48 * angle) * unit_roundoff;
+}
+
+}  // namespace
+
+// Lower bound of the cubic on [0, 1], equal to its least value up to rounding: the hull of its coefficients, after a split at the least
+// value if that is inside. Where the split lies is of no consequence for the bound's truth.
+double least_value(const Coefficients& c, double& dip) {
+    const double ends = std::min(c[0], c[3]);
+    if (c[1] >= ends && c[2] >= ends) return ends;
+    // The derivative is 3 times the parabola with coefficients p, q, r; it rises through 0 where the cubic is least.
+    const double p = c[1] - c[0], q = c[2] - c[1], r = c[3] - c[2], curvature = p - 2 * q + r;
+    const double root = std::sqrt(std::max(0.0, q * q - p * r));
+    const double t = q - p + root > 0 ? -p / (q - p + root) : (curvature != 0 ? (p - q + root) / curvature : 0.5);
+    if (!(t > 0 && t < 1)) return std::min({ends, c[1], c[2]});
+    const auto between = [t](double x, double y) { return x + t * (y - x); };
+    const double a0 = between(c[0], c[1]), a1 = between(c[1], c[2]), a2 = between(c[2], c[3]);
+    const double b0 = between(a0, a1), b1 = between(a1, a2), value = between(b0, b1);
+    const double least = std::min({ends, a0, b0, value, b1, a2});
+    if (value < ends) dip = t;
+    return least;
+}
+
 BodySegment body_segment(const kinematics::PathSegment& path) {
     BodySegment body;
     body.path = path;
@@ -24,47 +59,37 @@ BodySegment body_segment(const kinematics::PathSegment& path) {
     // |B|^2 is the largest eigenvalue of B^T B, at most 1 + |B^T B - I|.
     const double excess = (path.base.transpose() * path.base - Matrix3::Identity()).norm();
     body.base_norm = std::sqrt(1 + excess) * rounded_up;
+    body.poses[0] = kinematics::pose_at(path, 0);
+    const bool still = body.speed == 0 && path.position_step == Vector3::Zero();
+    body.poses[1] = still ? body.poses[0] : kinematics::pose_at(path, 0.5);
+    body.poses[2] = still ? body.poses[0] : kinematics::pose_at(path, 1);
     return body;
 }
 
-// Upper bound of max |n.x''| / 8 over the segment.
-double bending(const BodySegment& body, const Vector3& n, const Reach& reach) {
-    if (body.speed == 0) return 0;
-    const double y = body.base_norm * reach.radius;
-    const double w = body.speed, k = body.twist;
-    const double nw = n.cross(body.path.rotation_vector_step).norm() + 8 * unit_roundoff * w;
-    const double along_n = nw * reach.swept + k * ((reach.swept + nw * y) / 3 + k * y / 12);
-    return std::min(along_n, w * w * y) / 8 * rounded_up;
-}
-
-double pose_error(const BodySegment& body) {
-    const double angle = body.path.rotation_vector_t0.norm() + body.speed;
-    return (160 + 48 * angle) * unit_roundoff;
-}
-
-}  // namespace
-
-PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b) {
+PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radius_a, double radius_b) {
     PairSegment pair;
-    pair.a = body_segment(a);
-    pair.b = body_segment(b);
+    pair.a = a;
+    pair.b = b;
     const double ra = 2 * radius_a * pair.a.base_norm, rb = 2 * radius_b * pair.b.base_norm;
-    const double p = a.position_t0.norm() + a.position_step.norm() + b.position_t0.norm() + b.position_step.norm();
+    const double p = a.path.position_t0.norm() + a.path.position_step.norm() + b.path.position_t0.norm() + b.path.position_step.norm();
     pair.slack =
-        ((pose_error(pair.a) + 32 * unit_roundoff) * ra + (pose_error(pair.b) + 32 * unit_roundoff) * rb + 24 * unit_roundoff * p) *
+        ((pose_error(pair.a) + 48 * unit_roundoff) * ra + (pose_error(pair.b) + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) *
             rounded_up +
         std::numeric_limits<double>::min();
     return pair;
 }
 
-Instant instant_at(const PairSegment& segment, double s) {
-    const kinematics::Pose a = kinematics::pose_at(segment.a.path, s), b = kinematics::pose_at(segment.b.path, s);
-    return {s, a.rotation, b.rotation, a.rotation.transpose() * b.rotation, a.position - b.position};
+PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b) {
+    return pair_segment(body_segment(a), body_segment(b), radius_a, radius_b);
 }
 
-Reach box_reach(const BodySegment& body, const contact::HierarchyNode& box) {
-    const double swept = (body.sweep * box.center).norm() + body.sweep_columns.dot(box.half_extent);
-    return {box.radius, (swept + 32 * unit_roundoff * body.speed * body.base_norm * 2 * box.radius) * rounded_up};
+Instant instant_at(const PairSegment& segment, double s) {
+    const auto pose = [&](const BodySegment& body) {
+        if (s == 0 || s == 0.5 || s == 1) return body.poses[static_cast<std::size_t>(2 * s)];
+        return kinematics::pose_at(body.path, s);
+    };
+    const kinematics::Pose a = pose(segment.a), b = pose(segment.b);
+    return {s, a.rotation, b.rotation, a.position - b.position};
 }
 
 Reach corners_reach(const BodySegment& body, const Matrix3& corners) {
@@ -79,31 +104,25 @@ Vector3 unit_direction(const Vector3& v) {
     return v * ((1 - 8 * unit_roundoff) / length);
 }
 
-MovingPlane moving_plane(const Instant& start, const Instant& end, const Vector3& n0, const Vector3& n1) {
+MovingPlane moving_plane(const Instant& start, const Instant& middle, const Instant& end, const Vector3& n0, const Vector3& n1) {
     MovingPlane plane{n0, n1, {}, {}, {}};
-    plane.a[0] = start.rotation_a.transpose() * n0;
-    plane.b[0] = start.rotation_b.transpose() * n0;
-    plane.a[2] = end.rotation_a.transpose() * n1;
-    plane.b[2] = end.rotation_b.transpose() * n1;
-    plane.a[1] = 0.5 * (end.rotation_a.transpose() * n0 + start.rotation_a.transpose() * n1);
-    plane.b[1] = 0.5 * (end.rotation_b.transpose() * n0 + start.rotation_b.transpose() * n1);
-    plane.offset = {n0.dot(start.offset), 0.5 * (n0.dot(end.offset) + n1.dot(start.offset)), n1.dot(end.offset)};
+    const Vector3 turn = (1.0 / 3) * (n1 - n0), third0 = (1.0 / 3) * n0, third1 = (1.0 / 3) * n1;
+    const auto seen_from = [&](const Matrix3& r0, const Matrix3& rm, const Matrix3& r1, std::array<Vector3, 4>& out) {
+        out[0] = r0.transpose() * n0;
+        out[3] = r1.transpose() * n1;
+        out[1] = r0.transpose() * turn + (4 * rm - r1).transpose() * third0;
+        out[2] = (4 * rm - r0).transpose() * third1 - r1.transpose() * turn;
+    };
+    seen_from(start.rotation_a, middle.rotation_a, end.rotation_a, plane.a);
+    seen_from(start.rotation_b, middle.rotation_b, end.rotation_b, plane.b);
+    plane.offset = {n0.dot(start.offset), turn.dot(start.offset) + third0.dot(4 * middle.offset - end.offset),
+                    third1.dot(4 * middle.offset - start.offset) - turn.dot(end.offset), n1.dot(end.offset)};
     return plane;
-}
-
-Coefficients box_coefficients(const MovingPlane& plane, const contact::HierarchyNode& a, const contact::HierarchyNode& b) {
-    Coefficients c{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double low = plane.a[i].dot(a.center) - plane.a[i].cwiseAbs().dot(a.half_extent);
-        const double high = plane.b[i].dot(b.center) + plane.b[i].cwiseAbs().dot(b.half_extent);
-        c[i] = plane.offset[i] + (low - high);
-    }
-    return c;
 }
 
 Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, const Matrix3& b) {
     Coefficients c{};
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 4; ++i) {
         const double low = (plane.a[i].transpose() * a).minCoeff();
         const double high = (plane.b[i].transpose() * b).maxCoeff();
         c[i] = plane.offset[i] + (low - high);
@@ -113,16 +132,12 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
 
 SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a,
                            const Reach& b, double deviation_scale) {
-    const double bend_a = std::max(bending(segment.a, plane.n0, a), bending(segment.a, plane.n1, a));
-    const double bend_b = std::max(bending(segment.b, plane.n0, b), bending(segment.b, plane.n1, b));
-    const double deviation = deviation_scale * h * h * (bend_a + bend_b);
-    const double middle = c[1] - 2 * deviation;
+    const double rest_a = std::max(third_derivative(segment.a, plane.n0, a), third_derivative(segment.a, plane.n1, a));
+    const double rest_b = std::max(third_derivative(segment.b, plane.n0, b), third_derivative(segment.b, plane.n1, b));
+    const double rest = deviation_scale * h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;
     SegmentBound bound;
-    bound.at_ends = std::min(c[0], c[2]);
-    bound.lower = bound.at_ends;
-    const double e = c[0] - middle, f = c[2] - middle;
-    // Least value of the quadratic: inside only if it falls at both ends.
-    if (h > 0 && e > 0 && f > 0) bound.lower = middle + e * (f / (e + f));
+    bound.at_ends = std::min(c[0], c[3]);
+    bound.lower = h > 0 ? least_value({c[0], c[1] - rest, c[2] - rest, c[3]}, bound.dip) : bound.at_ends;
     bound.lower -= segment.slack;
     return bound;
 }

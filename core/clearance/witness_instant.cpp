@@ -4,6 +4,9 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <limits>
+
+#include "fettle/core/base/contract.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -14,13 +17,14 @@ Vector3 angular_rate(const kinematics::PathSegment& path, double s) {
 
 }  // namespace
 
-TrianglePairDistance placed_distance(const Instant& at, const Matrix3& corners_a, const Matrix3& corners_b) {
-    return triangle_pair_distance((at.rotation_a * corners_a).colwise() + at.offset, at.rotation_b * corners_b);
+ElementPairDistance placed_distance(const Instant& at, const Corners& corners_a, const Corners& corners_b) {
+    return element_pair_distance({(at.rotation_a * corners_a.x).colwise() + at.offset, corners_a.count},
+                                 {at.rotation_b * corners_b.x, corners_b.count});
 }
 
-double distance_rate(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s) {
+double distance_rate(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s) {
     const Instant at = instant_at(segment, s);
-    const TrianglePairDistance pair = placed_distance(at, corners_a, corners_b);
+    const ElementPairDistance pair = placed_distance(at, corners_a, corners_b);
     if (!(pair.distance > 0)) return 0;
     const Vector3 arm_a = pair.point_a - at.offset, arm_b = pair.point_b;
     const Vector3 velocity = angular_rate(segment.a.path, s).cross(arm_a) - angular_rate(segment.b.path, s).cross(arm_b) +
@@ -28,7 +32,7 @@ double distance_rate(const PairSegment& segment, const Matrix3& corners_a, const
     return velocity.dot(pair.difference) / pair.distance;
 }
 
-double least_distance_near(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s) {
+double least_distance_near(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s) {
     const auto rate = [&](double at) { return distance_rate(segment, corners_a, corners_b, at); };
     const double here = rate(s);
     if (here == 0) return s;
@@ -47,6 +51,29 @@ double least_distance_near(const PairSegment& segment, const Matrix3& corners_a,
         (rate(middle) * here > 0 ? inside : beyond) = middle;
     }
     return 0.5 * (inside + beyond);
+}
+
+Encounter refined(const PairSegment& segment, const PieceTree& a, const PieceTree& b, const Encounter& encounter) {
+    const Corners &corners_a = a.elements[encounter.element_a].corners, &corners_b = b.elements[encounter.element_b].corners;
+    Encounter found = encounter;
+    found.s = least_distance_near(segment, corners_a, corners_b, encounter.s);
+    found.pair = placed_distance(instant_at(segment, found.s), corners_a, corners_b);
+    // A flat minimum: the better instant's distance may differ by rounding only.
+    const double allowed = (encounter.pair.distance + segment.slack) * (1 + 4 * std::numeric_limits<double>::epsilon());
+    return found.pair.distance + segment.slack <= allowed ? found : encounter;
+}
+
+int primitive_index(const PieceTree& tree, int element, Primitive kind, int corner) {
+    const PieceElement& e = tree.elements[element];
+    if (kind == Primitive::triangle) return e.primitive;
+    if (kind == Primitive::vertex) return e.vertices[static_cast<std::size_t>(corner)];
+    if (e.corners.count == 2) return e.primitive;
+    const int v0 = e.vertices[static_cast<std::size_t>(corner)], v1 = e.vertices[static_cast<std::size_t>((corner + 1) % 3)];
+    const auto same = [&](const geometry::Edge& edge) { return (edge[0] == v0 && edge[1] == v1) || (edge[0] == v1 && edge[1] == v0); };
+    const auto& edges = tree.mesh->edges;
+    const auto found = std::find_if(edges.begin(), edges.end(), same);
+    FETTLE_ASSERT(found != edges.end(), "mesh " + tree.mesh->name + " does not list an edge of its triangles");
+    return static_cast<int>(found - edges.begin());
 }
 
 }  // namespace fettle::core::clearance

@@ -1,20 +1,35 @@
 // SPDX-License-Identifier: MIT
-/// Where along a segment two triangles are closest, to rounding: makes the witness of a certificate exact in time. Proves nothing.
+/// Where along a segment two elements are closest, to rounding: makes the witness of a certificate exact in time. Proves nothing.
 #pragma once
 
+#include "fettle/core/clearance/element_pair.hpp"
+#include "fettle/core/clearance/piece_tree.hpp"
 #include "fettle/core/clearance/segment_bound.hpp"
-#include "fettle/core/clearance/triangle_pair.hpp"
 
 namespace fettle::core::clearance {
 
-/// Distance of two triangles (corners in their bodies' frames) at an instant; points relative to body b's reference point.
-TrianglePairDistance placed_distance(const Instant& at, const Matrix3& corners_a, const Matrix3& corners_b);
+/// Two elements at an instant.
+struct Encounter {
+    int segment = -1;  ///< of the list searched
+    double s = 0;
+    int element_a = 0, element_b = 0;  ///< of the piece trees
+    ElementPairDistance pair;          ///< points relative to body b's reference point
+};
+
+/// Distance of two elements (corners in their bodies' frames) at an instant; points relative to body b's reference point.
+ElementPairDistance placed_distance(const Instant& at, const Corners& corners_a, const Corners& corners_b);
 
 /// Its derivative in s: n.(velocity of a's closest point - that of b's), n from b to a. Zero at distance 0.
-double distance_rate(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s);
+double distance_rate(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s);
 
 /// The local minimum of the distance next to `s`, by bisection of its derivative, in [0, 1]: an end, or a place where the rate changes
 /// sign.
-double least_distance_near(const PairSegment& segment, const Matrix3& corners_a, const Matrix3& corners_b, double s);
+double least_distance_near(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s);
+
+/// The encounter at the local minimum next to it, if that is as near up to rounding; else the encounter itself.
+Encounter refined(const PairSegment& segment, const PieceTree& a, const PieceTree& b, const Encounter& encounter);
+
+/// Index into the mesh of the primitive that takes part. Looks through all edges for an edge.
+int primitive_index(const PieceTree& tree, int element, Primitive kind, int corner);
 
 }  // namespace fettle::core::clearance

@@ -27,7 +27,7 @@ using Real33 = Eigen::Matrix<Real, 3, 3>;
 struct Solid {
     core::geometry::Mesh mesh;
     std::shared_ptr<core::contact::BodyHierarchy> hierarchy;
-    core::clearance::SearchBody search() const { return {&mesh, hierarchy.get()}; }
+    core::clearance::PieceTree search() const { return core::clearance::make_piece_tree(mesh, *hierarchy); }
     double radius() const { return hierarchy->nodes()[0].radius; }
 };
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/certificate_builder.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/stepper/trajectory_io.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+BodyPieces body_pieces(const PieceTree& tree) {
+    const auto triangles = static_cast<int>(tree.mesh->triangles.size()), edges = static_cast<int>(tree.mesh->edges.size());
+    BodyPieces body;
+    for (const PieceElement& e : tree.elements) {
+        const int offset = e.corners.count == 3 ? 0 : e.corners.count == 2 ? triangles : triangles + edges;
+        body.elements.push_back(offset + e.primitive);
+    }
+    for (const Piece& piece : tree.pieces)
+        if (!piece.is_element()) body.cuts.push_back(tree.pieces[piece.left].count);
+    return body;
+}
+
+// Weights of a point of a primitive with corners x in its mesh's order: those of the closest point to it.
+CertifiedPoint certified_point(const geometry::Mesh& mesh, Primitive kind, int index, const Vector3& X) {
+    CertifiedPoint point{kind, index, {1, 0, 0}};
+    if (kind == Primitive::edge) {
+        const auto& e = mesh.edges[index];
+        const auto closest = geometry::edge_edge_closest(X, X, mesh.vertices.col(e[0]), mesh.vertices.col(e[1]));
+        point.weight = {-closest.weight[2], -closest.weight[3], 0};
+    } else if (kind == Primitive::triangle) {
+        const auto& t = mesh.triangles[index];
+        const auto closest = geometry::point_triangle_closest(X, mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+        point.weight = {-closest.weight[1], -closest.weight[2], -closest.weight[3]};
+    }
+    for (double& w : point.weight) w = std::max(w, 0.0);
+    return point;
+}
+
+// Where an edge passes through a triangle the witness names the end next to it: the edge itself has the point.
+void name_crossing_edge(const PieceTree& tree, int element, int corner, const Vector3& X, Primitive& kind, int& index) {
+    const PieceElement& e = tree.elements[element];
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const int k : {corner, (corner + 2) % 3}) {
+        if (e.corners.count < 3 && k != 0) continue;
+        const double d = geometry::edge_edge_distance_squared(X, X, e.corners.x.col(k), e.corners.x.col((k + 1) % 3));
+        if (d >= nearest) continue;
+        nearest = d;
+        kind = Primitive::edge;
+        index = primitive_index(tree, element, Primitive::edge, k);
+    }
+}
+
+}  // namespace
+
+Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs) {
+    Certificate certificate;
+    certificate.geometry_hash = stepper::geometry_hash(model);
+    certificate.motion = motion;
+    for (const PieceTree* tree : trees) certificate.bodies.push_back(tree != nullptr ? body_pieces(*tree) : BodyPieces{});
+    certificate.pairs.resize(pairs);
+    return certificate;
+}
+
+void complete_certificate(const PairMotion& pair, const SearchResult& found, PairCertificate& certificate) {
+    const Encounter& nearest = found.nearest;
+    const Witness witness = witness_of(pair, nearest);
+    const Instant at = instant_at(pair.segments[nearest.segment], nearest.s);
+    const Vector3 on_a = at.rotation_a.transpose() * (nearest.pair.point_a - at.offset),
+                  on_b = at.rotation_b.transpose() * nearest.pair.point_b;
+    Primitive kind_a = witness.kind_a, kind_b = witness.kind_b;
+    int index_a = witness.primitive_a, index_b = witness.primitive_b;
+    if (nearest.pair.intersecting && kind_a == Primitive::vertex)
+        name_crossing_edge(pair.a, nearest.element_a, nearest.pair.corner_a, on_a, kind_a, index_a);
+    if (nearest.pair.intersecting && kind_b == Primitive::vertex)
+        name_crossing_edge(pair.b, nearest.element_b, nearest.pair.corner_b, on_b, kind_b, index_b);
+    certificate.lower = found.lower;
+    certificate.upper = found.upper + 4 * pair.segments[nearest.segment].slack;  // for the checker's own rounding
+    certificate.step = witness.step;
+    certificate.segment = witness.segment;
+    certificate.s = witness.s;
+    certificate.point_a = certified_point(*pair.a.mesh, kind_a, index_a, on_a);
+    certificate.point_b = certified_point(*pair.b.mesh, kind_b, index_b, on_b);
+    if (!(found.lower > 0)) certificate.segments.clear();
+}
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/element_pair.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "fettle/core/geometry/distance.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+struct Piercing {
+    Vector3 on_edge, on_triangle;
+    int corner = 0;    // the edge's end next to the triangle
+    double depth = 0;  // of that end
+};
+
+int edge_count(const Corners& element) { return element.count == 3 ? 3 : element.count - 1; }
+Vector3 edge_end(const Corners& element, int k) { return element.x.col((k + 1) % 3); }
+
+// Where edge k of `edges` passes through the triangle's plane, moved into the triangle by clamping: both points belong to their
+// pieces whatever rounding did, so their distance is an honest upper bound.
+std::optional<Piercing> piercing(const Corners& edges, int k, const Matrix3& triangle) {
+    const Vector3 p = edges.x.col(k), q = edge_end(edges, k);
+    const Vector3 u = triangle.col(1) - triangle.col(0), v = triangle.col(2) - triangle.col(0);
+    const Vector3 normal = u.cross(v);
+    const double hp = normal.dot(p - triangle.col(0)), hq = normal.dot(q - triangle.col(0));
+    const double squared = normal.squaredNorm();
+    if (!(squared > 0) || hp * hq > 0 || hp == hq) return std::nullopt;
+    const double s = hp / (hp - hq);
+    Piercing result;
+    result.on_edge = p + s * (q - p);
+    result.depth = std::min(std::abs(hp), std::abs(hq)) / std::sqrt(squared);
+    result.corner = s < 0.5 ? k : (k + 1) % 3;
+    const Vector3 w = result.on_edge - triangle.col(0);
+    Vector3 weight;
+    weight[1] = w.cross(v).dot(normal) / squared;
+    weight[2] = u.cross(w).dot(normal) / squared;
+    weight[0] = 1 - weight[1] - weight[2];
+    weight = weight.cwiseMax(0);
+    weight /= weight.sum();
+    if (!weight.allFinite()) return std::nullopt;  // a sliver whose squared area underflows: its edges are measured anyway
+    result.on_triangle = triangle * weight;
+    return result;
+}
+
+// Separation of the elements along the candidate's direction: its distance if they are disjoint, far from it if one pierces the other.
+bool separates(const ElementPairDistance& candidate, const Corners& a, const Corners& b) {
+    if (!(candidate.distance > 0)) return true;
+    const Vector3 n = candidate.difference / candidate.distance;
+    return (n.transpose() * a.x).minCoeff() - (n.transpose() * b.x).maxCoeff() > 0.5 * candidate.distance;
+}
+
+void look_for_piercing(const Corners& a, const Corners& b, ElementPairDistance& best) {
+    for (int side = 0; side < 2; ++side) {
+        const Corners &edges = side == 0 ? a : b, &triangle = side == 0 ? b : a;
+        if (triangle.count != 3) continue;
+        for (int k = 0; k < edge_count(edges); ++k) {
+            const std::optional<Piercing> found = piercing(edges, k, triangle.x);
+            if (!found) continue;
+            const double distance = (found->on_edge - found->on_triangle).norm();
+            if (distance >= best.distance) continue;
+            best.distance = distance;
+            best.intersecting = true;
+            best.depth = found->depth;
+            best.kind_a = side == 0 ? Primitive::vertex : Primitive::triangle;
+            best.kind_b = side == 0 ? Primitive::triangle : Primitive::vertex;
+            (side == 0 ? best.corner_a : best.corner_b) = found->corner;
+            best.point_a = side == 0 ? found->on_edge : found->on_triangle;
+            best.point_b = side == 0 ? found->on_triangle : found->on_edge;
+            best.difference = best.point_a - best.point_b;
+        }
+    }
+}
+
+// Keeps the closest of the pairs of features it is shown.
+class Closest {
+public:
+    Closest(const Corners& a, const Corners& b) : a_(a), b_(b) { closest_.distance_squared = std::numeric_limits<double>::infinity(); }
+
+    void vertex_of_a(int i) {
+        const auto c = geometry::point_triangle_closest(a_.x.col(i), b_.x.col(0), b_.x.col(1), b_.x.col(2));
+        if (!take(c, Primitive::vertex, i, Primitive::triangle, 0)) return;
+        best_.point_a = a_.x.col(i);
+        best_.point_b = -(b_.x * Vector3(c.weight[1], c.weight[2], c.weight[3]));
+        best_.difference = c.difference;
+    }
+    void vertex_of_b(int j) {
+        const auto c = geometry::point_triangle_closest(b_.x.col(j), a_.x.col(0), a_.x.col(1), a_.x.col(2));
+        if (!take(c, Primitive::triangle, 0, Primitive::vertex, j)) return;
+        best_.point_b = b_.x.col(j);
+        best_.point_a = -(a_.x * Vector3(c.weight[1], c.weight[2], c.weight[3]));
+        best_.difference = -c.difference;
+    }
+    // A vertex counts as an edge of length 0.
+    void edges(Primitive kind_a, int i, Primitive kind_b, int j) {
+        const Vector3 ea0 = a_.x.col(i), ea1 = kind_a == Primitive::edge ? edge_end(a_, i) : ea0;
+        const Vector3 eb0 = b_.x.col(j), eb1 = kind_b == Primitive::edge ? edge_end(b_, j) : eb0;
+        const auto c = geometry::edge_edge_closest(ea0, ea1, eb0, eb1);
+        if (!take(c, kind_a, i, kind_b, j)) return;
+        best_.point_a = c.weight[0] * ea0 + c.weight[1] * ea1;
+        best_.point_b = -c.weight[2] * eb0 - c.weight[3] * eb1;
+        best_.difference = c.difference;
+    }
+    ElementPairDistance result() {
+        best_.distance = best_.difference.norm();
+        return best_;
+    }
+
+private:
+    bool take(const geometry::ClosestPoints& c, Primitive kind_a, int i, Primitive kind_b, int j) {
+        if (!(c.distance_squared < closest_.distance_squared)) return false;
+        closest_ = c;
+        best_.kind_a = kind_a;
+        best_.kind_b = kind_b;
+        best_.corner_a = i;
+        best_.corner_b = j;
+        return true;
+    }
+
+    const Corners &a_, &b_;
+    geometry::ClosestPoints closest_;
+    ElementPairDistance best_;
+};
+
+}  // namespace
+
+ElementPairDistance element_pair_distance(const Corners& a, const Corners& b) {
+    Closest closest(a, b);
+    if (b.count == 3)
+        for (int i = 0; i < a.count; ++i) closest.vertex_of_a(i);
+    if (a.count == 3)
+        for (int j = 0; j < b.count; ++j) closest.vertex_of_b(j);
+    if (a.count > 1 && b.count > 1) {
+        for (int i = 0; i < edge_count(a); ++i)
+            for (int j = 0; j < edge_count(b); ++j) closest.edges(Primitive::edge, i, Primitive::edge, j);
+    } else if (a.count < 3 && b.count < 3) {
+        closest.edges(a.count == 1 ? Primitive::vertex : Primitive::edge, 0, b.count == 1 ? Primitive::vertex : Primitive::edge, 0);
+    }
+    ElementPairDistance best = closest.result();
+    if (!separates(best, a, b)) look_for_piercing(a, b, best);
+    return best;
+}
+
+}  // namespace fettle::core::clearance
