@@ -69,7 +69,7 @@ double incremental_potential(const StepProblem& problem, const std::vector<Chart
         if (!has_free_dof(body)) continue;
         sum += inertia_potential(pose_matrix(poses[i]), problem.pose_hat[i], body.moments) -
                problem.weight *
-                   (body.force.dot(poses[i].position - problem.poses_t0[i].position) + body.torque.dot(points[i].rotation_vector));
+                   (body.force.dot(poses[i].position - problem.poses_t0[i].position) + problem.torque[i].dot(points[i].rotation_vector));
     }
     return sum + contact::barrier_potential(*problem.model, candidates, poses, problem.barrier) +
            contact::friction_potential(problem.friction, poses);
@@ -112,7 +112,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         const Vector3& theta = points[i].rotation_vector;
         to_tangent[i] = chart_to_tangent(theta);
         out.gradient[i] = to_tangent[i].transpose() * tangent_gradient(d.gradients[i]);
-        out.gradient[i].tail<3>() -= problem.weight * body.torque;
+        out.gradient[i].tail<3>() -= problem.weight * problem.torque[i];
         Matrix6 own = Matrix6::Zero();
         if (has_free_dof(body)) own = to_tangent[i].transpose() * inertia_hessian(poses[i].rotation, body.moments) * to_tangent[i];
         own.bottomRightCorner<3, 3>() += chart_curvature(d.gradients[i].arm, kinematics::rotation_derivatives(theta));

@@ -89,6 +89,12 @@ Matrix34 start_acceleration(const model::Model& model, const model::Body& body) 
     return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
 }
 
+// The chart's torque is J_l(theta)^-T of what is handed over, which turns it by half of the step's rotation: an error of first order. A
+// second-order integrator gets the torque turned back by the predicted rotation.
+Vector3 chart_torque(const model::Body& body, const Matrix3& R, const Matrix34& pose_hat) {
+    return kinematics::left_jacobian(axial(pose_hat.leftCols<3>() * R.transpose())).transpose() * body.torque;
+}
+
 }  // namespace
 
 History start_history(const model::Model& model) {
@@ -112,6 +118,7 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
     step.weight = step.slip_time * step.slip_time;
     step.pose_hat.resize(n);
     step.slip_reference.resize(n);
+    step.torque.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Matrix34 pose = pose_matrix(history.poses[i]);
         const Matrix34& velocity = history.velocities[i];
@@ -128,6 +135,9 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
             slip = pose;
             hat = implicit_euler_pose_hat(pose, velocity, model.gravity, h);
         }
+        const model::Body& body = model.bodies[i];
+        const bool second_order = model.integrator != Integrator::implicit_euler && !body.torque.isZero(0);
+        step.torque[i] = second_order ? chart_torque(body, history.poses[i].rotation, hat) : body.torque;
     }
     return step;
 }

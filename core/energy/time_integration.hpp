@@ -34,6 +34,7 @@ struct IntegrationStep {
     std::vector<Matrix34> pose_hat;  ///< gravity included, other loads not
     double weight = 0;               ///< [s^2]
     std::vector<Matrix34> slip_reference;
+    std::vector<Vector3> torque;  ///< per body: the constant gradient in theta (the chart's) that acts as the body's torque [N m]
     double slip_time = 0;  ///< [s]
 };
 IntegrationStep integration_step(const model::Model& model, const History& history);
