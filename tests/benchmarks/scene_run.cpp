@@ -75,9 +75,10 @@ std::vector<int> spread_order(int count) {
 void check_intersections(const core::model::Model& model, const Trajectory& trajectory, const RunOptions& options, SceneRow& row) {
     constexpr std::size_t enough = 10;
     support::IntersectionReport found;
+    const support::IntersectionOracle oracle(model);
     const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (const int step : spread_order(static_cast<int>(trajectory.steps.size()))) {
-        support::find_intersections_in_step(model, trajectory, step, options.instants_between, enough, found);
+        oracle.look_at_step(trajectory, step, options.instants_between, enough, found);
         ++row.steps_checked;
         if (found.intersections.size() >= enough || clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start > options.check_seconds) break;
     }

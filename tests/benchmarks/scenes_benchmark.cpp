@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How fast, and how soundly, do the paper's scenes run? One JSON row per scene on stdout, then a summary. Single thread, each scene in a
-// process of its own; CPU time of the thread, because machines are shared. Every run that is timed is checked: status, finite poses,
-// repeated runs of the same bits, no intersection by exact predicates at nodes and between, peak memory. Exit code 1 if a check fails.
+// How fast, and how soundly, do the paper's scenes run? One JSON row per scene on stdout, then a summary, a table on stderr. Single thread,
+// each scene in a process of its own; CPU time of the thread, because machines are shared. Every run that is timed is checked: status,
+// finite poses, repeated runs of the same bits, no intersection by exact predicates at nodes and between, peak memory. Exit code 1 if a
+// check fails.
 //
 //   scenes_benchmark                              the table (scene_table.hpp), compared with the reference program
 //   scenes_benchmark pendulum/pendulum a.json     these, by name under ../shared/scenes/fixtures or by path; --steps N
@@ -188,6 +189,25 @@ void print_net_growth(const std::vector<SceneRow>& rows) {
                         per_contact(row) / per_contact(rows.front()));
 }
 
+/// The same in brief, for people, on stderr.
+void print_table(const std::vector<SceneRow>& rows) {
+    std::fprintf(stderr,
+                 "| scene | status | steps | Newton per step | reference, s per step | ours | goal | times as fast | peak MB | least "
+                 "distance, m |\n");
+    std::fprintf(stderr, "|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const SceneRow& row : rows) {
+        const double ours = row.seconds_per_step(), newton = row.steps > 0 ? static_cast<double>(row.newton_iterations) / row.steps : 0;
+        std::fprintf(stderr, "| %s | %s%s | %d | %.2f ", row.scene.c_str(), row.status.c_str(), row.is_sound() ? "" : ", UNSOUND",
+                     row.steps, newton);
+        if (const TableScene* entry = in_table(row.scene))
+            std::fprintf(stderr, "| %.4g | %.3g | %.3g | %.0f ", entry->reference_seconds, ours, entry->goal_seconds,
+                         entry->reference_seconds / ours);
+        else
+            std::fprintf(stderr, "| | %.3g | | ", ours);
+        std::fprintf(stderr, "| %.1f | %.3g |\n", row.peak_memory_bytes / 1e6, row.minimum_distance);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -221,6 +241,7 @@ int main(int argc, char** argv) {
             rows.push_back(runner.run(job));
     }
     if (command.largest_net > 0 && !command.two_threads) print_net_growth(rows);
+    print_table(rows);
     if (!command.save.empty() && !write_baseline(command.save, rows)) return 4;
     return runner.finish();
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Do triangles intersect? Decided by CGAL's exact predicates, which share nothing with core: the independent judge of
-/// "no intersection" in whole simulations.
+/// Do bodies intersect, at instants of a trajectory and between them? Decided by CGAL's exact predicates, which share nothing with core:
+/// the independent judge of "no intersection" in whole simulations. Culling is conservative and of its own kind too (element_tree.hpp).
+///
+/// At instants: triangle and triangle, edge of no triangle and triangle. Between instants: passages of loose edges through loose edges and
+/// of loose points through triangles (passage_oracle.hpp), which no instant shows. Positions are rounded to double before they are judged.
 #pragma once
 
 #include <array>
@@ -11,6 +14,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/tests/support/element_tree.hpp"
 
 namespace fettle::tests::support {
 
@@ -26,23 +30,37 @@ struct Intersection {
     int step = 0, segment = 0;  ///< of the trajectory; step -1: the start of one without steps
     double s = 0;               ///< along that segment
     int body_a = 0, body_b = 0;
-    int triangle_a = 0, triangle_b = 0;
+    Element element_a, element_b;
 };
 std::string to_string(const Intersection& intersection, const core::model::Model& model);
 
 struct IntersectionReport {
     std::vector<Intersection> intersections;  ///< empty is what a test wants
     long instants = 0;                        ///< configurations looked at
-    long body_pairs = 0;                      ///< pairs of bodies whose boxes overlapped and whose triangles were compared
+    long element_pairs = 0;                   ///< judged exactly, after all culling
 };
 
-/// Looks at one step, from its start to its end: at its nodes and at `instants_between` instants evenly between each two. Adds to `report`,
-/// which stops growing at `max_count` intersections.
-void find_intersections_in_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int step,
-                                int instants_between, std::size_t max_count, IntersectionReport& report);
+/// A model's bodies, ready for looking at many configurations.
+class IntersectionOracle {
+public:
+    /// Keeps a reference to the model.
+    explicit IntersectionOracle(const core::model::Model& model);
 
-/// Looks at every stored node and at `instants_between` instants evenly between each two, all pairs that model::may_collide
-/// allows. The poses are those of the stored path (kinematics/path.hpp). At most `max_count` intersections are listed.
+    /// Looks at one step, from its start to its end: at its nodes and at `instants_between` instants evenly between each two, all pairs of
+    /// bodies that model::may_collide allows. Adds to `report`, which stops growing at `max_count` intersections.
+    void look_at_step(const core::stepper::Trajectory& trajectory, int step, int instants_between, std::size_t max_count,
+                      IntersectionReport& report) const;
+
+    /// Looks at one configuration; `where` says which.
+    void look_at(const std::vector<core::kinematics::Pose>& poses, const Intersection& where, std::size_t max_count,
+                 IntersectionReport& report) const;
+
+private:
+    const core::model::Model& model_;
+    std::vector<ElementTree> trees_;
+};
+
+/// Looks at every step, and at the end.
 IntersectionReport find_intersections(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int instants_between,
                                       std::size_t max_count = 10);
 
