@@ -59,3 +59,7 @@ TEST_CASE("with area weights the gap does not depend on the mesh", "[area_weight
     // Chosen so that the gap is about half of dhat: weight = kappa area dhat, and without weights for a few contacts.
     const double area_kappa = weight / (0.16 * dhat), kappa = weight / (8 * dhat);
     const double coarse = resting_gap(1, true, area_kappa), fine = resting_gap(3, true, area_kappa);
+    CHECK(coarse > 0.2 * dhat);
+    CHECK(std::abs(coarse - fine) < 0.1 * dhat);
+    CHECK(std::abs(resting_gap(1, false, kappa) - resting_gap(3, false, kappa)) > 0.2 * dhat);
+}
