@@ -7,8 +7,11 @@
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/clearance/certificate.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
 #include "fettle/design/process_presets.hpp"
 
@@ -16,12 +19,13 @@ namespace fettle::design::cli {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
 using core::clearance::PairStatus;
 
 struct Options {
     SubjectOptions subject;
     PairOptions pairs;
-    std::string minimum, tolerance, csv, baseline;
+    std::string minimum, tolerance, csv, baseline, certificate;
     int explain = 0;
 };
 
@@ -90,6 +94,18 @@ void look_closer(const Subject& subject, core::clearance::ClearanceOptions certi
     }
 }
 
+// The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
+Errors write_proof(const std::string& path, const core::clearance::Certificate& certificate, const Subject& subject) {
+    const Errors errors = core::clearance::write_certificate(path, certificate);
+    if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
+    return core::stepper::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
+}
+
+Json proof_json(const Options& options, const Subject& subject) {
+    const bool own = subject.source == SubjectSource::trajectory;
+    return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
+}
+
 int run_clearance(const Options& options, const CommonOptions& common, Console& console) {
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
@@ -107,16 +123,27 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     certify.witness_tolerance = options.explain > 0 ? certify.tolerance : 0;
     certify.on_pair = [&](int done, int of) { console.progress("certifying", done, of); };
     certify.should_stop = interrupted;
+    core::clearance::Certificate certificate;
+    if (!options.certificate.empty()) certify.certificate = &certificate;
     auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection), certify);
-    look_closer(*subject, certify, results);
+    if (options.certificate.empty()) look_closer(*subject, certify, results);  // a certificate is of what was certified at once
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance);
     Errors errors;
     if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
     const std::string unit = unit_name(subject->model.length_unit);
     if (errors.empty() && !options.csv.empty())
         errors = core::base::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
+    if (errors.empty() && !options.certificate.empty()) errors = write_proof(options.certificate, certificate, *subject);
     if (!errors.empty()) return console.input_errors(errors);
-    console.result(report_json(report, *subject), report_text(report, *subject, unit, options.explain, console));
+    Json json = report_json(report, *subject);
+    std::string text = report_text(report, *subject, unit, options.explain, console);
+    if (!options.certificate.empty()) {
+        json["certificate"] = proof_json(options, *subject);
+        text += "certificate: " + options.certificate + ", of the path in " + json["certificate"]["trajectory"].get<std::string>() +
+                "; check it with fettle validate " + options.certificate +
+                (subject->source == SubjectSource::trajectory ? " --trajectory " + options.subject.path : "") + "\n";
+    }
+    console.result(json, text);
     return exit_code(report.status);
 }
 
@@ -148,6 +175,8 @@ void add_options(CLI::App& app, Options& options) {
         ->default_str("3")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
+    app.add_option("--certificate", options.certificate,
+                   "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
     app.add_option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
 }
 

@@ -5,9 +5,11 @@
 #include <cctype>
 #include <filesystem>
 
+#include "fettle/core/clearance/certificate.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/design_file.hpp"
 #include "fettle/design/design_problem.hpp"
 #include "fettle/design/scene_shapes.hpp"
@@ -21,6 +23,7 @@ FileKind file_kind(const std::string& path) {
         if (extension == mesh) return FileKind::mesh;
     }
     if (core::stepper::is_trajectory_file(path)) return FileKind::trajectory;
+    if (core::clearance::is_certificate_file(path)) return FileKind::certificate;
     return is_design_file(path) ? FileKind::design : FileKind::scene;
 }
 
@@ -50,6 +53,15 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
     return loaded;
+}
+
+std::string certificate_trajectory(const std::string& certificate) {
+    std::string stem = certificate;
+    for (const std::string ending : {".json", ".certificate"}) {
+        if (stem.size() > ending.size() && stem.compare(stem.size() - ending.size(), ending.size(), ending) == 0)
+            stem.resize(stem.size() - ending.size());
+    }
+    return stem + ".trajectory.json";
 }
 
 void tell_warnings(Console& console, const std::vector<std::string>& warnings) {

@@ -11,7 +11,7 @@
 
 namespace fettle::design::cli {
 
-enum class FileKind { scene, design, trajectory, mesh };
+enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);
 

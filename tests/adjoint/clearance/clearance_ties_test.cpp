@@ -59,3 +59,18 @@ TEST_CASE("Parallel faces tie: the one-sided derivative is the least over the wi
     c.poses[0][1].position = {2, 1.2, 1.1};  // the faces overlap in a part only: edges cross
     check_one_sided(c, 6, 1, 1e-5);
 }
+
+TEST_CASE("The same gap at two times ties", "[clearance][adjoint]") {
+    // A tip passes another on one way, and on the way back.
+    Case c;
+    std::mt19937 random(4);
+    c.model.bodies = {make_body(tetrahedron(random, 1)), make_body(tetrahedron(random, 1))};
+    c.motion = true;
+    const Pose away{core::kinematics::rotation({0.3, 1, 0.2}), {4, -2, 0.3}},
+        back{core::kinematics::rotation({0.5, -1, 0.1}), {4, 2, -0.2}};
+    c.poses = {{Pose{}, away}, {Pose{}, back}, {Pose{}, away}};
+    c.witness_tolerance = 1e-9;
+    const PairClearance pair = c.certify();
+    REQUIRE(pair.upper > 0.1);
+    check_one_sided(c, 6, 2, 1e-5);
+}

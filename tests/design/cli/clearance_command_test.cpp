@@ -264,6 +264,41 @@ TEST_CASE("clearance: bodies that dynamics lets touch are in contact, and judged
     CHECK(named.pair("cube", "table")["status"] == "violated");
 }
 
+TEST_CASE("clearance --certificate writes a proof that validate accepts, and rejects once it is changed") {
+    if (absent()) return;
+    const RowFolder folder;
+    const std::string file = folder.file("row.certificate.json");
+    const Answer written =
+        run("clearance " + folder.scene() + " --minimum 0.4mm --pairs spin:pin2,slide:pin1 --motion --json --certificate " + file);
+    CHECK(written.code == 0);
+    CHECK(written.json()["certificate"]["trajectory"] == folder.file("row.trajectory.json"));
+    const Answer accepted = run("validate " + file + " --json");
+    CAPTURE(accepted.out);
+    CHECK(accepted.code == 0);
+    CHECK(accepted.json()["status"] == "accepted");
+    CHECK(accepted.json()["pairs"].size() == 2);
+    CHECK(accepted.json()["pairs"][0]["lower"] == written.pair("spin", "pin2")["lower"]);
+    CHECK(accepted.json()["faults"].empty());
+
+    auto changed = nlohmann::ordered_json::parse(contents(file));
+    changed["pairs"][0]["lower"] = changed["pairs"][0]["lower"].get<double>() + 1e-5;
+    const Answer rejected = run("validate " + folder.write("changed.certificate.json", changed.dump()) + " --json --trajectory " +
+                                folder.file("row.trajectory.json"));
+    CHECK(rejected.code == 1);
+    CHECK(rejected.json()["status"] == "rejected");
+    CHECK(!rejected.json()["faults"].empty());
+    changed["pairs"][0].erase("lower");
+    folder.write("changed.certificate.json", changed.dump());
+    CHECK(run("validate " + folder.file("changed.certificate.json") + " --trajectory " + folder.file("row.trajectory.json")).code == 1);
+    CHECK(run("validate " + folder.file("changed.certificate.json")).code == 3);  // no trajectory beside it
+    // Of a trajectory: no second one is written.
+    const Answer again = run("clearance " + folder.file("row.trajectory.json") + " --minimum 0.4mm --pairs spin:pin2 --certificate " +
+                             folder.file("again.certificate.json"));
+    CHECK(again.code == 0);
+    CHECK(again.says("--trajectory"));
+    CHECK(run("validate " + folder.file("again.certificate.json") + " --trajectory " + folder.file("row.trajectory.json")).code == 0);
+}
+
 TEST_CASE("clearance: explanation, margin curves and a comparison with an earlier report") {
     if (absent()) return;
     const RowFolder folder;
