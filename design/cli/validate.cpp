@@ -92,8 +92,9 @@ std::string claims_text(const Json& claims, const core::model::Model& model) {
     const std::string unit = unit_name(model.length_unit);
     const double factor = 1 / core::base::metres_per_unit(unit).value();
     std::string text;
+    const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
     for (const Json& pair : claims)
-        text += formatted("  %s:%s  at least %.9g, at most %.9g %s\n", pair["a"].dump().c_str(), pair["b"].dump().c_str(),
+        text += formatted("  %s:%s  at least %.9g, at most %.9g %s\n", name(pair["a"]).c_str(), name(pair["b"]).c_str(),
                           pair["lower"].get<double>() * factor, pair["upper"].get<double>() * factor, unit.c_str());
     return text;
 }
