@@ -2,6 +2,7 @@
 #include "fettle/core/geometry/mass_moments.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -42,17 +43,25 @@ TetrahedronSums tetrahedron_sums(const Matrix3X& vertices, const std::vector<Tri
 
 /// Edges of triangles that have fewer reverses than copies, in order, each as often as a reverse is missing.
 std::vector<Edge> boundary_chain(const std::vector<Triangle>& triangles) {
-    std::map<Edge, int> balance;  // of the edge with the smaller index first
+    struct DirectedEdge {
+        Edge ends;      ///< the smaller index first
+        int direction;  ///< 1, or -1 where the triangle has it the other way round
+    };
+    std::vector<DirectedEdge> all;
+    all.reserve(3 * triangles.size());
     for (const Triangle& t : triangles) {
         for (int k = 0; k < 3; ++k) {
             const int a = t[k], b = t[(k + 1) % 3];
-            if (a != b) balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+            if (a != b) all.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
         }
     }
+    std::sort(all.begin(), all.end(), [](const DirectedEdge& a, const DirectedEdge& b) { return a.ends < b.ends; });
     std::vector<Edge> chain;
-    for (const auto& [edge, count] : balance) {
-        const Edge directed = count > 0 ? edge : Edge{edge[1], edge[0]};
-        chain.insert(chain.end(), static_cast<std::size_t>(std::abs(count)), directed);
+    for (std::size_t i = 0; i < all.size();) {
+        const Edge ends = all[i].ends;
+        int balance = 0;
+        for (; i < all.size() && all[i].ends == ends; ++i) balance += all[i].direction;
+        chain.insert(chain.end(), static_cast<std::size_t>(std::abs(balance)), balance > 0 ? ends : Edge{ends[1], ends[0]});
     }
     return chain;
 }
@@ -107,6 +116,7 @@ Matrix4 point_moments(const Matrix3X& vertices) {
 
 std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
     const std::vector<Edge> chain = boundary_chain(triangles);
+    if (chain.empty()) return {};
     std::vector<int> parent(static_cast<std::size_t>(vertices.cols()));
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int v) {
@@ -132,9 +142,11 @@ std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triang
 }
 
 bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
+    const std::vector<Opening> found = openings(vertices, triangles);
+    if (found.empty() || triangles.empty()) return !triangles.empty();
     double open = 0;
-    for (const Opening& opening : openings(vertices, triangles)) open += opening.area.norm();
-    return !triangles.empty() && open <= 0.1 * surface_moments(vertices, triangles)(3, 3);
+    for (const Opening& opening : found) open += opening.area.norm();
+    return open <= 0.1 * surface_moments(vertices, triangles)(3, 3);
 }
 
 Matrix4 capped_solid_moments(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
