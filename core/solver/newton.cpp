@@ -154,7 +154,7 @@ private:
 
     // One Newton iteration. @return whether to go on.
     bool iterate() {
-        if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted);
+        if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         if (result_.iterations > 0) find_contacts();
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
