@@ -16,7 +16,7 @@ namespace {
 using namespace checker;
 
 constexpr std::size_t most_faults = 1000;
-constexpr int leaf_halvings = 6;
+constexpr int leaf_halvings = 12;
 // Larger regions are their boxes. Pieces of 128 elements, whose boxes the search may turn, have no more corners than this.
 constexpr std::size_t most_points = 384;
 

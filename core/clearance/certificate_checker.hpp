@@ -9,7 +9,7 @@
 /// - each segment of the path has a tree of cells whose leaves cover all time and all pairs of elements (halves of intervals are exact);
 /// - each leaf's plane proves the claimed lower bound: see prove_leaf in interval_motion.hpp;
 /// - the upper bound is attained by its witness: not below the distance there, nor above it by more than rounding.
-/// The cost is linear in the certificate: a leaf costs a few microseconds. One that fails at first is halved in time up to six times.
+/// The cost is linear in the certificate: a leaf costs a few microseconds. One that fails at first is halved in time up to twelve times.
 #pragma once
 
 #include <string>
