@@ -57,7 +57,7 @@ struct Model {
     double dhat = 1e-3;                 ///< [m]
     double dmin = 0;                    ///< [m]
     double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
-    bool adaptive_kappa = false;        ///< may a step raise kappa? (never when a gradient is asked for)
+    bool adaptive_kappa = false;        ///< may a simulation start from a stiffer kappa and raise it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
     Friction friction;
     scene::Integrator integrator = scene::Integrator::implicit_euler;

@@ -68,13 +68,16 @@ Vector6 scripted_target(const model::Body& body, const kinematics::Pose& pose, d
     return out;
 }
 
+// With no gradient to keep smooth, contact may be stiffer: a two-level house of cards needs it, which falls over on soft contacts.
+double least_kappa(const model::Model& model) { return model.adaptive_kappa ? 10 * model.kappa : model.kappa; }
+
 // Far inside the activation distance the barrier is as good as a wall, and hard to solve against: the next step has a stiffer one.
 double next_kappa(const model::Model& model, double kappa, const contact::ContactSet& contacts) {
     constexpr double close = 1e-2, well_apart = 0.1, rise = 4, fall = 0.5, largest = 1e4;
     if (!model.adaptive_kappa) return kappa;
     const double gap = contacts.minimum_distance - model.dmin;
     if (gap < close * model.dhat) return std::min(largest * model.kappa, rise * kappa);
-    return gap < well_apart * model.dhat ? kappa : std::max(model.kappa, fall * kappa);
+    return gap < well_apart * model.dhat ? kappa : std::max(least_kappa(model), fall * kappa);
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ double next_kappa(const model::Model& model, double kappa, const contact::Contac
 StepState start_state(const model::Model& model) {
     StepState state;
     state.history = energy::start_history(model);
-    state.kappa = model.kappa;
+    state.kappa = least_kappa(model);
     return state;
 }
 

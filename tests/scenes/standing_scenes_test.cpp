@@ -63,6 +63,13 @@ TEST_CASE("the card tent stands for 5 s", "[paper][slow]") {
     CHECK(run.moved(4, 5) < 2e-3);
 }
 
+TEST_CASE("the two-level card house stands for 5 s", "[paper][slow]") {
+    FETTLE_NEEDS_SHARED();
+    const Run run("card-house/card-house-2-levels", 5);
+    CHECK(run.moved(0, 1) < 0.3);   // its cards start in the air: the upper ones fall 0.24 m into place
+    CHECK(run.moved(1, 5) < 8e-3);  // then creep below the static speed bound of 1 mm/s is left
+}
+
 TEST_CASE("the paper's block stays on its incline at mu 0.5", "[paper][slow]") {
     FETTLE_NEEDS_SHARED();
     const Run run("incline-plane/slopeTest_highSchoolPhysics_mu=0.5", 10);
