@@ -76,8 +76,8 @@ double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses
     return sum;
 }
 
-void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& poses, std::vector<kinematics::PoseGradient>& gradients,
-                              kinematics::BlockHessian& hessian) {
+void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& poses, HessianKind kind,
+                              std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
     for (const BodyPairFriction& pair : set.pairs) {
         BodyPairSum sum;
         for (const FrictionContact& c : pair.contacts) {
@@ -89,7 +89,8 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             // Along the slide f0'', across it f0' / y; at rest both are 2 / e and any two tangents do.
             const double c1 = s.distance > 0 ? s.u1 / s.distance : 1, c2 = s.distance > 0 ? s.u2 / s.distance : 0;
             const Vector3 along = c1 * c.tangent_1 + c2 * c.tangent_2, across = c1 * c.tangent_2 - c2 * c.tangent_1;
-            add_rigid_stiffness(sum.hessian, c.load * f.second, along, s.arm_first, s.arm_second);
+            const double stiffness = kind == HessianKind::projected ? f.first_by_y : f.second;
+            add_rigid_stiffness(sum.hessian, c.load * stiffness, along, s.arm_first, s.arm_second);
             add_rigid_stiffness(sum.hessian, c.load * f.first_by_y, across, s.arm_first, s.arm_second);
         }
         add_body_pair(pair.first, pair.second, sum, gradients, hessian);

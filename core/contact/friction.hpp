@@ -54,7 +54,9 @@ FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, 
 double friction_potential(const FrictionSet& set, const std::vector<kinematics::Pose>& poses);
 
 /// Adds D's first derivatives, and the Gauss-Newton part of its second ones.
-void add_friction_derivatives(const FrictionSet& set, const std::vector<kinematics::Pose>& poses,
+/// @param kind  projected: load f0'/|u| along the slide too, in place of f0''. The quadratic with that curvature majorises f0 (which is
+///              concave in |u|^2), so that a Newton step cannot leap over the narrow valley where a contact sticks.
+void add_friction_derivatives(const FrictionSet& set, const std::vector<kinematics::Pose>& poses, HessianKind kind,
                               std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
 /// Friction's force on the first body at its material point, times the weight (world).

@@ -82,7 +82,7 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
     d.gradients.resize(n);
     d.contact_hessian.diagonal.assign(n, Matrix6::Zero());
     contact::add_barrier_derivatives(contacts, poses, problem.barrier, kind, d.gradients, d.contact_hessian);
-    contact::add_friction_derivatives(problem.friction, poses, d.gradients, d.contact_hessian);
+    contact::add_friction_derivatives(problem.friction, poses, kind, d.gradients, d.contact_hessian);
     d.force_magnitude.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
         const model::Body& body = problem.model->bodies[i];

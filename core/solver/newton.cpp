@@ -22,6 +22,8 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double stalled_step = 1e-3;  // a step this short, again and again, means that the way is blocked
 constexpr double smallest_drive = 1e-4;
+constexpr double short_step = 0.1;
+constexpr int careful_iterations = 4;
 constexpr int longest_rest = 12;         // iterations
 constexpr double relaxed_motion = 0.25;  // of dhat: pushed bodies that move no more have given way
 constexpr int stalled_iterations = 50;
@@ -154,7 +156,8 @@ private:
 
     // One Newton iteration. @return whether to go on.
     bool iterate() {
-        if (options_.should_stop && options_.should_stop()) return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
+        if (options_.should_stop && options_.should_stop())
+            return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         if (result_.iterations > 0) find_contacts();
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
@@ -176,6 +179,9 @@ private:
 
         ++result_.iterations;
         const double fraction = search(direction);
+        // Cut short by the potential, not by CCD: contacts that change from sliding one way to the other, over the valley where they stick.
+        if (!problem_.friction.pairs.empty() && fraction < short_step * limiting_.fraction)
+            projected_iterations_ = std::max(projected_iterations_, careful_iterations);
         // What is pushed must have time to give way: drive less where little was possible, more where much was.
         if (resting_ > 0) {
             const bool relaxed = fraction == 1 && direction.motion <= relaxed_motion * model_.dhat;

@@ -61,11 +61,11 @@ struct Derivatives {
     MatrixX gauss_newton = MatrixX(12, 12), hessian;
 };
 
-Derivatives derivatives_at(const Scene& s, const std::vector<Pose>& poses) {
+Derivatives derivatives_at(const Scene& s, const std::vector<Pose>& poses, HessianKind kind = HessianKind::exact) {
     std::vector<kinematics::PoseGradient> gradients(2);
     kinematics::BlockHessian blocks;
     blocks.diagonal.assign(2, Matrix6::Zero());
-    add_friction_derivatives(s.friction, poses, gradients, blocks);
+    add_friction_derivatives(s.friction, poses, kind, gradients, blocks);
     Derivatives d;
     d.gradient << tangent_gradient(gradients[0]), tangent_gradient(gradients[1]);
     REQUIRE(blocks.off_diagonal.size() == 1);
@@ -119,6 +119,9 @@ TEST_CASE("friction's gradient and Hessian agree with differences", "[friction]"
             }
         const MatrixX symmetric = 0.5 * (difference + difference.transpose());
         CHECK((symmetric - d.hessian).norm() < 2e-4 * d.hessian.norm());
+        const MatrixX majoriser = derivatives_at(s, s.poses, HessianKind::projected).gauss_newton - d.gauss_newton;
+        CHECK(majoriser.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= -1e-12 * d.gauss_newton.norm());
+        CHECK((slid > 0) == (majoriser.norm() > 1e-6 * d.gauss_newton.norm()));  // stiffer only where something slides
         const double least = d.gauss_newton.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
         CHECK(least >= -1e-12 * d.gauss_newton.norm());
     }
