@@ -411,14 +411,19 @@ Candidates find_candidates(const model::Model& model, const std::vector<kinemati
         for (const NodePair& leaves : task.leaves) search.visit(leaves);
         task.found = search.take();
     });
-    for (const Task& task : tasks) {
-        if (task.found.empty()) continue;
-        const SweptPair& pair = pairs[task.pair];
-        if (candidates.pairs.empty() || candidates.pairs.back().a != pair.body_a || candidates.pairs.back().b != pair.body_b)
-            candidates.pairs.push_back({pair.body_a, pair.body_b, {}, {}, {}});
-        append(candidates.pairs.back(), task.found);
-    }
-    base::parallel_for(static_cast<int>(candidates.pairs.size()), 4, [&](int k) { sort_by_distance(candidates.pairs[k]); });
+    // A pair's tasks follow one another.
+    std::vector<BodyPairCandidates> joined(pairs.size());
+    std::vector<std::size_t> first_task(pairs.size() + 1, tasks.size());
+    for (std::size_t k = tasks.size(); k-- > 0;) first_task[tasks[k].pair] = k;
+    for (std::size_t p = pairs.size(); p-- > 0;) first_task[p] = std::min(first_task[p], first_task[p + 1]);
+    base::parallel_for(static_cast<int>(pairs.size()), 4, [&](int p) {
+        joined[p].a = pairs[p].body_a;
+        joined[p].b = pairs[p].body_b;
+        for (std::size_t k = first_task[p]; k < first_task[p + 1]; ++k) append(joined[p], tasks[k].found);
+        sort_by_distance(joined[p]);
+    });
+    for (BodyPairCandidates& pair : joined)
+        if (!pair.empty()) candidates.pairs.push_back(std::move(pair));
     return candidates;
 }
 
