@@ -81,8 +81,9 @@ SweptElement swept_element(const SweptBody& s, const HierarchyElement& e) {
 
 // The elements of a body that some search looks at.
 struct SweptElements {
-    std::vector<char> wanted;  // per hierarchy node: a leaf to fill
+    std::vector<int> first;  // per hierarchy node: where a leaf's elements start, or -1
     std::unique_ptr<SweptElement[]> elements;
+    const SweptElement* of_leaf(int node) const { return elements.get() + first[node]; }
 };
 
 // One separating direction, in the frames of both bodies at both ends.
@@ -180,7 +181,7 @@ std::vector<NodePair> descend(const SweptPair& pair, NodePair from, std::size_t 
 // Pairs of primitives of pairs of leaves.
 class LeafSearch {
 public:
-    LeafSearch(const SweptPair& pair, const SweptElement* elements_a, const SweptElement* elements_b)
+    LeafSearch(const SweptPair& pair, const SweptElements& elements_a, const SweptElements& elements_b)
         : pair_(pair),
           body_a_(*pair.a->body->hierarchy),
           body_b_(*pair.b->body->hierarchy),
@@ -191,9 +192,10 @@ public:
         const HierarchyNode &na = body_a_.nodes()[leaves[0]], &nb = body_b_.nodes()[leaves[1]];
         margin_ = pair_.margin(na.radius, nb.radius) + rounding * pair_.world_size;
         lost_ = pair_.deviation(na.radius, nb.radius) + rounding * pair_.world_size;
+        const SweptElement *swept_a = elements_a_.of_leaf(leaves[0]), *swept_b = elements_b_.of_leaf(leaves[1]);
         for (int i = na.first; i < na.first + na.count; ++i)
             for (int j = nb.first; j < nb.first + nb.count; ++j) {
-                const SweptElement &a = elements_a_[i], &b = elements_b_[j];
+                const SweptElement &a = swept_a[i - na.first], &b = swept_b[j - nb.first];
                 if (apart(a, b) || apart_along(a.normal, a, b) || apart_along(b.normal, a, b)) continue;
                 visit_elements(body_a_.elements()[i], a, body_b_.elements()[j], b);
             }
@@ -293,7 +295,7 @@ private:
 
     const SweptPair& pair_;
     const BodyHierarchy &body_a_, &body_b_;
-    const SweptElement *elements_a_, *elements_b_;
+    const SweptElements &elements_a_, &elements_b_;
     double margin_ = 0, lost_ = 0;  // of the pair of leaves being visited
     BodyPairCandidates out_;
 };
@@ -350,25 +352,30 @@ std::vector<SweptElements> fill_elements(const std::vector<SweptBody>& swept, co
     std::vector<SweptElements> out(swept.size());
     const auto want = [&](int body, int node) {
         SweptElements& e = out[body];
-        const BodyHierarchy& hierarchy = *swept[body].body->hierarchy;
-        if (!e.elements) {
-            e.elements = std::make_unique_for_overwrite<SweptElement[]>(hierarchy.elements().size());
-            e.wanted.assign(hierarchy.nodes().size(), 0);
-        }
-        e.wanted[node] = 1;
+        if (e.first.empty()) e.first.assign(swept[body].body->hierarchy->nodes().size(), -1);
+        e.first[node] = 0;
     };
     for (const Task& task : tasks)
         for (const NodePair& leaves : task.leaves) {
             want(pairs[task.pair].body_a, leaves[0]);
             want(pairs[task.pair].body_b, leaves[1]);
         }
-    base::parallel_for(static_cast<int>(swept.size()), 1, [&](int body) {
+    base::parallel_for(static_cast<int>(swept.size()), 4, [&](int body) {
         SweptElements& e = out[body];
         const BodyHierarchy& hierarchy = *swept[body].body->hierarchy;
-        for (std::size_t node = 0; node < e.wanted.size(); ++node) {
-            if (!e.wanted[node]) continue;
+        int count = 0;
+        for (std::size_t node = 0; node < e.first.size(); ++node) {
+            if (e.first[node] < 0) continue;
+            e.first[node] = count;
+            count += hierarchy.nodes()[node].count;
+        }
+        if (count == 0) return;
+        e.elements = std::make_unique_for_overwrite<SweptElement[]>(static_cast<std::size_t>(count));
+        for (std::size_t node = 0; node < e.first.size(); ++node) {
+            if (e.first[node] < 0) continue;
             const HierarchyNode& leaf = hierarchy.nodes()[node];
-            for (int i = leaf.first; i < leaf.first + leaf.count; ++i) e.elements[i] = swept_element(swept[body], hierarchy.elements()[i]);
+            for (int k = 0; k < leaf.count; ++k)
+                e.elements[e.first[node] + k] = swept_element(swept[body], hierarchy.elements()[leaf.first + k]);
         }
     });
     return out;
@@ -407,7 +414,7 @@ Candidates find_candidates(const model::Model& model, const std::vector<kinemati
     base::parallel_for(count, 1, [&](int k) {
         Task& task = tasks[k];
         const SweptPair& pair = pairs[task.pair];
-        LeafSearch search(pair, elements[pair.body_a].elements.get(), elements[pair.body_b].elements.get());
+        LeafSearch search(pair, elements[pair.body_a], elements[pair.body_b]);
         for (const NodePair& leaves : task.leaves) search.visit(leaves);
         task.found = search.take();
     });
