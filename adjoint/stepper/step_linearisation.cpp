@@ -80,8 +80,7 @@ LinearisedStep linearise_step(const core::model::Model& model, const core::stepp
     step.problem = core::energy::implicit_euler_problem(model, trajectory.poses[t], velocities_at(model, trajectory, t));
     step.poses = trajectory.poses[t + 1];
     step.points = trajectory.steps[t].nodes.back();
-    const core::contact::Candidates candidates =
-        core::contact::find_candidates(model, step.poses, std::vector<core::contact::MotionAllowance>(model.bodies.size()));
+    const core::contact::Candidates candidates = core::contact::find_candidates(model, step.poses, 0);
     step.contacts = core::contact::find_contacts(model, candidates, step.poses);
     step.derivatives =
         core::energy::chart_derivatives(step.problem, step.points, step.poses, step.contacts, core::contact::HessianKind::exact);

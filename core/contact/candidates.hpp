@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Broad phase: every pair of primitives of different bodies that could come within the activation distance while the bodies move along
-/// given path segments, and no more than an allowance away from them. Found by descending the bodies' hierarchies two at a time.
+/// given path segments, and no more than an allowance away from them.
 ///
-/// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
-/// (method.md section 7, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that move straight is
-/// concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay
-/// apart.
+/// Kept per pair of bodies: what was found stays valid while the two have moved little relative to one another, wherever they have gone
+/// together and whatever the other bodies do. So a step searches anew only where something has happened.
 #pragma once
 
 #include <array>
@@ -16,10 +14,11 @@
 
 namespace fettle::core::contact {
 
-/// How far a body may move: a point X by at most translation + rotation |X|.
-struct MotionAllowance {
-    double translation = 0;  ///< [m]
-    double rotation = 0;     ///< [rad]
+/// How much more the points of two bodies may approach one another than they do along the segments of a search before they need another:
+/// fixed + of_motion * (a bound of their relative motion along the segments). Dear where large: the search must look that much farther.
+struct Allowance {
+    double fixed = 0;      ///< [m]
+    double of_motion = 0;  ///< share
 };
 
 /// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
@@ -35,33 +34,36 @@ struct BodyPairCandidates {
     std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
     std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
     std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
+    double allowance = 0;                        ///< [m]
+    bool fresh = false;                          ///< found by the last cover(), and not settled yet
+    /// Paths along which the lists hold, without the allowance; they end where the bodies went.
+    std::array<kinematics::PathSegment, 2> along;
+    std::array<kinematics::Pose, 2> end;
     bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
 };
 
 struct Candidates {
-    std::vector<BodyPairCandidates> pairs;    ///< sorted by (a, b)
-    std::vector<kinematics::Pose> poses;      ///< a configuration on the segments that they were found along (at first, the start).
-                                              ///< Whoever moves along the segments may move it too: allowances count from here
-    std::vector<MotionAllowance> allowances;  ///< per body
+    std::vector<BodyPairCandidates> pairs;  ///< sorted by (a, b). Pairs of bodies that are near but have no candidates are listed too
 };
 
-/// All pairs whose distance, somewhere along the segments, is at most dmin + dhat + (allowances of both primitives).
-Candidates find_candidates(const model::Model& model, const std::vector<kinematics::PathSegment>& segments,
-                           const std::vector<MotionAllowance>& allowances);
+/// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
+/// dmin + dhat. Pairs of bodies that are covered already are left alone, the others are searched along the segments.
+/// The bodies may then be anywhere on the segments, the same fraction for all; say with settle() where they went.
+void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, const Allowance& allowance,
+           Candidates& candidates);
 
-/// The same at a configuration.
-Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses,
-                           const std::vector<MotionAllowance>& allowances);
+/// The bodies went along `segments`: a part, from its start, of what was covered last. From here on each pair of bodies is covered
+/// while its motion_over() is at most its allowance.
+void settle(const std::vector<kinematics::PathSegment>& segments, Candidates& candidates);
 
-/// Upper bounds of how far any point of each body is from candidates.poses, [m].
-std::vector<double> displacements(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+/// Candidates at a configuration, settled there.
+Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses, double allowance);
+
+/// Upper bound of how much nearer any point of one body can be to any of the other at these poses than it was along `pair.along`, [m].
+/// Zero, by contract, for fresh pairs.
+double motion_since(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::Pose>& poses);
 
 /// The same over the whole of each segment.
-std::vector<double> displacements(const model::Model& model, const Candidates& candidates,
-                                  const std::vector<kinematics::PathSegment>& segments);
-
-/// Largest fraction of the segments along which the candidates are complete (up to the activation distance): while each body stays within
-/// its allowance of candidates.poses.
-double covered_fraction(const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
+double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::PathSegment>& segments);
 
 }  // namespace fettle::core::contact

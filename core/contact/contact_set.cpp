@@ -15,10 +15,12 @@ using kinematics::Pose;
 
 Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_position(pose, body.mesh.vertices.col(v)); }
 
-// Calls visit(first, second, pair) with vertices filled, for every candidate in order that was found no farther apart than `reach`.
+// Calls visit(first, second, pair) with vertices filled, for every candidate in order that may be closer than the activation distance.
 template <class Visit>
-void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double reach,
+void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double activation,
                    const Visit& visit) {
+    if (list.empty()) return;
+    const double reach = activation + motion_since(model, list, poses);
     const model::Body &a = model.bodies[list.a], &b = model.bodies[list.b];
     const Pose &pa = poses[list.a], &pb = poses[list.b];
     ContactPair pair;
@@ -76,10 +78,10 @@ struct ListContacts {
     double least = std::numeric_limits<double>::infinity();  // squared distance
 };
 
-ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double moved) {
+ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses) {
     const double activation = model.dmin + model.dhat;
     ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
-    for_each_pair(model, list, poses, activation + moved, [&](int first, int, ContactPair& pair) {
+    for_each_pair(model, list, poses, activation, [&](int first, int, ContactPair& pair) {
         pair.closest = closest_points(pair.type, pair.x);
         if (pair.closest.distance_squared >= activation * activation) return;
         out.least = std::min(out.least, pair.closest.distance_squared);
@@ -91,12 +93,12 @@ ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& li
     return out;
 }
 
-double potential_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double moved,
+double potential_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses,
                     const BarrierParameters& parameters) {
     const double activation_squared = parameters.activation * parameters.activation;
     const double dmin_squared = parameters.dmin * parameters.dmin;
     std::vector<std::tuple<int, Key, double>> terms;
-    for_each_pair(model, list, poses, parameters.activation + moved, [&](int first, int, ContactPair& pair) {
+    for_each_pair(model, list, poses, parameters.activation, [&](int first, int, ContactPair& pair) {
         pair.closest = closest_points(pair.type, pair.x);
         if (pair.closest.distance_squared >= activation_squared) return;
         const double value =
@@ -114,12 +116,11 @@ constexpr int pairs_a_piece = 16;  // pairs of bodies that a thread takes at a t
 }  // namespace
 
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
-    const std::vector<double> moved = displacements(model, candidates, poses);
     const int count = static_cast<int>(candidates.pairs.size());
     std::vector<ListContacts> found(candidates.pairs.size());
     base::parallel_for(count, pairs_a_piece, [&](int k) {
         const BodyPairCandidates& list = candidates.pairs[k];
-        found[k] = contacts_of(model, list, poses, moved[list.a] + moved[list.b]);
+        found[k] = contacts_of(model, list, poses);
     });
     ContactSet set;
     double least = std::numeric_limits<double>::infinity();
@@ -136,12 +137,11 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
 
 double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses,
                          const BarrierParameters& parameters) {
-    const std::vector<double> moved = displacements(model, candidates, poses);
     const int count = static_cast<int>(candidates.pairs.size());
     std::vector<double> values(candidates.pairs.size());
     base::parallel_for(count, pairs_a_piece, [&](int k) {
         const BodyPairCandidates& list = candidates.pairs[k];
-        values[k] = potential_of(model, list, poses, moved[list.a] + moved[list.b], parameters);
+        values[k] = potential_of(model, list, poses, parameters);
     });
     double sum = 0;
     for (const double value : values) sum += value;

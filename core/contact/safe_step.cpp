@@ -26,9 +26,9 @@ public:
         for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
     }
 
-    // `moved`: how far apart the pair can be from where the candidates were found, over the whole segments.
-    void visit(const BodyPairCandidates& list, double moved) {
-        const double reach = model_.dmin + limits_.kept_most + moved;
+    void visit(const BodyPairCandidates& list) {
+        if (list.empty()) return;
+        const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_);
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;
@@ -84,18 +84,16 @@ private:
 
 }  // namespace
 
-SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments,
-                           const std::vector<double>& moved) {
+SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
     StepSearch search(model, segments, {0.1, 0.25 * model.dhat});
-    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list, moved[list.a] + moved[list.b]);
+    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list);
     return search.result();
 }
 
-bool is_path_clear(const model::Model& model, const std::vector<PathSegment>& segments) {
-    const Candidates candidates = find_candidates(model, segments, std::vector<MotionAllowance>(segments.size()));
+bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
     StepSearch search(model, segments, {0.01, 0.01 * model.dhat});
     for (const BodyPairCandidates& list : candidates.pairs) {
-        search.visit(list, 0);
+        search.visit(list);
         if (search.result().fraction < 1) return false;
     }
     return true;

@@ -16,14 +16,10 @@ struct SafeStep {
 
 /// Longest safe fraction of the segments. A pair may lose at most nine tenths of its distance (or come to a quarter of dhat, whichever is
 /// less), so that the barrier stays finite and the next step has room.
-/// @param moved  per body: how far its points may leave the segments that the candidates were found along, [m] (displacements() of
-/// candidates.hpp;
-///               zero if `segments` are those very segments).
 /// Contract: the candidates cover the segments (candidates.hpp).
-SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments,
-                           const std::vector<double>& moved);
+SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
-/// Is the whole of each segment free of pairs at or below dmin? Finds its own candidates.
-bool is_path_clear(const model::Model& model, const std::vector<kinematics::PathSegment>& segments);
+/// Is the whole of each segment free of pairs at or below dmin? Contract: as above.
+bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 }  // namespace fettle::core::contact

@@ -13,7 +13,6 @@ namespace fettle::core::solver {
 namespace {
 
 using contact::HessianKind;
-using contact::MotionAllowance;
 using kinematics::ChartPoint;
 using kinematics::PathSegment;
 using kinematics::Pose;
@@ -73,7 +72,8 @@ public:
 
     NewtonResult run() {
         const std::vector<PathSegment> here = segments_to(points_);
-        if (candidates_.poses.size() != here.size() || contact::covered_fraction(candidates_, here) < 1) find_candidates(here);
+        cover(here);
+        settle(here, candidates_);
         find_contacts();
         const bool frictional = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
@@ -115,18 +115,9 @@ private:
         return linear_.factorise(hessian);
     }
 
-    // The allowance lets later, shorter steps do without a new search.
-    void find_candidates(const std::vector<PathSegment>& segments) {
-        std::vector<MotionAllowance> allowances(segments.size());
-        for (std::size_t i = 0; i < segments.size(); ++i) {
-            const model::Body& body = model_.bodies[i];
-            if (body.type == scene::BodyType::static_body) continue;
-            allowances[i].translation = 0.1 * segments[i].position_step.norm() + 0.25 * model_.dhat;
-            allowances[i].rotation =
-                0.1 * segments[i].rotation_vector_step.norm() + 0.25 * model_.dhat / std::max(body.radius, model_.dhat);
-        }
+    void cover(const std::vector<PathSegment>& segments) {
         const auto span = clock_.charge(SolvePhase::broad_phase);
-        candidates_ = contact::find_candidates(model_, segments, allowances);
+        contact::cover(model_, segments, candidate_allowance(model_), candidates_);
     }
 
     // Normal forces and tangents of where we are.
@@ -349,15 +340,12 @@ private:
         return segments;
     }
 
-    // How far all bodies may go. Candidates are searched for anew, along the whole segments, when those at hand do not cover them.
+    // How far all bodies may go.
     contact::SafeStep safe_step(const Direction& direction) {
         const std::vector<PathSegment> segments = segments_to(moved(direction, 1));
-        on_segments_ = contact::covered_fraction(candidates_, segments) < 1;
-        if (on_segments_) find_candidates(segments);
+        cover(segments);
         const auto span = clock_.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(
-            model_, candidates_, segments,
-            on_segments_ ? std::vector<double>(segments.size(), 0) : displacements(model_, candidates_, segments));
+        return contact::longest_safe_step(model_, candidates_, segments);
     }
 
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
@@ -370,17 +358,17 @@ private:
         for (double fraction = safe.fraction; fraction > smallest_step; fraction *= 0.5) {
             std::vector<ChartPoint> trial = moved(direction, fraction);
             std::vector<Pose> poses = poses_of(problem_, trial);
-            if (on_segments_) candidates_.poses = poses;
             const double value = potential(trial, poses);
             const double change = value - value_ - penalty_ * fraction * remaining;
             if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
+            settle(segments_to(trial), candidates_);
             points_ = std::move(trial);
             result_.poses = std::move(poses);
             value_ = value;
             result_.path.push_back(points_);
             return fraction;
         }
-        if (on_segments_) candidates_.poses = result_.poses;
+        settle(segments_to(points_), candidates_);
         return 0;
     }
 
@@ -405,7 +393,6 @@ private:
     const NewtonOptions& options_;
     std::vector<ChartPoint> points_;
     contact::ContactSet contacts_;
-    bool on_segments_ = false;  // were the candidates found along the segments of this search?
     contact::SafeStep limiting_;
     double value_ = 0;
     double penalty_ = 0;
@@ -426,6 +413,8 @@ const char* to_string(SolvePhase phase) {
     static_assert(names.size() == static_cast<std::size_t>(SolvePhase::count));
     return names[static_cast<std::size_t>(phase)];
 }
+
+contact::Allowance candidate_allowance(const model::Model& model) { return {model.dhat, 0.1}; }
 
 NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options) {

@@ -59,10 +59,13 @@ const char* to_string(SolvePhase phase);
 struct NewtonWorkspace {
     FreeDofs dofs;
     LinearSolver linear;             ///< its symbolic factor
-    contact::Candidates candidates;  ///< complete near where the last solve ended
+    contact::Candidates candidates;  ///< near where the last solve ended
     base::PhaseClock<SolvePhase> clock;
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
 };
+
+/// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do without.
+contact::Allowance candidate_allowance(const model::Model& model);
 
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
 NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,

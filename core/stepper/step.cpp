@@ -20,14 +20,25 @@ std::vector<PathSegment> straight_segments(const model::Model& model, const Step
 }
 
 // The stored path: straight where that is clear, else through as few of the accepted points as are needed.
-TrajectoryStep stored_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted) {
+TrajectoryStep stored_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted,
+                           solver::NewtonWorkspace& workspace) {
+    const auto is_clear = [&](const std::vector<PathSegment>& segments) {
+        {
+            const auto span = workspace.clock.charge(solver::SolvePhase::broad_phase);
+            cover(model, segments, solver::candidate_allowance(model), workspace.candidates);
+        }
+        const auto span = workspace.clock.charge(solver::SolvePhase::ccd);
+        const bool clear = contact::is_path_clear(model, workspace.candidates, segments);
+        settle(segments, workspace.candidates);
+        return clear;
+    };
     TrajectoryStep out{{accepted.front()}};
     std::size_t from = 0;
     while (from + 1 < accepted.size()) {
         std::size_t to = accepted.size() - 1;
         for (; to > from + 1; to = from + 1 + (to - from - 1) / 2) {
             const std::vector<PathSegment> segments = straight_segments(model, state, accepted[from], accepted[to]);
-            if (contact::is_path_clear(model, segments)) break;
+            if (is_clear(segments)) break;
         }
         out.nodes.push_back(accepted[to]);
         from = to;
@@ -117,7 +128,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual};
     result.state = state;
     if (result.status != SimulationStatus::ok) return result;
-    result.path = stored_path(model, state, solved.path);
+    result.path = stored_path(model, state, solved.path, workspace);
     result.state.time = state.time + model.timestep;
     result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     std::vector<kinematics::Pose> end = solved.poses;

@@ -24,8 +24,8 @@ struct Scene {
 };
 
 core::contact::ContactSet contacts_of(const Model& model, const std::vector<Pose>& poses) {
-    const auto candidates = find_candidates(model, poses, std::vector<core::contact::MotionAllowance>(model.bodies.size()));
-    return find_contacts(model, candidates, poses);
+    const auto candidates = core::contact::find_candidates(model, poses, 0);
+    return core::contact::find_contacts(model, candidates, poses);
 }
 
 // Between the surfaces of the two bodies at the start, by all pairs of primitives.

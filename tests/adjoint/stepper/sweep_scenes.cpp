@@ -120,8 +120,7 @@ std::vector<SweepScene> all_scenes() { return {free_flight(), stack(), twisted_p
 ContactCount count_contacts(const Model& model, const core::stepper::Trajectory& trajectory) {
     ContactCount count;
     for (std::size_t t = 1; t < trajectory.poses.size(); ++t) {
-        const auto candidates =
-            core::contact::find_candidates(model, trajectory.poses[t], std::vector<core::contact::MotionAllowance>(model.bodies.size()));
+        const auto candidates = core::contact::find_candidates(model, trajectory.poses[t], 0);
         for (const auto& list : core::contact::find_contacts(model, candidates, trajectory.poses[t]).pairs)
             for (const core::contact::ContactPair& pair : list.contacts) {
                 if (pair.type == core::contact::PairType::point_triangle)

@@ -81,6 +81,12 @@ std::map<Key, double> listed(const Candidates& candidates) {
     return out;
 }
 
+Candidates candidates_along(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, const Allowance& allowance) {
+    Candidates candidates;
+    cover(model, segments, allowance, candidates);
+    return candidates;
+}
+
 kinematics::PathSegment random_segment(std::mt19937& random, double apart, double travel, double turn) {
     std::normal_distribution<double> n;
     const auto v = [&] { return Vector3(n(random), n(random), n(random)); };
@@ -96,8 +102,7 @@ TEST_CASE("no pair that comes close along the segments is missing", "[candidates
         const model::Model model = two_bodies(random, 0.05);
         const double turn = trial % 3 == 0 ? 0 : 0.3 * (trial % 5);
         const std::vector<kinematics::PathSegment> segments{random_segment(random, 0.3, 0.2, turn), random_segment(random, 0.4, 0.2, turn)};
-        const std::vector<MotionAllowance> allowances{{0.02, 0.03}, {0.01, 0.0}};
-        const std::map<Key, double> found = listed(find_candidates(model, segments, allowances));
+        const std::map<Key, double> found = listed(candidates_along(model, segments, {0.03, 0}));
         for (int k = 0; k <= 40; ++k) {
             const double s = k / 40.0;
             const auto distances = all_distances(model, {pose_at(segments[0], s), pose_at(segments[1], s)});
@@ -120,7 +125,7 @@ TEST_CASE("candidates at a configuration hold the true distances", "[candidates]
     std::mt19937 random(5);
     const model::Model model = two_bodies(random, 0.2);
     const std::vector<kinematics::Pose> poses{pose_at(random_segment(random, 0.3, 0, 0), 0), pose_at(random_segment(random, 0.3, 0, 0), 0)};
-    const Candidates candidates = find_candidates(model, poses, {{0, 0}, {0, 0}});
+    const Candidates candidates = find_candidates(model, poses, 0);
     const auto found = listed(candidates);
     int expected = 0;
     for (const auto& [key, d] : all_distances(model, poses)) {
@@ -132,19 +137,107 @@ TEST_CASE("candidates at a configuration hold the true distances", "[candidates]
     CHECK(expected == static_cast<int>(found.size()));
 }
 
-TEST_CASE("coverage ends where a body leaves its allowance", "[candidates]") {
+TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance", "[candidates]") {
     std::mt19937 random(3);
     const model::Model model = two_bodies(random, 0.2);
-    const kinematics::Pose here{Matrix3::Identity(), Vector3(0.1, 0, 0)};
-    const Candidates candidates = find_candidates(model, std::vector<kinematics::Pose>{here, here}, {{0.1, 0.1}, {0, 0}});
-    const auto segment = [&](double travel, double turn) {
-        return std::vector<kinematics::PathSegment>{
-            {here.rotation, Vector3::Zero(), Vector3(0, turn, 0), here.position, Vector3(travel, 0, 0)},
-            {here.rotation, Vector3::Zero(), Vector3::Zero(), here.position, Vector3::Zero()}};
+    const double radius = model.bodies[0].radius;
+    const std::vector<kinematics::PathSegment> here{random_segment(random, 0.2, 0, 0), random_segment(random, 0.2, 0, 0)};
+    Candidates candidates;
+    const auto is_kept = [&](const std::vector<kinematics::PathSegment>& segments) {
+        cover(model, here, {0.1, 0}, candidates);
+        settle(here, candidates);
+        cover(model, segments, {0.1, 0}, candidates);
+        REQUIRE(candidates.pairs.size() == 1);
+        const bool kept = !candidates.pairs[0].fresh;
+        candidates.pairs.clear();
+        return kept;
     };
-    CHECK(covered_fraction(candidates, segment(0.09, 0.09)) == 1);
-    CHECK(covered_fraction(candidates, segment(0.2, 0)) == Approx(0.5));
-    CHECK(covered_fraction(candidates, segment(0.05, 0.4)) == Approx(0.25));
+    const auto moved = [&](const Vector3& travel, const Vector3& turn) {
+        std::vector<kinematics::PathSegment> segments = here;
+        segments[0].position_step = travel;
+        segments[0].rotation_vector_step = turn;
+        return segments;
+    };
+    CHECK(is_kept(here));
+    CHECK(is_kept(moved(Vector3(0.099, 0, 0), Vector3::Zero())));
+    CHECK_FALSE(is_kept(moved(Vector3(0.101, 0, 0), Vector3::Zero())));
+    CHECK(is_kept(moved(Vector3::Zero(), Vector3(0, 0.099 / radius, 0))));
+    CHECK_FALSE(is_kept(moved(Vector3::Zero(), Vector3(0, 0.101 / radius, 0))));
+    CHECK_FALSE(is_kept(moved(Vector3(0.06, 0, 0), Vector3(0, 0.06 / radius, 0))));
+    // Both go together, along the way and from one search to the next.
+    std::vector<kinematics::PathSegment> together = moved(Vector3(5, 0, 0), Vector3::Zero());
+    together[1].position_step = together[0].position_step;
+    CHECK(is_kept(together));
+    std::vector<kinematics::PathSegment> carried = here;
+    const Matrix3 turn = kinematics::rotation(Vector3(1, 2, 0.5));
+    for (kinematics::PathSegment& s : carried) {
+        s.base = turn * pose_at(s, 0).rotation;
+        s.rotation_vector_t0.setZero();
+        s.position_t0 = turn * s.position_t0 + Vector3(1, 0, 0);
+    }
+    CHECK(is_kept(carried));
+    // The first reaches into the second's way where it had been searched already: from the same start to a little off the end.
+    const std::vector<kinematics::PathSegment> far = moved(Vector3(1, 0, 0), Vector3(0, 0.5, 0));
+    std::vector<kinematics::PathSegment> near_far = far;
+    near_far[0].position_step += Vector3(0, 0.05, 0);
+    cover(model, far, {0.1, 0}, candidates);
+    settle(far, candidates);
+    cover(model, near_far, {0.1, 0}, candidates);
+    REQUIRE(candidates.pairs.size() == 1);
+    CHECK_FALSE(candidates.pairs[0].fresh);
+}
+
+TEST_CASE("candidates that are kept miss nothing within their allowance", "[candidates]") {
+    std::mt19937 random(23);
+    int kept = 0, close = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        const model::Model model = two_bodies(random, 0.05);
+        const double turn = trial % 3 == 0 ? 0 : 0.2 * (trial % 5);
+        std::vector<kinematics::PathSegment> first{random_segment(random, 0.3, 0.2, turn), random_segment(random, 0.4, 0.2, turn)};
+        Candidates candidates;
+        cover(model, first, {0.02, 0.2}, candidates);
+        // They went a part of the way; then on, or the same way again a little otherwise, or both were carried elsewhere.
+        for (kinematics::PathSegment& s : first) s = sub_segment(s, 0, 0.6);
+        settle(first, candidates);
+        std::vector<kinematics::PathSegment> second = first;
+        for (kinematics::PathSegment& s : second) {
+            const kinematics::PathSegment change = random_segment(random, 0, 0.005, 0.01);
+            if (trial % 2 == 0) s = sub_segment(s, 1, 1);
+            s.position_step += change.position_step;
+            s.rotation_vector_step += change.rotation_vector_step;
+        }
+        if (trial % 4 == 0) {
+            const Matrix3 carried = kinematics::rotation(random_segment(random, 0, 0, 1).rotation_vector_step);
+            for (kinematics::PathSegment& s : second) {
+                s.base = carried * pose_at(s, 0).rotation;
+                s.rotation_vector_step = carried * s.rotation_vector_step;
+                s.rotation_vector_t0.setZero();
+                s.position_t0 = carried * s.position_t0;
+                s.position_step = carried * s.position_step;
+            }
+        }
+        cover(model, second, {0.02, 0.2}, candidates);
+        if (!candidates.pairs.empty() && candidates.pairs[0].fresh) continue;
+        ++kept;
+        const std::map<Key, double> found = listed(candidates);
+        const double over = candidates.pairs.empty() ? 0 : motion_over(model, candidates.pairs[0], second);
+        for (int k = 0; k <= 20; ++k) {
+            const std::vector<kinematics::Pose> poses{pose_at(second[0], k / 20.0), pose_at(second[1], k / 20.0)};
+            const double since = candidates.pairs.empty() ? 0 : motion_since(model, candidates.pairs[0], poses);
+            for (const auto& [key, d] : all_distances(model, poses)) {
+                const auto at = found.find(key);
+                if (d <= model.dhat) {
+                    ++close;
+                    REQUIRE(at != found.end());
+                }
+                if (at == found.end()) continue;
+                REQUIRE(at->second <= d + over);
+                REQUIRE(at->second <= d + since);
+            }
+        }
+    }
+    CHECK(kept > 150);
+    CHECK(close > 1000);
 }
 
 namespace {
@@ -212,7 +305,7 @@ TEST_CASE("contacts of points, wires and solids have the bodies' least distance,
         add(loose_mesh(vertices(3), {{0, 1}}));  // a wire and a point
         add(box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)));
         const int n = static_cast<int>(poses.size());
-        const Candidates candidates = find_candidates(model, poses, std::vector<MotionAllowance>(poses.size()));
+        const Candidates candidates = find_candidates(model, poses, 0);
         const ContactSet contacts = find_contacts(model, candidates, poses);
         for (int a = 0; a < n; ++a)
             for (int b = a + 1; b < n; ++b) {
@@ -222,7 +315,8 @@ TEST_CASE("contacts of points, wires and solids have the bodies' least distance,
                     if (std::minmax(list.first, list.second) != std::minmax(a, b)) continue;
                     for (const ContactPair& pair : list.contacts) {
                         found = std::min(found, std::sqrt(pair.closest.distance_squared));
-                        REQUIRE(seen.insert({pair.type, {list.first, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]}}).second);
+                        REQUIRE(
+                            seen.insert({pair.type, {list.first, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]}}).second);
                     }
                 }
                 const double expected = least_distance(model.bodies[a], poses[a], model.bodies[b], poses[b]);
@@ -245,7 +339,7 @@ TEST_CASE("two clouds of points meet in each pair of points once", "[candidates]
     Matrix3X x(3, 3);
     x << 0, 1, 2, 0, 0, 0, 0, 0, 0;
     for (const kinematics::Pose& pose : poses) model.bodies.push_back(make_body("cloud", loose_mesh(x, {}), pose));
-    CHECK(find_contacts(model, find_candidates(model, poses, {{}, {}}), poses).count == 9);
+    CHECK(find_contacts(model, find_candidates(model, poses, 0), poses).count == 9);
 }
 
 TEST_CASE("many bodies are searched as few are", "[candidates]") {
@@ -260,14 +354,13 @@ TEST_CASE("many bodies are searched as few are", "[candidates]") {
         segments.push_back(s);
         model.bodies.push_back(make_body("box", box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)), pose_at(s, 0)));
     }
-    const std::vector<MotionAllowance> none(segments.size());
-    const Candidates all = find_candidates(model, segments, none);
+    const Candidates all = candidates_along(model, segments, {});
     std::size_t pairs = 0;
     for (int a = 0; a < 40; ++a)
         for (int b = a + 1; b < 40; ++b) {
             model::Model two = model;
             two.bodies = {model.bodies[a], model.bodies[b]};
-            const Candidates found = find_candidates(two, {segments[a], segments[b]}, {{}, {}});
+            const Candidates found = candidates_along(two, {segments[a], segments[b]}, {});
             if (found.pairs.empty()) continue;
             REQUIRE(pairs < all.pairs.size());
             CHECK(all.pairs[pairs].a == a);

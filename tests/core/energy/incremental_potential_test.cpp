@@ -47,7 +47,7 @@ Setup setup() {
 }
 
 contact::Candidates all_candidates(const Setup& s, const std::vector<kinematics::Pose>& poses) {
-    return contact::find_candidates(s.model, poses, {{0.1, 0.1}, {0.1, 0.1}});
+    return contact::find_candidates(s.model, poses, 0.3);
 }
 
 std::vector<kinematics::ChartPoint> moved(std::vector<kinematics::ChartPoint> points, int dof, double h) {
@@ -101,6 +101,6 @@ TEST_CASE("the potential does not depend on where the candidates were found", "[
     const Setup s = setup();
     const auto poses = poses_of(s.problem, s.points);
     const double here = incremental_potential(s.problem, s.points, poses, all_candidates(s, poses));
-    const double there = incremental_potential(s.problem, s.points, poses, contact::find_candidates(s.model, s.problem.poses_t0, {{1, 1}, {1, 1}}));
+    const double there = incremental_potential(s.problem, s.points, poses, contact::find_candidates(s.model, s.problem.poses_t0, 3));
     CHECK(here == there);  // to the last bit: sums are ordered by primitives
 }

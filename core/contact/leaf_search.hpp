@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// Which primitives of close leaves come close themselves.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/contact/swept_pair.hpp"
+
+namespace fettle::core::contact {
+
+/// Appends to the lists of `out` every pair of primitives of the given pairs of leaves that may come within pair.margin along the
+/// segments, with lower bounds of their distances. Contract: no pair of leaves comes twice.
+void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, BodyPairCandidates& out);
+
+}  // namespace fettle::core::contact
