@@ -3,11 +3,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/scene/json_keys.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -197,12 +197,6 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     return certificate;
 }
 
-bool is_certificate_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string start(200, '\0');
-    file.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(file.gcount()));
-    return start.find("\"fettle_certificate\"") != std::string::npos;
-}
+bool is_certificate_file(const std::filesystem::path& path) { return scene::has_top_level_key(path, "fettle_certificate"); }
 
 }  // namespace fettle::core::clearance

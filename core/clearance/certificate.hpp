@@ -82,7 +82,7 @@ struct Certificate {
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 base::Result<Certificate> read_certificate(const std::filesystem::path& path);
 
-/// Does the file's first key say that it is a certificate? False for anything that cannot be read.
+/// Is this file a certificate, as far as its keys tell? False for anything that cannot be read.
 bool is_certificate_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::clearance

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/scene/json_keys.hpp"
 #include "fettle/core/stepper/poses_table.hpp"
 
 namespace fettle::core::stepper {
@@ -242,12 +242,6 @@ base::Errors write_poses(const std::filesystem::path& path, const Trajectory& tr
     return base::write_file_atomically(path, text + "}}\n");
 }
 
-bool is_poses_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string start(200, '\0');
-    file.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(file.gcount()));
-    return start.find("\"fettle_poses\"") != std::string::npos;
-}
+bool is_poses_file(const std::filesystem::path& path) { return scene::has_top_level_key(path, "fettle_poses"); }
 
 }  // namespace fettle::core::stepper

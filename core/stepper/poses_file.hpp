@@ -55,7 +55,7 @@ base::Result<PosesFile> read_poses(const std::filesystem::path& path, const mode
 [[nodiscard]] base::Errors write_poses(const std::filesystem::path& path, const Trajectory& trajectory, const model::Model& model,
                                        const std::string& unit);
 
-/// Is this a JSON file of poses, as far as its first key tells?
+/// Is this a JSON file of poses, as far as its keys tell?
 bool is_poses_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::stepper

@@ -5,7 +5,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/scene/json_keys.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -439,13 +439,7 @@ base::Result<Simulation> resumable(const StoredTrajectory& stored, const model::
     return out;
 }
 
-bool is_trajectory_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string start(200, '\0');
-    file.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(file.gcount()));
-    return start.find("\"fettle_trajectory\"") != std::string::npos;
-}
+bool is_trajectory_file(const std::filesystem::path& path) { return scene::has_top_level_key(path, "fettle_trajectory"); }
 
 base::Result<StoredTrajectory> read_trajectory(const std::filesystem::path& path) {
     auto document = JsonDocument::read(path.string());

@@ -54,7 +54,7 @@ std::uint64_t geometry_hash(const model::Model& model);
 /// Errors (inconsistent): other meshes, another time step or integrator, no checkpoint.
 base::Result<Simulation> resumable(const StoredTrajectory& stored, const model::Model& model);
 
-/// Is this file a trajectory, as far as its first key tells? False for anything that cannot be read.
+/// Is this file a trajectory, as far as its keys tell? False for anything that cannot be read.
 bool is_trajectory_file(const std::filesystem::path& path);
 
 /// Checked: version, shapes of all lists, finite numbers, indices, rotations orthonormal to 1e-9, every step starting at its chart's origin

@@ -280,6 +280,12 @@ TEST_CASE("clearance --certificate writes a proof that validate accepts, and rej
     CHECK(accepted.json()["pairs"][0]["lower"] == written.pair("spin", "pin2")["lower"]);
     CHECK(accepted.json()["faults"].empty());
 
+    // Other programs write the keys in another order.
+    const std::string sorted = folder.write("sorted.certificate.json", nlohmann::json::parse(contents(file)).dump());
+    folder.write("sorted.trajectory.json", nlohmann::json::parse(contents(folder.file("row.trajectory.json"))).dump());
+    CHECK(run("validate " + sorted + " --json").json()["status"] == "accepted");
+    CHECK(run("validate " + folder.file("sorted.trajectory.json") + " --json").json()["kind"] == "trajectory");
+
     auto changed = nlohmann::ordered_json::parse(contents(file));
     changed["pairs"][0]["lower"] = changed["pairs"][0]["lower"].get<double>() + 1e-5;
     const Answer rejected = run("validate " + folder.write("changed.certificate.json", changed.dump()) + " --json --trajectory " +
