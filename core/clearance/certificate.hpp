@@ -12,8 +12,9 @@
 /// So the leaves cover all time and all pairs of elements by construction, and every s is a dyadic number.
 /// A leaf's proof is two vectors n0, n1 with |n| <= 1 in world axes: with n(u) = (1 - u) n0 + u n1, u = (s - s0)/(s1 - s0),
 ///   n(u).(x_a(s) - x_b(s)) >= lower   for all s of the interval and all points x_a, x_b of the two pieces,
-/// which is what a checker has to verify: for pieces of up to 128 elements over their corners, for larger ones over the boxes that their
-/// vertices span in the body's frame. (How far above the claim it lies is not recorded: the room is at least 1/16 of the tolerance.)
+/// which is what a checker has to verify, for the corners of the elements. How far above `lower` it lies is not recorded: ours leave a
+/// room of at least 8 times the search's own bound of its rounding (PairSegment::slack), and 1/8 of the tolerance, for a checker's rounding
+/// and for its own way of bounding curves.
 /// `upper` is the distance of two points of the bodies at one instant.
 ///
 /// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered

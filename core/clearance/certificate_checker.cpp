@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/clearance/interval_motion.hpp"
 
 namespace fettle::core::clearance {
@@ -16,14 +16,17 @@ namespace {
 using namespace checker;
 
 constexpr std::size_t most_faults = 1000;
-constexpr int leaf_halvings = 12;
-// Larger regions are their boxes. Pieces of 128 elements, whose boxes the search may turn, have no more corners than this.
-constexpr std::size_t most_points = 384;
+constexpr int leaf_halvings = 24;
 
-// A part of a body's list of elements, with the region that its elements lie in.
+// A part of a body's list of elements.
 struct Part {
     int left = -1, right = -1;
     Region region;
+};
+
+struct Body {
+    std::vector<Vector3> corners;  // three for each of the listed elements
+    std::vector<Part> parts;       // whose regions are ranges of them
 };
 
 struct Place {
@@ -73,14 +76,20 @@ public:
         if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
         if (!report_.accepted()) return report_;
         find_places();
-        parts_.resize(model_.bodies.size());
-        for (std::size_t i = 0; i < certificate_.pairs.size(); ++i) check_pair(certificate_.pairs[i], "/pairs/" + std::to_string(i));
+        bodies_.resize(model_.bodies.size());
+        for (std::size_t i = 0; i < certificate_.pairs.size(); ++i) {
+            const std::size_t before = report_.faults.size();
+            check_pair(certificate_.pairs[i], "/pairs/" + std::to_string(i));
+            if (report_.faults.size() == before) check_segments(i);
+        }
         return report_;
     }
 
 private:
-    void fault(const std::string& where, const std::string& message) {
-        if (report_.faults.size() < most_faults) report_.faults.push_back({where, message});
+    void fault(const std::string& where, const std::string& message) { add(report_, {where, message}); }
+
+    static void add(CertificateReport& report, CertificateFault fault) {
+        if (report.faults.size() < most_faults) report.faults.push_back(std::move(fault));
     }
 
     void find_places() {
@@ -100,121 +109,136 @@ private:
         if (pair.lower == 0) return;  // nothing to prove
         if (pair.segments.size() != places_.size())
             return fault(where + "/segments", std::to_string(places_.size()) + " proofs are wanted, one per segment of the path");
-        if (!prepare(pair.a, where) || !prepare(pair.b, where)) return;
-        for (std::size_t i = 0; i < places_.size(); ++i) check_segment(pair, i, where + "/segments/" + std::to_string(i));
+        if (prepare(pair.a, where)) prepare(pair.b, where);
+    }
+
+    // All of a pair, on the threads; what is reported is in the order of the path.
+    void check_segments(std::size_t index) {
+        const PairCertificate& pair = certificate_.pairs[index];
+        if (pair.lower == 0 || report_.faults.size() == most_faults) return;
+        const std::string where = "/pairs/" + std::to_string(index) + "/segments/";
+        std::vector<CertificateReport> reports(places_.size());
+        base::parallel_for(static_cast<int>(places_.size()), 1, [&](int i) {
+            reports[static_cast<std::size_t>(i)] = check_segment(pair, static_cast<std::size_t>(i), where + std::to_string(i));
+        });
+        for (CertificateReport& part : reports) {
+            report_.leaves += part.leaves;
+            report_.pieces += part.pieces;
+            for (CertificateFault& found : part.faults) add(report_, std::move(found));
+        }
     }
 
     // The body's parts with their regions, once; false if its lists are wrong.
-    bool prepare(int body, const std::string& where) {
-        std::optional<std::vector<Part>>& parts = parts_[static_cast<std::size_t>(body)];
-        if (!parts) {
-            parts.emplace();
-            if (!build_parts(body, *parts)) parts->clear();
+    bool prepare(int index, const std::string& where) {
+        std::optional<Body>& body = bodies_[static_cast<std::size_t>(index)];
+        if (!body) {
+            body.emplace();
+            if (!list_corners(index, body->corners) || !split_parts(index, *body)) body->parts.clear();
         }
-        if (parts->empty()) fault(where, "the pieces of body " + std::to_string(body) + " are wrong");
-        return !parts->empty();
+        if (body->parts.empty()) fault(where, "the pieces of body " + std::to_string(index) + " are wrong");
+        return !body->parts.empty();
     }
 
-    bool build_parts(int body, std::vector<Part>& parts) {
+    bool list_corners(int body, std::vector<Vector3>& corners) {
         const BodyPieces& pieces = certificate_.bodies[static_cast<std::size_t>(body)];
         const geometry::Mesh& mesh = model_.bodies[static_cast<std::size_t>(body)].mesh;
-        const std::string where = "/bodies/" + std::to_string(body);
+        const std::string where = "/bodies/" + std::to_string(body) + "/elements";
         const std::set<int> listed(pieces.elements.begin(), pieces.elements.end());
         for (const int number : wanted_elements(mesh)) {
             if (listed.count(number) > 0) continue;
-            fault(where + "/elements", "element " + std::to_string(number) + " is missing");
+            fault(where, "element " + std::to_string(number) + " is missing");
             return false;
         }
         for (const int number : pieces.elements) {
-            if (!corners_of(mesh, number).empty()) continue;
-            fault(where + "/elements", "there is no element " + std::to_string(number));
-            return false;
+            const std::vector<int> vertices = corners_of(mesh, number);
+            if (vertices.empty()) {
+                fault(where, "there is no element " + std::to_string(number));
+                return false;
+            }
+            for (std::size_t k = 0; k < 3; ++k) corners.emplace_back(mesh.vertices.col(vertices[std::min(k, vertices.size() - 1)]));
         }
-        return split_parts(pieces, mesh, where, parts);
+        return true;
     }
 
-    bool split_parts(const BodyPieces& pieces, const geometry::Mesh& mesh, const std::string& where, std::vector<Part>& parts) {
+    bool split_parts(int index, Body& body) {
         struct Range {
-            int first, count, parent;
+            std::size_t first, count;
+            int parent;
             bool second;
         };
-        std::vector<Range> pending{{0, static_cast<int>(pieces.elements.size()), -1, false}};
+        const BodyPieces& pieces = certificate_.bodies[static_cast<std::size_t>(index)];
+        const std::string where = "/bodies/" + std::to_string(index) + "/cuts";
+        std::vector<Part>& parts = body.parts;
+        std::vector<Range> pending{{0, pieces.elements.size(), -1, false}};
         std::size_t next_cut = 0;
         while (!pending.empty()) {
             const Range range = pending.back();
             pending.pop_back();
-            const int index = static_cast<int>(parts.size());
+            const int part = static_cast<int>(parts.size());
             parts.emplace_back();
-            if (range.parent >= 0) (range.second ? parts[range.parent].right : parts[range.parent].left) = index;
-            if (range.count == 1) {
-                set_element(mesh, pieces.elements[range.first], parts[index].region);
-                continue;
-            }
+            parts[part].region.points = std::span<const Vector3>(body.corners).subspan(3 * range.first, 3 * range.count);
+            if (range.parent >= 0) (range.second ? parts[range.parent].right : parts[range.parent].left) = part;
+            if (range.count <= 1) continue;
             const int cut = next_cut < pieces.cuts.size() ? pieces.cuts[next_cut] : 0;
             ++next_cut;
-            if (cut < 1 || cut >= range.count) {
-                fault(where + "/cuts", "cut " + std::to_string(next_cut - 1) + " is missing or leaves nothing to one side");
+            if (cut < 1 || static_cast<std::size_t>(cut) >= range.count) {
+                fault(where, "cut " + std::to_string(next_cut - 1) + " is missing or leaves nothing to one side");
                 return false;
             }
-            pending.push_back({range.first + cut, range.count - cut, index, true});
-            pending.push_back({range.first, cut, index, false});
+            const auto first = static_cast<std::size_t>(cut);
+            pending.push_back({range.first + first, range.count - first, part, true});
+            pending.push_back({range.first, first, part, false});
         }
-        if (next_cut != pieces.cuts.size()) fault(where + "/cuts", "there are more cuts than pieces to cut");
-        for (auto part = parts.rbegin(); part != parts.rend(); ++part)  // children come after their parents
-            if (part->left >= 0) set_union(parts[part->left].region, parts[part->right].region, part->region);
+        if (next_cut != pieces.cuts.size()) fault(where, "there are more cuts than pieces to cut");
+        for (auto part = parts.rbegin(); part != parts.rend(); ++part) measure(parts, part->region, part->left, part->right);
         return next_cut == pieces.cuts.size();
     }
 
-    static void set_element(const geometry::Mesh& mesh, int number, Region& region) {
-        for (const int v : corners_of(mesh, number)) {
-            const Vector3 x = mesh.vertices.col(v);
-            region.low = region.points.empty() ? x : Vector3(region.low.cwiseMin(x));
-            region.high = region.points.empty() ? x : Vector3(region.high.cwiseMax(x));
+    // From the children, which come after their parents, or from the points of an element.
+    static void measure(const std::vector<Part>& parts, Region& region, int left, int right) {
+        if (left >= 0) {
+            const Region &first = parts[left].region, &second = parts[right].region;
+            region.low = first.low.cwiseMin(second.low);
+            region.high = first.high.cwiseMax(second.high);
+            region.radius = std::max(first.radius, second.radius);
+            return;
+        }
+        region.low = region.high = region.points.empty() ? Vector3(Vector3::Zero()) : region.points[0];
+        for (const Vector3& x : region.points) {
+            region.low = region.low.cwiseMin(x);
+            region.high = region.high.cwiseMax(x);
             region.radius = std::max(region.radius, norm_bound(Interval3{x.x(), x.y(), x.z()}));
-            region.points.push_back(x);
         }
     }
 
-    static void set_union(const Region& first, const Region& second, Region& region) {
-        region.low = first.low.cwiseMin(second.low);
-        region.high = first.high.cwiseMax(second.high);
-        region.radius = std::max(first.radius, second.radius);
-        if (first.points.empty() || second.points.empty()) return;
-        region.points = first.points;
-        for (const Vector3& x : second.points)  // neighbours share corners
-            if (std::find(first.points.begin(), first.points.end(), x) == first.points.end()) region.points.push_back(x);
-        if (region.points.size() > most_points) region.points.clear();
-    }
+    BodyPath path(std::size_t place, int body) const { return body_path(trajectory_, places_[place].step, places_[place].segment, body); }
 
-    const BodyPath& path(std::size_t place, int body) {
-        const auto key = std::make_pair(place, body);
-        const auto known = paths_.find(key);
-        if (known != paths_.end()) return known->second;
-        return paths_.emplace(key, body_path(trajectory_, places_[place].step, places_[place].segment, body)).first->second;
-    }
-
-    void check_segment(const PairCertificate& pair, std::size_t place, const std::string& where) {
+    CertificateReport check_segment(const PairCertificate& pair, std::size_t place, const std::string& where) const {
         struct Cell {
             Span span;
             int a, b;
         };
+        CertificateReport report;
+        const auto ended = [&](const std::string& message) { return add(report, {where, message}), report; };
         const SegmentProof& proof = pair.segments[place];
-        const std::vector<Part>&parts_a = *parts_[static_cast<std::size_t>(pair.a)], &parts_b = *parts_[static_cast<std::size_t>(pair.b)];
-        const BodyPath &path_a = path(place, pair.a), &path_b = path(place, pair.b);
+        const std::vector<Part>&parts_a = bodies_[static_cast<std::size_t>(pair.a)]->parts,
+              &parts_b = bodies_[static_cast<std::size_t>(pair.b)]->parts;
+        LeafProver prover(path(place, pair.a), path(place, pair.b));
         std::vector<Cell> pending{{{0, 1}, 0, 0}};
         std::size_t leaf = 0;
         for (const char kind : proof.splits) {
-            if (pending.empty()) return fault(where, "more cells than the tree has room for");
+            if (pending.empty()) return ended("more cells than the tree has room for");
             const Cell cell = pending.back();
             pending.pop_back();
             const Part &a = parts_a[cell.a], &b = parts_b[cell.b];
             const double middle = 0.5 * (cell.span.start + cell.span.end);
             if (kind == '.') {
-                const std::string at = where + ", leaf " + std::to_string(leaf);
-                if (leaf >= proof.planes.size()) return fault(at, "its plane is missing");
-                const bool proven =
-                    prove_leaf(path_a, path_b, a.region, b.region, cell.span, proof.planes[leaf], pair.lower, leaf_halvings);
-                proven ? void(++report_.leaves) : fault(at, "its plane does not prove the lower bound");
+                if (leaf >= proof.planes.size()) return ended("the plane of leaf " + std::to_string(leaf) + " is missing");
+                const long pieces = prover.prove(a.region, b.region, cell.span, proof.planes[leaf], pair.lower, leaf_halvings);
+                report.pieces += pieces;
+                report.leaves += pieces > 0;
+                if (pieces == 0) add(report, {where + ", leaf " + std::to_string(leaf), "its plane does not prove the lower bound"});
+                if (report.faults.size() == most_faults) return report;
                 ++leaf;
             } else if (kind == 'a' && a.left >= 0) {
                 pending.push_back({cell.span, a.right, cell.b});
@@ -226,11 +250,12 @@ private:
                 pending.push_back({{middle, cell.span.end}, cell.a, cell.b});
                 pending.push_back({{cell.span.start, middle}, cell.a, cell.b});
             } else {
-                return fault(where, std::string("a cell cannot be split by `") + kind + "`");
+                return ended(std::string("a cell cannot be split by `") + kind + "`");
             }
         }
-        if (!pending.empty()) fault(where, "cells are missing: part of the segment is not covered");
-        if (leaf < proof.planes.size()) fault(where, "more planes than leaves");
+        if (!pending.empty()) return ended("cells are missing: part of the segment is not covered");
+        if (leaf < proof.planes.size()) return ended("more planes than leaves");
+        return report;
     }
 
     void check_upper(const PairCertificate& pair, const std::string& where) {
@@ -242,7 +267,7 @@ private:
         if (!body_point(pair.a, pair.point_a, X_a) || !body_point(pair.b, pair.point_b, X_b))
             return fault(where, "the witness's points are not of the bodies");
         const auto index = static_cast<std::size_t>(found - places_.begin());
-        const BodyPath &a = path(index, pair.a), &b = path(index, pair.b);
+        const BodyPath a = path(index, pair.a), b = path(index, pair.b);
         const Interval distance = distance_at(a, b, X_a, X_b, pair.s);
         if (!(distance.high <= pair.upper)) fault(where + "/upper", "the witness's points are farther apart");
         const double size =
@@ -282,8 +307,7 @@ private:
     const model::Model& model_;
     const stepper::Trajectory& trajectory_;
     std::vector<Place> places_;
-    std::vector<std::optional<std::vector<Part>>> parts_;  // per body
-    std::map<std::pair<std::size_t, int>, BodyPath> paths_;
+    std::vector<std::optional<Body>> bodies_;
     CertificateReport report_;
 };
 
