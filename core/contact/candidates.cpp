@@ -172,16 +172,13 @@ void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandi
 
 }  // namespace
 
-void cover(const model::Model& model, const std::vector<PathSegment>& segments, const Allowance& allowance, Candidates& candidates) {
+void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
     const double activation = model.dmin + model.dhat;
-    const int bodies = static_cast<int>(segments.size());
-    std::vector<SweptBody> swept(segments.size());
-    std::vector<geometry::Box> boxes(segments.size());
-    for (int i = 0; i < bodies; ++i) {
-        const PathSegment& s = segments[i];
-        swept[i] = swept_body(model.bodies[i], s);
-        const double motion = slack * (s.position_step.norm() + s.rotation_vector_step.norm() * model.bodies[i].radius);
-        boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance.fixed) + allowance.of_motion * motion);
+    std::vector<SweptBody> swept;
+    std::vector<geometry::Box> boxes;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        swept.push_back(swept_body(model.bodies[i], segments[i]));
+        boxes.push_back(swept_box(swept.back(), 0.5 * (activation + allowance)));
     }
     candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes));
 
@@ -193,8 +190,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     std::vector<BodyPairCandidates*> searched;
     for (BodyPairCandidates& pair : candidates.pairs) {
         if (!pair.fresh) continue;
-        pair.allowance = allowance.fixed + allowance.of_motion * relative_motion(segments[pair.a], segments[pair.b],
-                                                                                 model.bodies[pair.a].radius, model.bodies[pair.b].radius);
+        pair.allowance = allowance;
         pairs.push_back(swept_pair(swept[pair.a], swept[pair.b], activation + pair.allowance));
         searched.push_back(&pair);
     }
@@ -215,7 +211,7 @@ Candidates find_candidates(const model::Model& model, const std::vector<Pose>& p
     for (std::size_t i = 0; i < poses.size(); ++i)
         segments[i] = {poses[i].rotation, Vector3::Zero(), Vector3::Zero(), poses[i].position, Vector3::Zero()};
     Candidates candidates;
-    cover(model, segments, {allowance, 0}, candidates);
+    cover(model, segments, allowance, candidates);
     settle(segments, candidates);
     return candidates;
 }

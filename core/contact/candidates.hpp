@@ -14,13 +14,6 @@
 
 namespace fettle::core::contact {
 
-/// How much more the points of two bodies may approach one another than they do along the segments of a search before they need another:
-/// fixed + of_motion * (a bound of their relative motion along the segments). Dear where large: the search must look that much farther.
-struct Allowance {
-    double fixed = 0;      ///< [m]
-    double of_motion = 0;  ///< share
-};
-
 /// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
 /// those by less, the pair needs no second look.
 struct PrimitivePair {
@@ -34,7 +27,7 @@ struct BodyPairCandidates {
     std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
     std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
     std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
-    double allowance = 0;                        ///< [m]
+    double allowance = 0;                        ///< of the search that found them [m]
     bool fresh = false;                          ///< found by the last cover(), and not settled yet
     /// Paths along which the lists hold, without the allowance; they end where the bodies went.
     std::array<kinematics::PathSegment, 2> along;
@@ -49,8 +42,9 @@ struct Candidates {
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
 /// dmin + dhat. Pairs of bodies that are covered already are left alone, the others are searched along the segments.
 /// The bodies may then be anywhere on the segments, the same fraction for all; say with settle() where they went.
-void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, const Allowance& allowance,
-           Candidates& candidates);
+/// @param allowance  how much more the points of two bodies may approach one another than they do along the segments before the two need
+///                   another search, [m]. Dear where large: this one must look that much farther.
+void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance, Candidates& candidates);
 
 /// The bodies went along `segments`: a part, from its start, of what was covered last. From here on each pair of bodies is covered
 /// while its motion_over() is at most its allowance.

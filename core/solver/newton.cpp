@@ -414,7 +414,7 @@ const char* to_string(SolvePhase phase) {
     return names[static_cast<std::size_t>(phase)];
 }
 
-contact::Allowance candidate_allowance(const model::Model& model) { return {model.dhat, 0.1}; }
+double candidate_allowance(const model::Model& model) { return model.dhat; }
 
 NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options) {

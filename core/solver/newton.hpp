@@ -64,8 +64,9 @@ struct NewtonWorkspace {
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
 };
 
-/// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do without.
-contact::Allowance candidate_allowance(const model::Model& model);
+/// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do
+/// without, [m].
+double candidate_allowance(const model::Model& model);
 
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
 NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,

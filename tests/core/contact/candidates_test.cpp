@@ -81,7 +81,7 @@ std::map<Key, double> listed(const Candidates& candidates) {
     return out;
 }
 
-Candidates candidates_along(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, const Allowance& allowance) {
+Candidates candidates_along(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance) {
     Candidates candidates;
     cover(model, segments, allowance, candidates);
     return candidates;
@@ -102,7 +102,7 @@ TEST_CASE("no pair that comes close along the segments is missing", "[candidates
         const model::Model model = two_bodies(random, 0.05);
         const double turn = trial % 3 == 0 ? 0 : 0.3 * (trial % 5);
         const std::vector<kinematics::PathSegment> segments{random_segment(random, 0.3, 0.2, turn), random_segment(random, 0.4, 0.2, turn)};
-        const std::map<Key, double> found = listed(candidates_along(model, segments, {0.03, 0}));
+        const std::map<Key, double> found = listed(candidates_along(model, segments, 0.03));
         for (int k = 0; k <= 40; ++k) {
             const double s = k / 40.0;
             const auto distances = all_distances(model, {pose_at(segments[0], s), pose_at(segments[1], s)});
@@ -144,9 +144,9 @@ TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance",
     const std::vector<kinematics::PathSegment> here{random_segment(random, 0.2, 0, 0), random_segment(random, 0.2, 0, 0)};
     Candidates candidates;
     const auto is_kept = [&](const std::vector<kinematics::PathSegment>& segments) {
-        cover(model, here, {0.1, 0}, candidates);
+        cover(model, here, 0.1, candidates);
         settle(here, candidates);
-        cover(model, segments, {0.1, 0}, candidates);
+        cover(model, segments, 0.1, candidates);
         REQUIRE(candidates.pairs.size() == 1);
         const bool kept = !candidates.pairs[0].fresh;
         candidates.pairs.clear();
@@ -180,9 +180,9 @@ TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance",
     const std::vector<kinematics::PathSegment> far = moved(Vector3(1, 0, 0), Vector3(0, 0.5, 0));
     std::vector<kinematics::PathSegment> near_far = far;
     near_far[0].position_step += Vector3(0, 0.05, 0);
-    cover(model, far, {0.1, 0}, candidates);
+    cover(model, far, 0.1, candidates);
     settle(far, candidates);
-    cover(model, near_far, {0.1, 0}, candidates);
+    cover(model, near_far, 0.1, candidates);
     REQUIRE(candidates.pairs.size() == 1);
     CHECK_FALSE(candidates.pairs[0].fresh);
 }
@@ -195,7 +195,7 @@ TEST_CASE("candidates that are kept miss nothing within their allowance", "[cand
         const double turn = trial % 3 == 0 ? 0 : 0.2 * (trial % 5);
         std::vector<kinematics::PathSegment> first{random_segment(random, 0.3, 0.2, turn), random_segment(random, 0.4, 0.2, turn)};
         Candidates candidates;
-        cover(model, first, {0.02, 0.2}, candidates);
+        cover(model, first, 0.04, candidates);
         // They went a part of the way; then on, or the same way again a little otherwise, or both were carried elsewhere.
         for (kinematics::PathSegment& s : first) s = sub_segment(s, 0, 0.6);
         settle(first, candidates);
@@ -216,7 +216,7 @@ TEST_CASE("candidates that are kept miss nothing within their allowance", "[cand
                 s.position_step = carried * s.position_step;
             }
         }
-        cover(model, second, {0.02, 0.2}, candidates);
+        cover(model, second, 0.04, candidates);
         if (!candidates.pairs.empty() && candidates.pairs[0].fresh) continue;
         ++kept;
         const std::map<Key, double> found = listed(candidates);
@@ -354,13 +354,13 @@ TEST_CASE("many bodies are searched as few are", "[candidates]") {
         segments.push_back(s);
         model.bodies.push_back(make_body("box", box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)), pose_at(s, 0)));
     }
-    const Candidates all = candidates_along(model, segments, {});
+    const Candidates all = candidates_along(model, segments, 0);
     std::size_t pairs = 0;
     for (int a = 0; a < 40; ++a)
         for (int b = a + 1; b < 40; ++b) {
             model::Model two = model;
             two.bodies = {model.bodies[a], model.bodies[b]};
-            const Candidates found = candidates_along(two, {segments[a], segments[b]}, {});
+            const Candidates found = candidates_along(two, {segments[a], segments[b]}, 0);
             if (found.pairs.empty()) continue;
             REQUIRE(pairs < all.pairs.size());
             CHECK(all.pairs[pairs].a == a);
