@@ -47,16 +47,35 @@ double rounding(const Pose& a, const Pose& b, double radius_a, double radius_b) 
     return search_rounding * (a.position.norm() + b.position.norm() + radius_a + radius_b);
 }
 
-// How far segments of the same chart are from one another, at the same fraction: largest at an end, for points and turns are convex.
-double deviation(const std::array<PathSegment, 2>& s, const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
-    if (s[0].base != a.base || s[1].base != b.base) return std::numeric_limits<double>::infinity();
+// Where two bodies are to one another, in one chart: differences of two such points are linear along segments, and the sum of the norms of
+// such a difference's parts bounds how much nearer their points are.
+struct PairPoint {
+    Vector3 offset, arc_a, arc_b;  // [m]
+    double norm() const { return offset.norm() + arc_a.norm() + arc_b.norm(); }
+    double dot(const PairPoint& o) const { return offset.dot(o.offset) + arc_a.dot(o.arc_a) + arc_b.dot(o.arc_b); }
+};
+
+PairPoint difference(const PairPoint& x, const PairPoint& y, double share = 1) {
+    return {x.offset - share * y.offset, x.arc_a - share * y.arc_a, x.arc_b - share * y.arc_b};
+}
+
+PairPoint pair_point(const PathSegment& a, const PathSegment& b, double t, double radius_a, double radius_b) {
+    return {a.position_t0 - b.position_t0 + t * (a.position_step - b.position_step),
+            radius_a * (a.rotation_vector_t0 + t * a.rotation_vector_step), radius_b * (b.rotation_vector_t0 + t * b.rotation_vector_step)};
+}
+
+// How far two bodies on the segments a and b are from where they were somewhere along `from`, in the same chart. Each end is held against
+// the point that is about nearest, and the way between against the way between those: their difference is convex, largest at an end.
+double deviation(const std::array<PathSegment, 2>& from, const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
+    if (from[0].base != a.base || from[1].base != b.base) return std::numeric_limits<double>::infinity();
+    const PairPoint start = pair_point(from[0], from[1], 0, radius_a, radius_b);
+    const PairPoint step = difference(pair_point(from[0], from[1], 1, radius_a, radius_b), start);
+    const double square = step.dot(step);
     double largest = 0;
     for (const double t : {0.0, 1.0}) {
-        const Vector3 shift_a = a.position_t0 - s[0].position_t0 + t * (a.position_step - s[0].position_step);
-        const Vector3 shift_b = b.position_t0 - s[1].position_t0 + t * (b.position_step - s[1].position_step);
-        const Vector3 turn_a = a.rotation_vector_t0 - s[0].rotation_vector_t0 + t * (a.rotation_vector_step - s[0].rotation_vector_step);
-        const Vector3 turn_b = b.rotation_vector_t0 - s[1].rotation_vector_t0 + t * (b.rotation_vector_step - s[1].rotation_vector_step);
-        largest = std::max(largest, (shift_a - shift_b).norm() + turn_a.norm() * radius_a + turn_b.norm() * radius_b);
+        const PairPoint off = difference(pair_point(a, b, t, radius_a, radius_b), start);
+        const double nearest = square > 0 ? std::clamp(off.dot(step) / square, 0.0, 1.0) : 0.0;
+        largest = std::max(largest, difference(off, step, nearest).norm());
     }
     return slack * largest;
 }
@@ -191,18 +210,18 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     for (BodyPairCandidates& pair : candidates.pairs) {
         if (!pair.fresh) continue;
         pair.allowance = allowance;
+        pair.along = {segments[pair.a], segments[pair.b]};
         pairs.push_back(swept_pair(swept[pair.a], swept[pair.b], activation + pair.allowance));
         searched.push_back(&pair);
     }
     search(pairs, searched);
 }
 
-void settle(const std::vector<PathSegment>& segments, Candidates& candidates) {
+void settle(const std::vector<Pose>& poses, Candidates& candidates) {
     for (BodyPairCandidates& pair : candidates.pairs) {
         if (!pair.fresh) continue;
         pair.fresh = false;
-        pair.along = {segments[pair.a], segments[pair.b]};
-        pair.end = {pose_at(segments[pair.a], 1), pose_at(segments[pair.b], 1)};
+        pair.at = {poses[pair.a], poses[pair.b]};
     }
 }
 
@@ -212,7 +231,7 @@ Candidates find_candidates(const model::Model& model, const std::vector<Pose>& p
         segments[i] = {poses[i].rotation, Vector3::Zero(), Vector3::Zero(), poses[i].position, Vector3::Zero()};
     Candidates candidates;
     cover(model, segments, allowance, candidates);
-    settle(segments, candidates);
+    settle(poses, candidates);
     return candidates;
 }
 
@@ -220,8 +239,8 @@ double motion_since(const model::Model& model, const BodyPairCandidates& pair, c
     if (pair.fresh) return 0;
     const Pose &a = poses[pair.a], &b = poses[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
-    return relative_motion(pair.end[0], pair.end[1], a, b, radius_a, radius_b) + rounding(a, b, radius_a, radius_b) +
-           rounding(pair.end[0], pair.end[1], radius_a, radius_b);
+    return relative_motion(pair.at[0], pair.at[1], a, b, radius_a, radius_b) + rounding(a, b, radius_a, radius_b) +
+           rounding(pair.at[0], pair.at[1], radius_a, radius_b);
 }
 
 double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<PathSegment>& segments) {
@@ -229,10 +248,10 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
     const PathSegment &a = segments[pair.a], &b = segments[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
     const Pose start_a = pose_at(a, 0), start_b = pose_at(b, 0);
-    const double since_end =
-        relative_motion(pair.end[0], pair.end[1], start_a, start_b, radius_a, radius_b) + relative_motion(a, b, radius_a, radius_b);
-    return std::min(since_end, deviation(pair.along, a, b, radius_a, radius_b)) + rounding(start_a, start_b, radius_a, radius_b) +
-           rounding(pair.end[0], pair.end[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
+    const double since_at =
+        relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + relative_motion(a, b, radius_a, radius_b);
+    return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding(start_a, start_b, radius_a, radius_b) +
+           rounding(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
 }
 
 }  // namespace fettle::core::contact

@@ -24,14 +24,13 @@ struct PrimitivePair {
 /// Primitives of two bodies, a < b. Each list is sorted by distance.
 struct BodyPairCandidates {
     int a = 0, b = 0;
-    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
-    std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
-    std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
-    double allowance = 0;                        ///< of the search that found them [m]
-    bool fresh = false;                          ///< found by the last cover(), and not settled yet
-    /// Paths along which the lists hold, without the allowance; they end where the bodies went.
-    std::array<kinematics::PathSegment, 2> along;
-    std::array<kinematics::Pose, 2> end;
+    std::vector<PrimitivePair> vertex_triangle;    ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
+    std::vector<PrimitivePair> triangle_vertex;    ///< face of a, vertex of b
+    std::vector<PrimitivePair> edge_edge;          ///< edge of a, edge of b
+    double allowance = 0;                          ///< of the search that found them [m]
+    bool fresh = false;                            ///< found by the last cover(), and not settled yet
+    std::array<kinematics::PathSegment, 2> along;  ///< the segments that were searched
+    std::array<kinematics::Pose, 2> at;            ///< where on them the bodies went
     bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
 };
 
@@ -46,15 +45,15 @@ struct Candidates {
 ///                   another search, [m]. Dear where large: this one must look that much farther.
 void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance, Candidates& candidates);
 
-/// The bodies went along `segments`: a part, from its start, of what was covered last. From here on each pair of bodies is covered
-/// while its motion_over() is at most its allowance.
-void settle(const std::vector<kinematics::PathSegment>& segments, Candidates& candidates);
+/// The bodies went to `poses`, on the segments that were covered last. From here on each pair of bodies is covered while its
+/// motion_since() or motion_over() is at most its allowance.
+void settle(const std::vector<kinematics::Pose>& poses, Candidates& candidates);
 
 /// Candidates at a configuration, settled there.
 Candidates find_candidates(const model::Model& model, const std::vector<kinematics::Pose>& poses, double allowance);
 
-/// Upper bound of how much nearer any point of one body can be to any of the other at these poses than it was along `pair.along`, [m].
-/// Zero, by contract, for fresh pairs.
+/// Upper bound of how much nearer any point of one body can be to any of the other at these poses than it was along the segments that
+/// were searched, [m]. Zero, by contract, for fresh pairs.
 double motion_since(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::Pose>& poses);
 
 /// The same over the whole of each segment.

@@ -73,7 +73,7 @@ public:
     NewtonResult run() {
         const std::vector<PathSegment> here = segments_to(points_);
         cover(here);
-        settle(here, candidates_);
+        settle(result_.poses, candidates_);
         find_contacts();
         const bool frictional = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
@@ -361,14 +361,14 @@ private:
             const double value = potential(trial, poses);
             const double change = value - value_ - penalty_ * fraction * remaining;
             if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
-            settle(segments_to(trial), candidates_);
+            settle(poses, candidates_);
             points_ = std::move(trial);
             result_.poses = std::move(poses);
             value_ = value;
             result_.path.push_back(points_);
             return fraction;
         }
-        settle(segments_to(points_), candidates_);
+        settle(result_.poses, candidates_);
         return 0;
     }
 

@@ -19,6 +19,12 @@ std::vector<PathSegment> straight_segments(const model::Model& model, const Step
     return segments;
 }
 
+std::vector<kinematics::Pose> end_poses(const std::vector<PathSegment>& segments) {
+    std::vector<kinematics::Pose> poses;
+    for (const PathSegment& s : segments) poses.push_back(pose_at(s, 1));
+    return poses;
+}
+
 // The stored path: straight where that is clear, else through as few of the accepted points as are needed.
 TrajectoryStep stored_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted,
                            solver::NewtonWorkspace& workspace) {
@@ -29,7 +35,7 @@ TrajectoryStep stored_path(const model::Model& model, const StepState& state, co
         }
         const auto span = workspace.clock.charge(solver::SolvePhase::ccd);
         const bool clear = contact::is_path_clear(model, workspace.candidates, segments);
-        settle(segments, workspace.candidates);
+        settle(end_poses(segments), workspace.candidates);
         return clear;
     };
     TrajectoryStep out{{accepted.front()}};

@@ -87,6 +87,12 @@ Candidates candidates_along(const model::Model& model, const std::vector<kinemat
     return candidates;
 }
 
+std::vector<kinematics::Pose> poses_at(const std::vector<kinematics::PathSegment>& segments, double s) {
+    std::vector<kinematics::Pose> poses;
+    for (const kinematics::PathSegment& segment : segments) poses.push_back(pose_at(segment, s));
+    return poses;
+}
+
 kinematics::PathSegment random_segment(std::mt19937& random, double apart, double travel, double turn) {
     std::normal_distribution<double> n;
     const auto v = [&] { return Vector3(n(random), n(random), n(random)); };
@@ -145,7 +151,7 @@ TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance",
     Candidates candidates;
     const auto is_kept = [&](const std::vector<kinematics::PathSegment>& segments) {
         cover(model, here, 0.1, candidates);
-        settle(here, candidates);
+        settle(poses_at(here, 0), candidates);
         cover(model, segments, 0.1, candidates);
         REQUIRE(candidates.pairs.size() == 1);
         const bool kept = !candidates.pairs[0].fresh;
@@ -181,7 +187,7 @@ TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance",
     std::vector<kinematics::PathSegment> near_far = far;
     near_far[0].position_step += Vector3(0, 0.05, 0);
     cover(model, far, 0.1, candidates);
-    settle(far, candidates);
+    settle(poses_at(far, 0.3), candidates);
     cover(model, near_far, 0.1, candidates);
     REQUIRE(candidates.pairs.size() == 1);
     CHECK_FALSE(candidates.pairs[0].fresh);
@@ -198,15 +204,16 @@ TEST_CASE("candidates that are kept miss nothing within their allowance", "[cand
         cover(model, first, 0.04, candidates);
         // They went a part of the way; then on, or the same way again a little otherwise, or both were carried elsewhere.
         for (kinematics::PathSegment& s : first) s = sub_segment(s, 0, 0.6);
-        settle(first, candidates);
+        settle(poses_at(first, 1), candidates);
         std::vector<kinematics::PathSegment> second = first;
         for (kinematics::PathSegment& s : second) {
             const kinematics::PathSegment change = random_segment(random, 0, 0.005, 0.01);
-            if (trial % 2 == 0) s = sub_segment(s, 1, 1);
+            if (trial % 4 == 0) s = sub_segment(s, 1, 1);
+            if (trial % 4 == 1) s = sub_segment(s, 1, 1.5);
             s.position_step += change.position_step;
             s.rotation_vector_step += change.rotation_vector_step;
         }
-        if (trial % 4 == 0) {
+        if (trial % 8 == 0) {
             const Matrix3 carried = kinematics::rotation(random_segment(random, 0, 0, 1).rotation_vector_step);
             for (kinematics::PathSegment& s : second) {
                 s.base = carried * pose_at(s, 0).rotation;
