@@ -14,6 +14,8 @@
 namespace fettle::core::clearance {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 kinematics::PathSegment held(const kinematics::Pose& pose) {
     kinematics::PathSegment path;
     path.base = pose.rotation;
@@ -77,8 +79,21 @@ double checking_room(const ClearanceOptions& options, const PairMotion& pair) {
     return options.tolerance / 8 + 8 * slack;
 }
 
+// The least at the nodes of the path, as a tool that samples would see it; a good upper bound for a search over the motion, too.
+Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
+    search.sample_nodes = pair.segments.size() > 1;  // the motion is searched as well, which costs little more
+    search.nodes_only = !search.sample_nodes;
+    if (search.nodes_only) search.tolerance *= 0.01;
+    const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    return search.nodes_only ? found.nearest : found.sampled;
+}
+
 SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search, PairCertificate* record) {
-    if (record == nullptr) return search_pair(pair.a, pair.b, pair.segments, search);
+    search.enough = options.enough;
+    if (record == nullptr) {
+        search.sample_nodes = options.sample_nodes && pair.segments.size() > 1;
+        return search_pair(pair.a, pair.b, pair.segments, search);
+    }
     search.tolerance *= 0.75;
     search.proof = &record->segments;
     SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
@@ -93,17 +108,8 @@ PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, d
     search.tolerance = options.tolerance;
     search.max_evaluations = options.max_evaluations;
     search.should_stop = options.should_stop;
-    SearchResult sampled;
-    sampled.nearest.pair.distance = std::numeric_limits<double>::infinity();
-    if (options.sample_nodes) {
-        // First at the nodes of the path, as a tool that samples would: a good upper bound for the search over the motion.
-        SearchOptions at_nodes = search;
-        at_nodes.nodes_only = true;
-        at_nodes.tolerance = 0.01 * options.tolerance;
-        sampled = search_pair(pair.a, pair.b, pair.segments, at_nodes);
-        search.seed = sampled.nearest;
-    }
-    search.enough = options.enough;
+    const bool apart = options.sample_nodes && (record != nullptr || pair.segments.size() == 1);
+    if (apart) search.seed = least_at_nodes(pair, search);
     const SearchResult found = certified_search(pair, options, search, record);
     PairClearance result;
     result.a = request.a;
@@ -111,9 +117,9 @@ PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, d
     result.minimum = request.minimum;
     result.lower = found.lower;
     result.upper = found.upper;
-    result.sampled = sampled.nearest.pair.distance;
+    result.sampled = !options.sample_nodes ? infinity : (apart ? *search.seed : found.sampled).pair.distance;
     result.complete = found.complete;
-    result.intersecting = found.intersecting || sampled.intersecting;
+    result.intersecting = found.intersecting;
     search.seed.reset();
     if (!result.intersecting && found.lower == 0 && found.upper <= options.tolerance)
         result.intersecting = intersects_at_nodes(pair, search);

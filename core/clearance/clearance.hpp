@@ -61,7 +61,7 @@ struct ClearanceOptions {
     bool margin_curve = false;                      ///< fill PairClearance::margin: costs a search per path segment
     double witness_tolerance = 0;                   ///< greater than 0: fill PairClearance::witnesses with all within it of the least [m]
     int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
-    bool sample_nodes = true;                       ///< fill PairClearance::sampled: costs about as much as the bounds
+    bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
     double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
     Certificate* certificate = nullptr;                       ///< optional: the proofs are recorded here; `lower` is what they claim
     std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds

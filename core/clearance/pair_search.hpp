@@ -5,7 +5,8 @@
 /// An entry is (interval, piece of a, piece of b) with a proven lower bound. The least of the entries in the queue and of those set
 /// aside (within the tolerance of the upper bound, or at the limit of rounding) bounds the distance from below at any moment, so the
 /// search may stop at any time. Entries are halved in time where the motion loosens their bound more than the size of the boxes does.
-/// All segments share one queue and one upper bound: a segment during which the bodies are far apart costs one entry.
+/// All segments share one queue and one upper bound. Many segments are searched at once first (span_search.hpp), unless a proof is to be
+/// recorded, which is told segment by segment; then each one is (segment_search.hpp), and costs at least one entry.
 #pragma once
 
 #include <functional>
@@ -28,12 +29,14 @@ struct SearchOptions {
     bool nodes_only = false;                                  ///< at the ends of the segments instead of over them
     bool seek_intersection = false;  ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
     std::optional<Encounter> seed;   ///< of the same bodies: its distance is the first upper bound
+    bool sample_nodes = false;       ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
     PairProof* proof = nullptr;      ///< the tree of entries is recorded here, one proof per segment
 };
 
 struct SearchResult {
     double lower = 0, upper = 0;  ///< [m], lower >= 0; upper - lower <= tolerance unless rounding or the budget stands in the way
     Encounter nearest;            ///< attains `upper`
+    Encounter sampled;            ///< if asked for: the least at ends of segments, to a hundredth of the tolerance
     long evaluations = 0;         ///< bounds computed
     bool complete = true;         ///< false: out of budget, or stopped
     bool intersecting = false;    ///< `nearest` is an edge that passes through a triangle, deeper than rounding

@@ -25,16 +25,20 @@ Values extent(const Functionals& f, const Piece& piece) { return (f * piece.axes
 
 }  // namespace
 
-Separation separation(const Instant& at, const Piece& a, const Piece& b) {
-    const Vector3 d = at.offset + at.rotation_a * a.center - at.rotation_b * b.center;
-    const Matrix3 axes_a = at.rotation_a * a.axes, axes_b = at.rotation_b * b.axes;
-    const Matrix3 size = (axes_a.transpose() * axes_b).cwiseAbs();
-    const Vector3 gap_a = excess(axes_a.transpose() * d, a.half_extent + size * b.half_extent);
-    const Vector3 gap_b = excess(axes_b.transpose() * d, b.half_extent + size.transpose() * a.half_extent);
+Separation box_separation(const Vector3& d, const Matrix3& axes_a, const Vector3& extent_a, const Matrix3& axes_b,
+                          const Vector3& extent_b) {
+    const Matrix3 size = axes_a.transpose().lazyProduct(axes_b).cwiseAbs();
+    const Vector3 gap_a = excess(axes_a.transpose() * d, extent_a + size * extent_b);
+    const Vector3 gap_b = excess(axes_b.transpose() * d, extent_b + size.transpose() * extent_a);
     const double squared_a = gap_a.squaredNorm(), squared_b = gap_b.squaredNorm();
     if (squared_a == 0 && squared_b == 0) return {unit_direction(d), 0};
     if (squared_a >= squared_b) return {unit_direction(axes_a * gap_a), std::sqrt(squared_a)};
     return {unit_direction(axes_b * gap_b), std::sqrt(squared_b)};
+}
+
+Separation separation(const Instant& at, const Piece& a, const Piece& b) {
+    return box_separation(at.offset + at.rotation_a * a.center - at.rotation_b * b.center, at.rotation_a * a.axes, a.half_extent,
+                          at.rotation_b * b.axes, b.half_extent);
 }
 
 IntervalBound::IntervalBound(const PairSegment& segment, const Instant& start, const Instant& middle, const Instant& end)

@@ -15,7 +15,8 @@ struct Separation {
     double apart = 0;  ///< 0: they may overlap, and the direction is that of the centers
 };
 
-/// The better of the boxes' gaps along the axes of a's and along those of b's.
+/// The better of the boxes' gaps along the axes of a's and along those of b's; `d` is a's center seen from b's.
+Separation box_separation(const Vector3& d, const Matrix3& axes_a, const Vector3& extent_a, const Matrix3& axes_b, const Vector3& extent_b);
 Separation separation(const Instant& at, const Piece& a, const Piece& b);
 
 /// An interval of a segment, prepared for many pairs of pieces.

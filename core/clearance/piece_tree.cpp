@@ -37,6 +37,7 @@ public:
 private:
     int start(Piece piece) {
         if (piece.count <= most_elements_of_turned_box) turn_box(piece);
+        piece.size = piece.half_extent.norm();
         tree_.pieces.push_back(piece);
         return static_cast<int>(tree_.pieces.size()) - 1;
     }
@@ -49,7 +50,8 @@ private:
         const Vector3 mean = sum / count;
         Matrix3 covariance = Matrix3::Zero();
         for_corners(piece, [&](const Vector3& y) { covariance += (y - mean) * (y - mean).transpose(); });
-        const Eigen::SelfAdjointEigenSolver<Matrix3> solver(covariance);
+        Eigen::SelfAdjointEigenSolver<Matrix3> solver;
+        solver.computeDirect(covariance);
         Matrix3 axes = solver.eigenvectors();
         axes.col(2) = axes.col(0).cross(axes.col(1)).normalized();
         axes.col(1) = axes.col(2).cross(axes.col(0)).normalized();

@@ -22,6 +22,7 @@ struct Piece {
     Matrix3 axes = Matrix3::Identity();     ///< of the box: columns, orthonormal up to rounding
     Vector3 half_extent = Vector3::Zero();  ///< along them, rounded outwards
     double radius = 0;                      ///< upper bound of |X| over the piece
+    double size = 0;                        ///< |half_extent|
     int left = -1, right = -1;
     int first = 0, count = 0;
     bool is_element() const { return left < 0; }

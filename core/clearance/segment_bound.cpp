@@ -23,11 +23,6 @@ double third_derivative(const BodySegment& body, const Vector3& n, const Reach& 
     return w * std::min(along_n, w * w * y) * rounded_up;
 }
 
-double pose_error(const BodySegment& body) {
-    const double angle = body.path.rotation_vector_t0.norm() + body.speed;
-    return (160 + 48 * angle) * unit_roundoff;
-}
-
 }  // namespace
 
 // Lower bound of the cubic on [0, 1], equal to its least value up to rounding: the hull of its coefficients, after a split at the least
@@ -59,6 +54,7 @@ BodySegment body_segment(const kinematics::PathSegment& path) {
     // |B|^2 is the largest eigenvalue of B^T B, at most 1 + |B^T B - I|.
     const double excess = (path.base.transpose() * path.base - Matrix3::Identity()).norm();
     body.base_norm = std::sqrt(1 + excess) * rounded_up;
+    body.rounding = (160 + 48 * (path.rotation_vector_t0.norm() + body.speed)) * unit_roundoff;
     body.poses[0] = kinematics::pose_at(path, 0);
     const bool still = body.speed == 0 && path.position_step == Vector3::Zero();
     body.poses[1] = still ? body.poses[0] : kinematics::pose_at(path, 0.5);
@@ -73,8 +69,7 @@ PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radi
     const double ra = 2 * radius_a * pair.a.base_norm, rb = 2 * radius_b * pair.b.base_norm;
     const double p = a.path.position_t0.norm() + a.path.position_step.norm() + b.path.position_t0.norm() + b.path.position_step.norm();
     pair.slack =
-        ((pose_error(pair.a) + 48 * unit_roundoff) * ra + (pose_error(pair.b) + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) *
-            rounded_up +
+        ((pair.a.rounding + 48 * unit_roundoff) * ra + (pair.b.rounding + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) * rounded_up +
         std::numeric_limits<double>::min();
     return pair;
 }

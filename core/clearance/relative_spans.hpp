@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+/// The motion of body a as seen from body b, over many path segments at once: bounds of the distance of two pieces over up to seven
+/// spans of time for little more than the price of one. What moves together is at rest here. Used before segment_bound.hpp, whose bounds
+/// are finer and cost one segment each. (Here b is the body that serves as the frame, a the other one.)
+///
+/// A span is a path segment, or seven spans of the level below; a group holds up to seven consecutive spans and the relative poses
+///   R_j = R_b^T R_a,   p_j = R_b^T (q_a - q_b)   at node j, where span j begins and span j - 1 ends.
+/// For vectors n_j in b's frame with |n_j| <= 1 and points X of a, Z of b put f(t) = n(t).(R(t) X + p(t) - Z), n(t) between n_j and n_{j+1}
+/// in span j. Then |R_b n| dist >= f, and f_j is a difference of support functions of the pieces. In span j, for |X| <= r,
+///   f(t) >= min(f_j, f_{j+1}) - rest_shift_j - r rest_turn_j - |n_{j+1} - n_j| (step_shift_j + r step_turn_j)/4.
+/// With x = R X + p that is for one segment, s in [0, 1]:
+///   x = (1 - s) x(0) + s x(1) + 2 s (1 - s) g + e,  g = D X + d,  D = 2 R(1/2) - R(0) - R(1),  d likewise of p;
+///   |g| <= |D| r + |d|,  2 s (1 - s) <= 1/2,  |e| <= M/124 (interpolation at 0, 1/2, 1);
+///   M >= |x'''|: of the product of R_b^T (derivatives |w_b|^k) and R_a X + q_a - q_b (|w_a|^k r, and |q'| in the first), with
+///   Q >= |q_a - q_b|:  M = (|w_a| + |w_b|)^3 r + |w_b|^3 Q + 3 |w_b|^2 |q'|;
+///   and what the segment's end and the next one's start differ by (rounding, if the path is continuous; nothing depends on that);
+///   of the product of the linear n and the linear part of x there remains s (1 - s) (n_1 - n_0).(x(1) - x(0)) beside its chord.
+/// In a span of several segments: the largest of these, and how far the poses at its inner nodes are from the chord of R and p.
+///
+/// Bases that are rotations up to rounding only: |R_b n| <= |B_b|, and R_b^T R_b = B_b^T B_b turns n.Z by at most (|B_b|^2 - 1) |Z|.
+/// Rounding: with the errors of poses (segment_bound.hpp) an R_j is off by their sum, p_j by that of R_b times Q and 4u times the size of
+/// the positions; products, functionals and supports by 64u of radii and Q. In all eight times: poses enter a bound with weight 7.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/clearance/piece_bound.hpp"
+#include "fettle/core/clearance/segment_bound.hpp"
+
+namespace fettle::core::clearance {
+
+inline constexpr int most_spans = 15;
+using Lanes = Eigen::Array<double, most_spans + 1, 1>;  ///< one value per node of a group
+
+/// Of body a in b's frame.
+struct RelativePose {
+    Matrix3 rotation;
+    Vector3 offset;
+};
+
+/// The end of a path segment at which a node lies: s = 0 or 1.
+struct SegmentEnd {
+    int segment = 0;
+    bool at_end = false;
+};
+
+struct SpanGroup {
+    int level = 0;                                ///< 0: spans are segments; else they are groups of the level below
+    int first = 0, count = 0;                     ///< spans first .. first + count - 1: indices of segments, or of groups
+    std::array<Lanes, 9> rotation;                ///< R_j by rows; nodes beyond `count` repeat the last
+    std::array<Lanes, 3> offset;                  ///< p_j
+    Lanes rest_turn, rest_shift;                  ///< by span: how far points leave their chords; the last is 0
+    Lanes step_turn, step_shift;                  ///< by span: how far they go; the last is 0
+    std::array<SegmentEnd, most_spans + 1> node;  ///< where the nodes lie
+
+    RelativePose at(int j) const;
+};
+
+/// As separation() of two placed boxes, the direction in b's frame.
+Separation separation(const RelativePose& at, const Piece& a, const Piece& b);
+
+/// The vectors n_j.
+using Directions = std::array<Lanes, 3>;
+
+/// `n` at one node, turned at the others as `center` (a point of a) goes round b: by `rate` times its displacement across n.
+/// Contract: |n| <= 1.
+Directions directions_along(const SpanGroup& group, int node, const Vector3& n, const Vector3& center, double rate);
+
+/// Lower bounds; entries beyond the group's count mean nothing.
+struct SpanBounds {
+    Lanes spans;  ///< over each span
+    Lanes nodes;  ///< at each node
+};
+
+class RelativeSpans {
+public:
+    /// `deviation_scale`: of the rests, 1 but in tests that show that a bound without them is found out.
+    RelativeSpans(const std::vector<PairSegment>& segments, double radius_a, double radius_b, double deviation_scale = 1);
+
+    /// How far bodies leave the chords of their segments, on average [m]: tells which of the two is the better frame.
+    double mean_rest() const { return mean_rest_; }
+
+    const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }
+    /// The group that holds all segments.
+    int root() const { return static_cast<int>(groups_.size()) - 1; }
+
+    SpanBounds of_boxes(const SpanGroup& group, const Directions& n, const Piece& a, const Piece& b) const;
+    SpanBounds of_elements(const SpanGroup& group, const Directions& n, const Piece& a, const Corners& element_a,
+                           const Corners& element_b) const;
+
+private:
+    SpanBounds bounds(const SpanGroup& group, const Directions& n, const Lanes& at_nodes, double radius) const;
+
+    std::vector<SpanGroup> groups_;  // level by level
+    double slack_ = 0, shrink_ = 1, mean_rest_ = 0;
+};
+
+/// The same pair with the bodies in the other order.
+std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments);
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+/// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, most promising first, the
+/// bounds so far, and the upper bounds with their witnesses.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "fettle/core/clearance/pair_search.hpp"
+
+namespace fettle::core::clearance {
+
+enum class EntryKind { segment, spans };  ///< segment_search.hpp, span_search.hpp
+
+/// Entries that come and go, at places that stay.
+template <class Entry>
+class EntryPool {
+public:
+    int add(const Entry& entry) {
+        if (free_.empty()) {
+            entries_.push_back(entry);
+            return static_cast<int>(entries_.size()) - 1;
+        }
+        const int index = free_.back();
+        free_.pop_back();
+        entries_[static_cast<std::size_t>(index)] = entry;
+        return index;
+    }
+    Entry take(int index) {
+        free_.push_back(index);
+        return entries_[static_cast<std::size_t>(index)];
+    }
+
+private:
+    std::vector<Entry> entries_;
+    std::vector<int> free_;
+};
+
+class SearchFront {
+public:
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    /// What the heap moves about: the entries themselves stay where they are.
+    struct Key {
+        double lower = 0;
+        std::int64_t order = 0;  ///< of making: breaks ties the same way on every run
+        int entry = 0;
+        EntryKind kind = EntryKind::segment;
+    };
+
+    /// `within` >= 0: everything as near as that is wanted, instead of the least distance.
+    SearchFront(const PieceTree& tree_a, const PieceTree& tree_b, const std::vector<PairSegment>& all_segments,
+                const SearchOptions& search_options, double within)
+        : a(tree_a), b(tree_b), segments(all_segments), options(search_options), within_(within) {
+        result.upper = infinity;
+        result.sampled.pair.distance = infinity;
+    }
+
+    const PieceTree &a, &b;
+    const std::vector<PairSegment>& segments;
+    const SearchOptions& options;
+    SearchResult result;
+
+    bool is_collecting() const { return within_ >= 0; }
+    bool is_within(double distance) const { return distance <= within_; }
+
+    /// Entries whose bound is no less need no splitting. (What was set aside at the limit of rounding cannot be raised any more.)
+    double cutoff() const {
+        if (is_collecting()) return std::nextafter(within_, infinity);
+        if (options.seek_intersection) return std::numeric_limits<double>::min();
+        return std::min({result.upper - options.tolerance, options.enough, aside_});
+    }
+    /// The same of bounds that hold at the ends of segments, for the least distance there.
+    double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * options.tolerance : -infinity; }
+
+    /// A bound of what is not split any further.
+    void set_aside(double lower) { aside_ = std::min(aside_, lower); }
+
+    void push(double lower, EntryKind kind, int entry) {
+        queue_.push_back({lower, made_++, entry, kind});
+        std::push_heap(queue_.begin(), queue_.end(), Later{});
+    }
+    Key pop() {
+        std::pop_heap(queue_.begin(), queue_.end(), Later{});
+        const Key key = queue_.back();
+        queue_.pop_back();
+        return key;
+    }
+
+    bool is_settled() const {
+        if (queue_.empty()) return true;
+        const double next = queue_.front().lower;
+        if (is_collecting()) return next > within_;
+        if (options.seek_intersection) return result.intersecting || next > 0;
+        return std::max(next, 0.0) >= std::max(cutoff(), sampling_cutoff());
+    }
+
+    /// Of everything searched, however far the search has come.
+    double lower_bound() const { return std::max(0.0, std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result.upper})); }
+
+    void take_upper(const Encounter& encounter) {
+        const double slack = segments[static_cast<std::size_t>(encounter.segment)].slack, upper = encounter.pair.distance + slack;
+        const bool clash = encounter.pair.intersecting && encounter.pair.depth > 8 * slack;
+        if ((encounter.s == 0 || encounter.s == 1) && encounter.pair.distance < result.sampled.pair.distance) result.sampled = encounter;
+        const bool better = options.seek_intersection ? clash && !result.intersecting : upper < result.upper;
+        if (result.nearest.segment >= 0 && !better) return;
+        result.upper = upper;
+        result.nearest = encounter;
+        result.intersecting = clash;
+    }
+
+private:
+    struct Later {
+        bool operator()(const Key& x, const Key& y) const { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
+    };
+
+    double within_ = -1;
+    std::vector<Key> queue_;   // a heap
+    double aside_ = infinity;  // least bound of the entries that are not in the queue any more and were not split
+    std::int64_t made_ = 0;
+};
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/span_search.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fettle::core::clearance {
+namespace {
+
+constexpr double infinity = SearchFront::infinity;
+
+const Corners& corners(const PieceTree& tree, const Piece& piece) { return tree.elements[static_cast<std::size_t>(piece.first)].corners; }
+
+}  // namespace
+
+SpanSearch::SpanSearch(SearchFront& front, SegmentSearch& segments)
+    : front_(front), segments_(segments), spans_(front.segments, front.a.radius(), front.b.radius(), front.options.deviation_scale) {
+    RelativeSpans other(exchanged(front.segments), front.b.radius(), front.a.radius(), front.options.deviation_scale);
+    exchanged_ = other.mean_rest() < spans_.mean_rest();
+    if (exchanged_) spans_ = std::move(other);
+}
+
+void SpanSearch::try_root() { try_pieces(whole_group(spans_.root(), 0, 0, -infinity)); }
+
+SpanSearch::Entry SpanSearch::whole_group(int index, int a, int b, double lower) const {
+    const SpanGroup& group = spans_.group(index);
+    Entry entry;
+    entry.group = index;
+    entry.a = a;
+    entry.b = b;
+    entry.lower = {Lanes::Constant(lower), Lanes::Constant(lower)};
+    entry.open_spans = (1U << group.count) - 1;
+    if (group.level == 0 && front_.options.sample_nodes) entry.open_nodes = (2U << group.count) - 1;
+    entry.nearest = group.count / 2;
+    return entry;
+}
+
+// A span of several segments has to serve for the nodes inside it, too.
+double SpanSearch::span_cutoff(const SpanGroup& group) const {
+    return group.level == 0 ? front_.cutoff() : std::max(front_.cutoff(), front_.sampling_cutoff());
+}
+
+// Along n at the nearest node, which points from the frame's body to the other one. At the other nodes it points where the distance of
+// two round pieces would: what is far away turns it, faces that slide along each other do not.
+void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart) {
+    ++front_.result.evaluations;
+    const Piece &x = moving(entry), &y = fixed(entry);
+    const PieceTree &tree_x = exchanged_ ? front_.b : front_.a, &tree_y = exchanged_ ? front_.a : front_.b;
+    const SpanGroup& group = spans_.group(entry.group);
+    const double reach = apart + x.size + y.size;
+    const Directions along = directions_along(group, entry.nearest, n, x.center, apart / (reach * reach));
+    const SpanBounds found = are_elements(entry) ? spans_.of_elements(group, along, x, corners(tree_x, x), corners(tree_y, y))
+                                                 : spans_.of_boxes(group, along, x, y);
+    entry.lower = {entry.lower.spans.max(found.spans), entry.lower.nodes.max(found.nodes)};
+    const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
+    double least = infinity;
+    for (int j = 0; j <= group.count; ++j) {
+        if ((open >> j & 1) == 0 || !(found.nodes[j] < least)) continue;
+        least = found.nodes[j];
+        entry.nearest = j;
+    }
+}
+
+void SpanSearch::close(Entry& entry) {
+    const double enough = span_cutoff(spans_.group(entry.group)), sampling = front_.sampling_cutoff();
+    for (int j = 0; j <= most_spans; ++j) {
+        const std::uint32_t bit = 1U << j;
+        if ((entry.open_spans & bit) != 0 && entry.lower.spans[j] >= enough) {
+            front_.set_aside(entry.lower.spans[j]);
+            entry.open_spans ^= bit;
+        }
+        if ((entry.open_nodes & bit) != 0 && entry.lower.nodes[j] >= sampling) entry.open_nodes ^= bit;
+    }
+}
+
+void SpanSearch::try_pieces(Entry entry) {
+    const Separation gap = separation(spans_.group(entry.group).at(entry.nearest), moving(entry), fixed(entry));
+    tighten(entry, gap.direction, gap.apart);
+    close(entry);
+    double least = infinity;
+    for (int j = 0; j <= most_spans; ++j) {
+        if ((entry.open_spans >> j & 1) != 0) least = std::min(least, entry.lower.spans[j]);
+        if ((entry.open_nodes >> j & 1) != 0) least = std::min(least, entry.lower.nodes[j]);
+    }
+    if (least < infinity) front_.push(least, EntryKind::spans, entries_.add(entry));
+}
+
+// Spans that are open because of their rest only, or mostly, or during which the pieces go further than their size, are halved in time;
+// the others share one split in space.
+void SpanSearch::split(int index) {
+    Entry entry = entries_.take(index);
+    close(entry);
+    if (are_elements(entry)) return measure_elements(entry);
+    const SpanGroup& group = spans_.group(entry.group);
+    const double size = piece_a(entry.a).size + piece_b(entry.b).size, enough = span_cutoff(group);
+    const double radius = moving(entry).radius;
+    for (int j = 0; j < group.count; ++j) {
+        if ((entry.open_spans >> j & 1) == 0) continue;
+        const double at_ends = std::min(entry.lower.nodes[j], entry.lower.nodes[j + 1]);
+        const bool goes_far = group.level > 0 && group.step_shift[j] + radius * group.step_turn[j] > size;
+        if (at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) continue;
+        halve_span(entry, j);
+        entry.open_spans ^= 1U << j;
+    }
+    if (entry.open_spans != 0 || entry.open_nodes != 0) split_space(entry);
+}
+
+void SpanSearch::split_space(const Entry& entry) {
+    const Piece &a = piece_a(entry.a), &b = piece_b(entry.b);
+    const bool first = splits_a(a, b);
+    Entry half = entry;
+    (first ? half.a : half.b) = (first ? a : b).left;
+    try_pieces(half);
+    (first ? half.a : half.b) = (first ? a : b).right;
+    try_pieces(half);
+}
+
+void SpanSearch::halve_span(const Entry& entry, int span) {
+    const SpanGroup& group = spans_.group(entry.group);
+    if (group.level > 0) return try_pieces(whole_group(group.first + span, entry.a, entry.b, entry.lower.spans[span]));
+    if (!are_elements(entry)) return segments_.try_segment(group.first + span, entry.a, entry.b);
+    segments_.add_elements(group.first + span, entry.a, entry.b, entry.lower.spans[span]);
+}
+
+// Along the direction of the closest points at the most promising node.
+void SpanSearch::measure_elements(Entry entry) {
+    const SpanGroup& group = spans_.group(entry.group);
+    const auto measure_at = [&](int node) { return segments_.measure_at(group.node[static_cast<std::size_t>(node)], entry.a, entry.b); };
+    const int nearest = entry.nearest;
+    const SegmentEnd& place = group.node[static_cast<std::size_t>(nearest)];
+    const PairSegment& segment = front_.segments[static_cast<std::size_t>(place.segment)];
+    const Matrix3& frame = (exchanged_ ? segment.a : segment.b).poses[place.at_end ? 2 : 0].rotation;
+    const Separation found = measure_at(nearest);
+    tighten(entry, unit_direction(frame.transpose() * (exchanged_ ? -found.direction : found.direction)), found.apart);
+    close(entry);
+    for (int j = 0; j <= group.count; ++j)
+        if (j != nearest && (entry.open_nodes >> j & 1) != 0 && entry.lower.nodes[j] < front_.sampling_cutoff()) measure_at(j);
+    for (int j = 0; j < group.count; ++j)
+        if ((entry.open_spans >> j & 1) != 0) halve_span(entry, j);
+}
+
+}  // namespace fettle::core::clearance

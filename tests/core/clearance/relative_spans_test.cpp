@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/relative_spans.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "fettle/core/clearance/witness_instant.hpp"
+#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+
+using namespace fettle;
+using namespace fettle::tests::clearance;
+using namespace fettle::core::clearance;
+
+namespace {
+
+struct Motion {
+    std::vector<core::kinematics::PathSegment> a, b;
+};
+
+/// Steps of one path each in charts of their own, accelerating and turning; with `jumps` no segment begins where the last one ended.
+Motion random_motion(std::mt19937& random, int steps, double size, double turn, bool jumps) {
+    std::uniform_real_distribution<double> u(0, 1);
+    Motion motion;
+    for (auto* path : {&motion.a, &motion.b}) {
+        Matrix3 rotation = core::kinematics::rotation(random_vector(random, 3 * u(random)));
+        Vector3 position = random_vector(random, 3 * size), velocity = random_vector(random, 0.1 * size);
+        const Vector3 rate = random_vector(random, turn * u(random));
+        for (int t = 0; t < steps; ++t) {
+            core::kinematics::PathSegment p;
+            p.base = rotation;
+            if (t % 3 == 1) p.rotation_vector_t0 = random_vector(random, turn);  // not at the origin of its chart
+            p.rotation_vector_step = rate + random_vector(random, 0.3 * turn * u(random));
+            p.position_t0 = position;
+            velocity += random_vector(random, 0.03 * size * u(random));
+            p.position_step = velocity;
+            path->push_back(p);
+            const auto end = core::kinematics::pose_at(p, 1);
+            rotation = core::kinematics::orthonormalised(end.rotation);
+            position = end.position;
+            if (jumps) position += random_vector(random, 0.2 * size);
+        }
+    }
+    return motion;
+}
+
+Corners random_triangle(std::mt19937& random, double size) {
+    Corners corners;
+    const Vector3 center = random_vector(random, 0.5 * size);
+    for (int k = 0; k < 3; ++k) corners.x.col(k) = center + random_vector(random, 0.3 * size);
+    return corners;
+}
+
+Piece piece_of(const Corners& corners) {
+    Piece piece;
+    const Vector3 low = corners.x.rowwise().minCoeff(), high = corners.x.rowwise().maxCoeff();
+    piece.center = 0.5 * (low + high);
+    piece.half_extent = (1 + 1e-12) * 0.5 * (high - low);
+    piece.radius = std::sqrt(corners.x.colwise().squaredNorm().maxCoeff()) * (1 + 1e-15);
+    piece.count = 1;
+    return piece;
+}
+
+ElementPairDistance distance_at(const SpanGroup& group, int node, const Corners& a, const Corners& b) {
+    const RelativePose pose = group.at(node);
+    return placed_distance({0, pose.rotation, Matrix3::Identity(), pose.offset}, a, b);
+}
+
+std::vector<int> segments_of(const RelativeSpans& spans, const SpanGroup& group, int span) {
+    if (group.level == 0) return {group.first + span};
+    const SpanGroup& below = spans.group(group.first + span);
+    std::vector<int> all;
+    for (int j = 0; j < below.count; ++j)
+        for (const int i : segments_of(spans, below, j)) all.push_back(i);
+    return all;
+}
+
+struct Verdict {
+    int spans = 0, wrong = 0, useful = 0;
+    std::vector<int> seen;
+};
+
+/// Two triangles over every span of every level, against samples in extended precision.
+Verdict judge(std::mt19937& random, int steps, double size, double turn, bool jumps, double deviation_scale) {
+    const Motion motion = random_motion(random, steps, size, turn, jumps);
+    const Solid solid_a = make_solid(random_triangle(random, size).x, {{0, 1, 2}}),
+                solid_b = make_solid(random_triangle(random, size).x, {{0, 1, 2}});
+    const Corners a{solid_a.mesh.vertices, 3}, b{solid_b.mesh.vertices, 3};
+    std::vector<PairSegment> segments;
+    for (std::size_t i = 0; i < motion.a.size(); ++i)
+        segments.push_back(pair_segment(motion.a[i], motion.b[i], solid_a.radius(), solid_b.radius()));
+    std::vector<double> least;
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        least.push_back(static_cast<double>(sampled_minimum({solid_a, solid_b, motion.a[i], motion.b[i]}, 12, 3)));
+    const RelativeSpans spans(segments, solid_a.radius(), solid_b.radius(), deviation_scale);
+    Verdict verdict;
+    verdict.seen.resize(segments.size());
+    std::vector<int> pending{spans.root()};
+    while (!pending.empty()) {
+        const SpanGroup& group = spans.group(pending.back());
+        pending.pop_back();
+        const int node = static_cast<int>(random() % static_cast<unsigned>(group.count + 1));
+        const ElementPairDistance nearest = distance_at(group, node, a, b);
+        const double rate = random() % 2 ? 1 / (nearest.distance + size) : 0;
+        const Directions n = directions_along(group, node, unit_direction(nearest.difference), piece_of(a).center, rate);
+        for (const Lanes& k : n) REQUIRE(k.isFinite().all());
+        CHECK((n[0].square() + n[1].square() + n[2].square()).maxCoeff() <= 1);
+        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(a), a, b),
+                         of_boxes = spans.of_boxes(group, n, piece_of(a), piece_of(b));
+        for (int j = 0; j < group.count; ++j) {
+            double sampled = 1e300;
+            for (const int i : segments_of(spans, group, j)) {
+                sampled = std::min(sampled, least[static_cast<std::size_t>(i)]);
+                if (group.level == 0) ++verdict.seen[static_cast<std::size_t>(i)];
+            }
+            ++verdict.spans;
+            verdict.wrong += of_elements.spans[j] > sampled || of_boxes.spans[j] > sampled;
+            verdict.useful += of_elements.spans[j] > 0.8 * sampled;
+            CHECK(of_boxes.spans[j] <= of_elements.nodes[j] + 1e-9 * size);
+            CHECK(of_elements.spans[j] <= std::min(of_elements.nodes[j], of_elements.nodes[j + 1]));
+            if (group.level > 0) pending.push_back(group.first + j);
+        }
+    }
+    return verdict;
+}
+
+}  // namespace
+
+TEST_CASE("Bounds over many segments at once hold against samples in extended precision", "[clearance]") {
+    std::mt19937 random(3);
+    int spans = 0, useful = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        const int steps = 1 + static_cast<int>(random() % 60);
+        const double size = std::pow(10.0, -3 + trial % 4), turn = std::pow(10.0, -3 + trial % 3);
+        const Verdict verdict = judge(random, steps, size, turn, trial % 5 == 0, 1);
+        CAPTURE(trial, steps, size, turn);
+        CHECK(verdict.wrong == 0);
+        CHECK(std::all_of(verdict.seen.begin(), verdict.seen.end(), [](int times) { return times == 1; }));
+        spans += verdict.spans;
+        useful += verdict.useful;
+    }
+    CHECK(useful > spans / 4);
+}
+
+TEST_CASE("Bounds over many segments without their rests are found out", "[clearance]") {
+    std::mt19937 random(4);
+    int wrong = 0, spans = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        const Verdict verdict = judge(random, 40, 1, 0.3, false, 0);
+        wrong += verdict.wrong;
+        spans += verdict.spans;
+    }
+    CHECK(wrong > spans / 50);
+}
+
+TEST_CASE("Bodies that move together are at rest for each other", "[clearance]") {
+    std::mt19937 random(5);
+    Motion motion = random_motion(random, 100, 1, 0.1, false);
+    motion.b = motion.a;
+    std::vector<PairSegment> segments;
+    for (std::size_t i = 0; i < motion.a.size(); ++i) segments.push_back(pair_segment(motion.a[i], motion.b[i], 5, 5));
+    const RelativeSpans spans(segments, 5, 5);
+    Corners a = random_triangle(random, 1), b = random_triangle(random, 1);
+    a.x.row(2).array() += 3;
+    const SpanGroup& all = spans.group(spans.root());
+    const ElementPairDistance nearest = distance_at(all, 0, a, b);
+    const Directions n = directions_along(all, 0, unit_direction(nearest.difference), piece_of(a).center, 0);
+    const SpanBounds bounds = spans.of_elements(all, n, piece_of(a), a, b);
+    // What is left are the segments' own terms of third order and of rounding; nothing grows with the number of segments.
+    for (int j = 0; j < all.count; ++j) CHECK(bounds.spans[j] > nearest.distance - 0.01);
+    CHECK(bounds.nodes[0] > nearest.distance - 1e-10);
+}
