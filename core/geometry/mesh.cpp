@@ -87,7 +87,30 @@ std::size_t triangle_edge_count(const Mesh& mesh) {
     return bare.edges.size();
 }
 
+std::size_t shape_hash(const Mesh& mesh) {
+    std::uint64_t hash = mixed(static_cast<std::uint64_t>(mesh.vertices.cols()));
+    for (const double x : mesh.vertices.reshaped()) hash = mixed(hash + std::bit_cast<std::uint64_t>(x + 0.0));  // -0 + 0 = 0
+    for (const Triangle& t : mesh.triangles)
+        for (const int v : t) hash = mixed(hash + static_cast<std::uint64_t>(v));
+    return hash;
+}
+
 }  // namespace
+
+bool have_same_shape(const Mesh& a, const Mesh& b) {
+    return a.vertices.cols() == b.vertices.cols() && a.vertices == b.vertices && a.triangles == b.triangles && a.edges == b.edges &&
+           a.codimensional_points == b.codimensional_points;
+}
+
+std::size_t ShapeIndex::add(const Mesh& mesh) {
+    const std::size_t index = meshes_.size(), hash = shape_hash(mesh);
+    meshes_.push_back(&mesh);
+    const auto [begin, end] = by_hash_.equal_range(hash);
+    for (auto at = begin; at != end; ++at)
+        if (have_same_shape(*meshes_[at->second], mesh)) return at->second;
+    by_hash_.emplace(hash, index);
+    return index;
+}
 
 void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges) {
     const int vertex_count = static_cast<int>(mesh.vertices.cols());

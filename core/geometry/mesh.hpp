@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
@@ -16,13 +17,13 @@ using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise see
 
 /// Connectivity is fixed for life; a shape parameter moves `vertices` only.
 struct Mesh {
-    std::string name;                      ///< of the file or generator, for messages
-    Matrix3X vertices;                     ///< 3 x n, one column a vertex [m], no two equal (exactly welded)
+    std::string name;   ///< of the file or generator, for messages
+    Matrix3X vertices;  ///< 3 x n, one column a vertex [m], no two equal (exactly welded)
     std::vector<Triangle> triangles;
-    std::vector<Edge> edges;               ///< every edge of the triangles once, then the codimensional edges
-    std::vector<int> codimensional_points; ///< vertices used by no edge
-    std::vector<int> triangle_shell;       ///< per triangle: index of its edge-connected shell, 0-based, in order of first triangle
-    std::vector<std::string> shell_names;  ///< one per shell
+    std::vector<Edge> edges;                ///< every edge of the triangles once, then the codimensional edges
+    std::vector<int> codimensional_points;  ///< vertices used by no edge
+    std::vector<int> triangle_shell;        ///< per triangle: index of its edge-connected shell, 0-based, in order of first triangle
+    std::vector<std::string> shell_names;   ///< one per shell
 };
 
 /// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)
@@ -31,6 +32,20 @@ void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges = {});
 
 /// A mesh from vertices and triangles, connectivity built. Vertices are taken as they are (no welding).
 Mesh make_mesh(std::string name, Matrix3X vertices, std::vector<Triangle> triangles);
+
+/// Have both the same vertices (to the bit, but for the sign of zero), triangles, edges and points, in the same order?
+bool have_same_shape(const Mesh& a, const Mesh& b);
+
+/// Finds meshes of the same shape among many: copies of a part share what is worked out from it.
+class ShapeIndex {
+public:
+    /// Position of the first mesh of this shape that was added; that of this one if it is the first. Contract: `mesh` stays where it is.
+    std::size_t add(const Mesh& mesh);
+
+private:
+    std::vector<const Mesh*> meshes_;
+    std::unordered_multimap<std::size_t, std::size_t> by_hash_;
+};
 
 /// Merges vertices with exactly equal coordinates (-0 equals +0), drops triangles that become degenerate by index, and
 /// rebuilds connectivity. Order of first occurrence is kept.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -53,9 +54,11 @@ Errors check_usable(const scene::Body& body, const std::string& where) {
     return {};
 }
 
+bool must_be_closed(const scene::Body& body) { return body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume; }
+
 Errors check_strictly(const scene::Body& body, const std::string& where) {
     geometry::MeshRequirements requirements;
-    requirements.closed = body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume;
+    requirements.closed = must_be_closed(body);
     Errors errors = geometry::validate_mesh(body.mesh, requirements);
     for (Error& error : errors) {
         error.message = "body `" + body.name + "`: " + (error.where.empty() ? "" : error.where + ": ") + error.message;
@@ -143,11 +146,17 @@ Errors check_scene(const scene::Scene& scene) {
 
 Errors check_bodies(const scene::Scene& scene, const BuildOptions& options) {
     Errors errors;
+    geometry::ShapeIndex shapes;
+    std::set<std::pair<std::size_t, bool>> sound;  // copies of a part need no second look
     for (const scene::Body& body : scene.bodies) {
         const std::string where = place_of(scene, body);
         Errors found = check_usable(body, where);
+        const std::pair shape(shapes.add(body.mesh), must_be_closed(body));
         // A mesh that cannot be indexed has nothing more to tell, and a mesh that is known to be bad has no mass worth judging.
-        if (found.empty() && options.check_meshes && body.mesh_policy == MeshPolicy::strict) found = check_strictly(body, where);
+        if (found.empty() && options.check_meshes && body.mesh_policy == MeshPolicy::strict && sound.count(shape) == 0) {
+            found = check_strictly(body, where);
+            if (found.empty()) sound.insert(shape);
+        }
         if (found.empty()) found = check_mass(body, where);
         const bool finite = body.pose.position.allFinite() && body.pose.rotation.allFinite() && body.linear_velocity.allFinite() &&
                             body.angular_velocity.allFinite() && body.force.allFinite() && body.torque.allFinite();
@@ -196,7 +205,8 @@ kinematics::Pose pose_about(const kinematics::Pose& pose, const Vector3& referen
     return {pose.rotation, kinematics::world_position(pose, reference_point)};
 }
 
-Body build_body(const scene::Body& from, const Vector3& reference_point, double dhat) {
+/// All but what follows from its mesh.
+Body build_body(const scene::Body& from, const Vector3& reference_point) {
     Body body;
     body.name = from.name;
     body.type = from.type;
@@ -215,8 +225,6 @@ Body build_body(const scene::Body& from, const Vector3& reference_point, double 
     body.force = from.force;
     body.torque = from.torque;
     body.group = from.group;
-    complete_geometry(body);
-    if (body.type == BodyType::dynamic_body) body.moments = mass_moments(body, from.mass_kind, dhat);
     return body;
 }
 
@@ -296,6 +304,24 @@ void complete_geometry(Body& body) {
     body.hierarchy = std::make_shared<const contact::BodyHierarchy>(body.mesh);
 }
 
+void complete_geometry(std::vector<Body>& bodies) {
+    geometry::ShapeIndex shapes;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        Body& body = bodies[i];
+        const std::size_t first = shapes.add(body.mesh);
+        if (first == i) {
+            complete_geometry(body);
+            continue;
+        }
+        const Body& twin = bodies[first];
+        body.radius = twin.radius;
+        body.edge_length_squared = twin.edge_length_squared;
+        body.vertex_area = twin.vertex_area;
+        body.edge_area = twin.edge_area;
+        body.hierarchy = twin.hierarchy;
+    }
+}
+
 double choose_kappa(const Model& model) {
     double kappa = 0;
     for (const Body& body : model.bodies) {
@@ -331,7 +357,12 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const bool given = !options.reference_points.empty();
         const Vector3 point = given ? options.reference_points[i] : default_reference_point(scene.bodies[i]);
-        model.bodies.push_back(build_body(scene.bodies[i], point, model.dhat));
+        model.bodies.push_back(build_body(scene.bodies[i], point));
+    }
+    complete_geometry(model.bodies);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        if (scene.bodies[i].type == BodyType::dynamic_body)
+            model.bodies[i].moments = mass_moments(model.bodies[i], scene.bodies[i].mass_kind, model.dhat);
     }
     model.friction = build_friction(scene, model.bodies);
     model.integrator = scene.integrator;

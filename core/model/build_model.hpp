@@ -15,7 +15,7 @@ struct BuildOptions {
     std::vector<Vector3> reference_points;  ///< one per body, from the first design; empty: centres of mass of this one
     std::optional<double> kappa;            ///< overrides the scene's
     bool check_meshes = true;               ///< closed, oriented, no self-intersection (a design's trial checks its own)
-    bool check_start = true;   ///< refuse bodies that intersect at the start (a clearance report tells of them instead)
+    bool check_start = true;                ///< refuse bodies that intersect at the start (a clearance report tells of them instead)
 };
 
 /// Mass of a dynamic body is by its MassKind, exactly (geometry/mass_moments.hpp); its default reference point is its centre of mass, that
@@ -38,5 +38,8 @@ double choose_kappa(const Model& model);
 
 /// Fills radius (rounded up), edge_length_squared, areas and hierarchy from the body's mesh.
 void complete_geometry(Body& body);
+
+/// The same for all; bodies whose meshes have the same shape share one hierarchy.
+void complete_geometry(std::vector<Body>& bodies);
 
 }  // namespace fettle::core::model

@@ -336,10 +336,8 @@ private:
     }
 
     void finish_model(const JsonNode& hash) {
-        for (std::size_t b = 0; b < body_count(); ++b) {
-            out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
-            model::complete_geometry(out_.model.bodies[b]);
-        }
+        for (std::size_t b = 0; b < body_count(); ++b) out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
+        model::complete_geometry(out_.model.bodies);
         out_.model.end_time = time_at(out_.trajectory, static_cast<int>(out_.trajectory.steps.size()));
         const auto stored = hash.string();
         const std::string found = hexadecimal(geometry_hash(out_.model));

@@ -120,3 +120,25 @@ TEST_CASE("welding: signed zeros, NaN, one ulp, degenerate triangles, codimensio
     CHECK(welded.edges == std::vector<Edge>{{0, 1}, {1, 2}, {2, 0}, {1, 3}, {3, 0}, {2, 6}});  // 2-4 is an edge of a triangle now
     CHECK(welded.codimensional_points == std::vector<int>{4, 5});                              // both NaN vertices
 }
+
+TEST_CASE("copies of a shape are found, other shapes are not") {
+    Matrix3X x(3, 4);
+    x << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+    const std::vector<Triangle> faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    const Mesh first = make_mesh("first", x, faces);
+    Mesh negative_zero = first, moved = first, turned = first, wire = first;
+    negative_zero.name = "another";
+    negative_zero.vertices(2, 0) = -0.0;
+    moved.vertices(0, 1) = std::nextafter(1.0, 2.0);
+    turned.triangles[0] = {2, 1, 0};
+    wire.triangles.clear();
+    build_connectivity(wire, first.edges);
+    ShapeIndex shapes;
+    CHECK(shapes.add(first) == 0);
+    CHECK(shapes.add(moved) == 1);
+    CHECK(shapes.add(negative_zero) == 0);
+    CHECK(shapes.add(turned) == 3);
+    CHECK(shapes.add(wire) == 4);
+    CHECK(shapes.add(moved) == 1);
+    CHECK(shapes.add(first) == 0);
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/model/build_model.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -70,6 +71,42 @@ TEST_CASE("A box gets its mass, frame and sizes", "[model]") {
     CHECK(model->dhat == Approx(1e-3 * model->diagonal));
     CHECK(model->velocity_tolerance == Approx(1e-2 * model->diagonal));
     CHECK(model->end_time < 0);
+}
+
+TEST_CASE("Copies of a part share its hierarchy, and are what they would be alone", "[model]") {
+    const scene::Body a = box_body("a", {1, 2, 3}, {2, 4, 6}), other = box_body("other", {1, 2, 3}, {2, 4, 7});
+    scene::Body b = box_body("b", {1, 2, 3}, {2, 4, 6}), shifted = b;
+    b.pose.position = {9, 0, 0};
+    shifted.name = "shifted";
+    shifted.pose.position = {18, 0, 0};
+    shifted.reference_point = Vector3(1, 2, 3);
+    BuildOptions options;
+    options.check_start = false;
+    const auto model = build_model(scene_of({a, other, b, shifted}), options);
+    REQUIRE(model);
+    const auto& bodies = model->bodies;
+    CHECK(bodies[2].hierarchy == bodies[0].hierarchy);
+    CHECK(bodies[1].hierarchy != bodies[0].hierarchy);
+    CHECK(bodies[3].hierarchy != bodies[0].hierarchy);
+    const auto alone = build_model(scene_of({b}));
+    REQUIRE(alone);
+    CHECK(bodies[2].radius == alone->bodies[0].radius);
+    CHECK(bodies[2].moments == alone->bodies[0].moments);
+    CHECK(bodies[2].edge_length_squared == alone->bodies[0].edge_length_squared);
+    CHECK(bodies[2].vertex_area == alone->bodies[0].vertex_area);
+    CHECK(bodies[2].edge_area == alone->bodies[0].edge_area);
+}
+
+TEST_CASE("Every copy of a bad mesh is refused", "[model]") {
+    std::vector<scene::Body> bodies;
+    for (const char* name : {"a", "b"}) {
+        bodies.push_back(box_body(name, {0, 0, 0}, {1, 1, 1}));
+        bodies.back().mesh.triangles.pop_back();
+        geometry::build_connectivity(bodies.back().mesh);
+    }
+    const base::Errors errors = build_model(scene_of(bodies)).errors();
+    for (const std::string name : {"`a`", "`b`"})
+        CHECK(std::count_if(errors.begin(), errors.end(), [&](const base::Error& e) { return contains(e.message, name); }) == 3);
 }
 
 TEST_CASE("A reference point is the caller's, the scene's, or a default", "[model]") {
