@@ -104,4 +104,21 @@ std::string drives_csv(const Simulation& simulation, const std::vector<std::stri
     return text;
 }
 
+std::string joined_table(const std::string& earlier, const std::string& later, double until) {
+    const std::size_t header = later.find('\n') + 1;
+    if (earlier.compare(0, header, later, 0, header) != 0) return later;
+    std::size_t end = header;
+    bool kept = true;
+    for (std::size_t at = header; at < earlier.size() && kept;) {
+        // A line that does not begin with a number goes on with a quoted name.
+        double time = 0;
+        const bool row = std::from_chars(earlier.data() + at, earlier.data() + earlier.size(), time).ec == std::errc();
+        kept = !row || time <= until;
+        const std::size_t line_end = earlier.find('\n', at);
+        at = line_end == std::string::npos ? earlier.size() : line_end + 1;
+        if (kept) end = at;
+    }
+    return earlier.substr(0, end) + later.substr(header);
+}
+
 }  // namespace fettle::core::stepper

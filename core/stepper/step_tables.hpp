@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Per-step outputs as CSV tables with a header row, SI units, every number as the shortest decimal that reads back to the same double.
-/// Of a simulation with SimulationOptions::outputs; one that was taken up again lists the steps since its checkpoint.
+/// Of a simulation with SimulationOptions::outputs; one that was taken up again lists the steps since its checkpoint, see joined_table.
 #pragma once
 
 #include <string>
@@ -21,5 +21,9 @@ std::string contacts_csv(const Simulation& simulation, const std::vector<std::st
 /// One row per step and body with prescribed coordinates: time, body, force fx fy fz [N] and torque tx ty tz [N m] on it, about its
 /// reference point.
 std::string drives_csv(const Simulation& simulation, const std::vector<std::string>& names);
+
+/// `later` after those rows of `earlier`, a table of the run that was taken up again, whose time is at most `until` [s]: the table of a run
+/// that was never cut. An earlier table with another header is left out.
+std::string joined_table(const std::string& earlier, const std::string& later, double until);
 
 }  // namespace fettle::core::stepper

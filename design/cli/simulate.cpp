@@ -68,16 +68,28 @@ Json certified_minimum(const core::model::Model& model, const Simulation& simula
 
 int exit_code(SimulationStatus status) { return status == SimulationStatus::ok ? exit_done : exit_undecided; }
 
-Errors write_outputs(const std::string& directory, const core::model::Model& model, const Simulation& simulation,
+// With the rows of the run that this one goes on with, if its tables are beside its trajectory.
+std::string whole_table(const std::string& name, const std::string& text, const Options& options, const Simulation& earlier) {
+    if (options.earlier.empty()) return text;
+    const Result<std::string> before = core::base::read_file(std::filesystem::path(options.earlier).parent_path() / name);
+    const double until = (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep;
+    return before ? core::stepper::joined_table(*before, text, until) : text;
+}
+
+Errors write_outputs(const Options& options, const core::model::Model& model, const Simulation& simulation, const Simulation& earlier,
                      const std::string& scene_path, const Json& json) {
-    const std::filesystem::path folder = directory;
-    Errors errors =
-        core::stepper::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
-    if (!errors.empty()) return errors;
+    const std::filesystem::path folder = options.out;
+    // Read before anything is written: the earlier run's folder may be this one.
+    std::vector<std::pair<std::string, std::string>> tables;
     const std::vector<std::string> names = body_names(model);
     for (const auto& [name, text] : {std::pair{"steps.csv", core::stepper::steps_csv(simulation)},
                                      {"contacts.csv", core::stepper::contacts_csv(simulation, names)},
-                                     {"drives.csv", core::stepper::drives_csv(simulation, names)}}) {
+                                     {"drives.csv", core::stepper::drives_csv(simulation, names)}})
+        tables.emplace_back(name, whole_table(name, text, options, earlier));
+    Errors errors =
+        core::stepper::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
+    if (!errors.empty()) return errors;
+    for (const auto& [name, text] : tables) {
         errors = core::base::write_file_atomically(folder / name, text);
         if (!errors.empty()) return errors;
     }
@@ -120,7 +132,7 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
     json["peak_memory_bytes"] = peak_memory_bytes();
     if (!options.out.empty()) {
         json["out"] = options.out;
-        const Errors errors = write_outputs(options.out, model, simulation, loaded->scene_path, json);
+        const Errors errors = write_outputs(options, model, simulation, earlier, loaded->scene_path, json);
         if (!errors.empty()) return console.input_errors(errors);
     }
     if (!options.poses.empty()) {

@@ -128,3 +128,19 @@ TEST_CASE("tables have a header and a row per step", "[step_outputs]") {
     CHECK(contacts.find("ground,\"box, \"\"big\"\"\",") != std::string::npos);
     CHECK(columns(drives_csv(simulation, names)) == 7);
 }
+
+TEST_CASE("tables of a run that was taken up again are those of one that was never cut", "[step_outputs]") {
+    const model::Model model = model_of({ground_plate(), box_at("two\nlines", Vector3(0, 0, 0.0508))});
+    const std::vector<std::string> names{"ground", "two\nlines"};
+    const Simulation whole = run(model, 7);
+    // The first run got to step 5; its checkpoint was at 3.
+    Simulation earlier = whole, later = whole;
+    earlier.outputs.resize(5);
+    earlier.report.steps.resize(5);
+    later.outputs.erase(later.outputs.begin(), later.outputs.begin() + 3);
+    const double until = 3.5 * model.timestep;
+    CHECK(joined_table(steps_csv(earlier), steps_csv(later), until) == steps_csv(whole));
+    CHECK(joined_table(contacts_csv(earlier, names), contacts_csv(later, names), until) == contacts_csv(whole, names));
+    CHECK(joined_table("time,other\n0.01,2\n", steps_csv(later), until) == steps_csv(later));
+    CHECK(joined_table("", steps_csv(later), until) == steps_csv(later));
+}
