@@ -193,12 +193,12 @@ void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandi
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
     const double activation = model.dmin + model.dhat;
-    std::vector<SweptBody> swept;
-    std::vector<geometry::Box> boxes;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        swept.push_back(swept_body(model.bodies[i], segments[i]));
-        boxes.push_back(swept_box(swept.back(), 0.5 * (activation + allowance)));
-    }
+    std::vector<SweptBody> swept(segments.size());
+    std::vector<geometry::Box> boxes(segments.size());
+    base::parallel_for(static_cast<int>(segments.size()), pairs_a_piece, [&](int i) {
+        swept[i] = swept_body(model.bodies[i], segments[i]);
+        boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
+    });
     candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes));
 
     base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_piece, [&](int k) {

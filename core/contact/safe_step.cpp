@@ -2,8 +2,10 @@
 #include "fettle/core/contact/safe_step.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
@@ -19,6 +21,11 @@ struct Limits {
     double kept_most;      // and never has to keep more than this [m]
 };
 
+constexpr double rounding = 1e-14;  // of world positions, relative to their size
+constexpr int pairs_a_piece = 8;    // pairs of bodies that a thread takes at a time
+
+// What is common to all pairs of bodies. Each pair of primitives has a fraction of its own, proven free, and the least of all is wanted;
+// which pairs are looked at closely depends on how far the search has come, on all threads, but none of those passed over has the least.
 class StepSearch {
 public:
     StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits)
@@ -26,12 +33,37 @@ public:
         for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
     }
 
-    void visit(const BodyPairCandidates& list) {
+    SafeStep longest(const Candidates& candidates) {
+        return base::ordered_reduce(
+            static_cast<int>(candidates.pairs.size()), pairs_a_piece, SafeStep{},
+            [&](int begin, int end) {
+                SafeStep shortest;
+                for (int k = begin; k < end; ++k) visit(candidates.pairs[k], shortest);
+                return shortest;
+            },
+            [](SafeStep&& so_far, SafeStep&& piece) { return piece.fraction < so_far.fraction ? piece : so_far; });
+    }
+
+    // Is the least fraction 1?
+    bool is_free(const Candidates& candidates) {
+        base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_piece, [&](int k) {
+            SafeStep shortest;
+            if (least_ == 1) visit(candidates.pairs[k], shortest);
+        });
+        return least_ == 1;
+    }
+
+private:
+    void visit(const BodyPairCandidates& list, SafeStep& shortest) {
         if (list.empty()) return;
         const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_);
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;
+        const auto check = [&](PairType type, int first, int second, const PairVertices& X) {
+            const double fraction = free_fraction(type, first, second, X);
+            if (fraction < shortest.fraction) shortest = {fraction, first, second};
+        };
         for (const auto& [v, t, distance] : list.vertex_triangle) {
             if (distance > reach) break;
             const geometry::Triangle& c = b.hierarchy->faces()[t];
@@ -49,11 +81,8 @@ public:
         }
     }
 
-    const SafeStep& result() const { return result_; }
-
-private:
-    void check(PairType type, int first, int second, const PairVertices& X) {
-        if (result_.fraction == 0) return;
+    // The pair's fraction, or some larger one than the least of all.
+    double free_fraction(PairType type, int first, int second, const PairVertices& X) {
         const PathSegment &sa = segments_[first], &sb = segments_[second];
         PairVertices x;
         double radius_a = 0, radius_b = 0;
@@ -64,39 +93,37 @@ private:
             radius = std::max(radius, X[i].squaredNorm());
         }
         // A proven lower bound of the distance at the start, and of what the pair can lose: most pairs need no more.
-        const double distance = distance_lower_bound(type, x) - rounding_ * (x[0].norm() + x[3].norm());
+        const double distance = distance_lower_bound(type, x) - rounding * (x[0].norm() + x[3].norm());
         const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
-        const double travel = (sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * std::sqrt(radius_a) +
-                              sb.rotation_vector_step.norm() * std::sqrt(radius_b);
-        if (distance > kept + result_.fraction * travel * (1 + 1e-12)) return;
+        const double travel =
+            (1 + 1e-12) * ((sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * std::sqrt(radius_a) +
+                           sb.rotation_vector_step.norm() * std::sqrt(radius_b));
+        if (distance > kept + travel) return 1;
+        const double surely_free = distance > kept ? (1 - 1e-12) * (distance - kept) / travel : 0;
+        if (surely_free > least_) return 1;
         // Always the whole segment: a part of it would be another path, by rounding.
         const CurvedCcdResult ccd = curved_ccd(type, sa, sb, X, kept);
-        if (ccd.hit && ccd.toi < result_.fraction) result_ = {ccd.toi, first, second};
+        const double fraction = ccd.hit ? std::max(ccd.toi, surely_free) : 1;
+        for (double least = least_; fraction < least && !least_.compare_exchange_weak(least, fraction);) {
+        }
+        return fraction;
     }
 
-    static constexpr double rounding_ = 1e-14;  // of world positions, relative to their size
     const model::Model& model_;
     const std::vector<PathSegment>& segments_;
     const Limits limits_;
     std::vector<Pose> starts_;
-    SafeStep result_;
+    std::atomic<double> least_ = 1;  // so far, on all threads
 };
 
 }  // namespace
 
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
-    StepSearch search(model, segments, {0.1, 0.25 * model.dhat});
-    for (const BodyPairCandidates& list : candidates.pairs) search.visit(list);
-    return search.result();
+    return StepSearch(model, segments, {0.1, 0.25 * model.dhat}).longest(candidates);
 }
 
 bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
-    StepSearch search(model, segments, {0.01, 0.01 * model.dhat});
-    for (const BodyPairCandidates& list : candidates.pairs) {
-        search.visit(list);
-        if (search.result().fraction < 1) return false;
-    }
-    return true;
+    return StepSearch(model, segments, {0.01, 0.01 * model.dhat}).is_free(candidates);
 }
 
 }  // namespace fettle::core::contact

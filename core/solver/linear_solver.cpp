@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <functional>
 
 #include "fettle/core/base/contract.hpp"
 
@@ -95,26 +96,27 @@ private:
         if (matrix_ && pattern == pattern_) return;
         pattern_ = std::move(pattern);
         release();
-        std::vector<std::pair<int, int>> entries;  // (column, row)
-        for_each_lower_entry(hessian, dofs, [&](int row, int column, double) { entries.emplace_back(column, row); });
-        std::vector<std::pair<int, int>> unique = entries;
-        std::sort(unique.begin(), unique.end());
-        unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
-        position_count_ = unique.size();
+        FETTLE_ASSERT(std::adjacent_find(pattern_.begin(), pattern_.end(), std::greater_equal<>()) == pattern_.end(),
+                      "blocks out of order");
+        // Blocks come by columns, then rows, so each column's entries come in order: count them, then put each behind the one before.
         const auto n = static_cast<std::size_t>(dofs.count);
+        std::vector<int> next(n + 1, 0);
+        position_count_ = 0;
+        for_each_lower_entry(hessian, dofs, [&](int, int column, double) {
+            ++next[static_cast<std::size_t>(column) + 1];
+            ++position_count_;
+        });
         matrix_ = cholmod_allocate_sparse(n, n, std::max<std::size_t>(1, position_count_), 1, 1, -1, CHOLMOD_REAL, &common_);
         FETTLE_ASSERT(matrix_ != nullptr, "CHOLMOD is out of memory");
-        int* starts = static_cast<int*>(matrix_->p);
+        for (std::size_t j = 0; j < n; ++j) next[j + 1] += next[j];
+        std::copy(next.begin(), next.end(), static_cast<int*>(matrix_->p));
         int* rows = static_cast<int*>(matrix_->i);
-        std::fill(starts, starts + n + 1, 0);
-        for (std::size_t k = 0; k < position_count_; ++k) {
-            rows[k] = unique[k].second;
-            ++starts[unique[k].first + 1];
-        }
-        for (std::size_t j = 0; j < n; ++j) starts[j + 1] += starts[j];
         position_.clear();
-        for (const auto& e : entries)
-            position_.push_back(static_cast<std::size_t>(std::lower_bound(unique.begin(), unique.end(), e) - unique.begin()));
+        for_each_lower_entry(hessian, dofs, [&](int row, int column, double) {
+            int& at = next[static_cast<std::size_t>(column)];
+            rows[at] = row;
+            position_.push_back(static_cast<std::size_t>(at++));
+        });
         factor_ = cholmod_analyze(matrix_, &common_);
         FETTLE_ASSERT(factor_ != nullptr, "CHOLMOD could not analyse the Hessian");
     }
