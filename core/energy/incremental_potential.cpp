@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/inertia.hpp"
 
 namespace fettle::core::energy {
@@ -14,6 +15,8 @@ namespace {
 
 using kinematics::ChartPoint;
 using kinematics::Pose;
+
+constexpr int bodies_a_piece = 16;  // that a thread takes at a time
 
 bool has_free_dof(const model::Body& body) {
     for (int k = 0; k < 6; ++k)
@@ -84,10 +87,10 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
     contact::add_barrier_derivatives(contacts, poses, problem.barrier, kind, d.gradients, d.contact_hessian);
     contact::add_friction_derivatives(problem.friction, poses, kind, d.gradients, d.contact_hessian);
     d.force_magnitude.assign(n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
+    base::parallel_for(static_cast<int>(n), bodies_a_piece, [&](int i) {
         const model::Body& body = problem.model->bodies[i];
         d.force_magnitude[i] = d.gradients[i].force.norm();
-        if (!has_free_dof(body)) continue;
+        if (!has_free_dof(body)) return;
         kinematics::PoseGradient inertia;
         add_inertia_gradient(poses[i], problem.pose_hat[i], body.moments, inertia);
         d.gradients[i].force += inertia.force - problem.weight * body.force;
@@ -95,7 +98,7 @@ PoseDerivatives pose_derivatives(const StepProblem& problem, const std::vector<P
         const double lever = std::max(body.radius, problem.model->dhat);
         d.force_magnitude[i] +=
             inertia.force.norm() + inertia.arm.norm() / lever + problem.weight * (body.force.norm() + body.torque.norm() / lever);
-    }
+    });
     return d;
 }
 
@@ -107,7 +110,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     out.gradient.resize(n);
     out.hessian.diagonal.resize(n);
     std::vector<Matrix6> to_tangent(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    base::parallel_for(static_cast<int>(n), bodies_a_piece, [&](int i) {
         const model::Body& body = problem.model->bodies[i];
         const Vector3& theta = points[i].rotation_vector;
         to_tangent[i] = chart_to_tangent(theta);
@@ -118,9 +121,12 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         own.bottomRightCorner<3, 3>() += chart_curvature(d.gradients[i].arm, kinematics::rotation_derivatives(theta));
         if (kind == contact::HessianKind::projected) own = positive_part(own);
         out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.contact_hessian.diagonal[i] * to_tangent[i];
-    }
+    });
     out.hessian.off_diagonal = std::move(d.contact_hessian.off_diagonal);
-    for (kinematics::OffDiagonalBlock& b : out.hessian.off_diagonal) b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
+    base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {
+        kinematics::OffDiagonalBlock& b = out.hessian.off_diagonal[k];
+        b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
+    });
     out.force_magnitude = std::move(d.force_magnitude);
     return out;
 }
