@@ -77,27 +77,34 @@ void look_for_piercing(const Corners& a, const Corners& b, ElementPairDistance& 
     }
 }
 
-// Keeps the closest of the pairs of features it is shown.
+// Keeps the closest of the pairs of features it is shown. Those that the plane across the best so far keeps as far apart are not looked at:
+// once it is the closest, all of them.
 class Closest {
 public:
     Closest(const Corners& a, const Corners& b) : a_(a), b_(b) { closest_.distance_squared = std::numeric_limits<double>::infinity(); }
 
     void vertex_of_a(int i) {
+        if (is_behind(along_a_[i], along_b_.maxCoeff())) return;
         const auto c = geometry::point_triangle_closest(a_.x.col(i), b_.x.col(0), b_.x.col(1), b_.x.col(2));
         if (!take(c, Primitive::vertex, i, Primitive::triangle, 0)) return;
         best_.point_a = a_.x.col(i);
         best_.point_b = -(b_.x * Vector3(c.weight[1], c.weight[2], c.weight[3]));
         best_.difference = c.difference;
+        look_along(best_.difference);
     }
     void vertex_of_b(int j) {
+        if (is_behind(along_a_.minCoeff(), along_b_[j])) return;
         const auto c = geometry::point_triangle_closest(b_.x.col(j), a_.x.col(0), a_.x.col(1), a_.x.col(2));
         if (!take(c, Primitive::triangle, 0, Primitive::vertex, j)) return;
         best_.point_b = b_.x.col(j);
         best_.point_a = -(a_.x * Vector3(c.weight[1], c.weight[2], c.weight[3]));
         best_.difference = -c.difference;
+        look_along(best_.difference);
     }
     // A vertex counts as an edge of length 0.
     void edges(Primitive kind_a, int i, Primitive kind_b, int j) {
+        const int k = kind_a == Primitive::edge ? (i + 1) % 3 : i, l = kind_b == Primitive::edge ? (j + 1) % 3 : j;
+        if (is_behind(std::min(along_a_[i], along_a_[k]), std::max(along_b_[j], along_b_[l]))) return;
         const Vector3 ea0 = a_.x.col(i), ea1 = kind_a == Primitive::edge ? edge_end(a_, i) : ea0;
         const Vector3 eb0 = b_.x.col(j), eb1 = kind_b == Primitive::edge ? edge_end(b_, j) : eb0;
         const auto c = geometry::edge_edge_closest(ea0, ea1, eb0, eb1);
@@ -105,6 +112,7 @@ public:
         best_.point_a = c.weight[0] * ea0 + c.weight[1] * ea1;
         best_.point_b = -c.weight[2] * eb0 - c.weight[3] * eb1;
         best_.difference = c.difference;
+        look_along(best_.difference);
     }
     ElementPairDistance result() {
         best_.distance = best_.difference.norm();
@@ -122,7 +130,23 @@ private:
         return true;
     }
 
+    // n.x of all corners, n the direction of the difference.
+    void look_along(const Vector3& difference) {
+        const double distance = difference.norm();
+        if (!(distance > 0)) {
+            apart_ = std::numeric_limits<double>::infinity();
+            return;
+        }
+        const Vector3 n = difference / distance;
+        along_a_ = a_.x.transpose() * n;
+        along_b_ = b_.x.transpose() * n;
+        apart_ = distance * (1 - 1e-13);
+    }
+    bool is_behind(double least_of_a, double most_of_b) const { return least_of_a - most_of_b >= apart_; }
+
     const Corners &a_, &b_;
+    Vector3 along_a_ = Vector3::Zero(), along_b_ = Vector3::Zero();
+    double apart_ = std::numeric_limits<double>::infinity();
     geometry::ClosestPoints closest_;
     ElementPairDistance best_;
 };

@@ -39,14 +39,6 @@ void SegmentSearch::try_roots() {
     for (int i = 0; i < roots; ++i) try_pieces(i, 0, 0, recorder_.root(intervals_[i].segment));
 }
 
-void SegmentSearch::add_elements(int segment, int a, int b, double lower) {
-    Entry entry;
-    entry.interval = segment;
-    entry.a = a;
-    entry.b = b;
-    keep(entry, lower, {}, true);
-}
-
 void SegmentSearch::add_interval(int segment) {
     const PairSegment& moving = front_.segments[static_cast<std::size_t>(segment)];
     const int start = add_instant(moving, 0);
@@ -84,7 +76,7 @@ void SegmentSearch::keep(const Entry& entry, double lower, const LeafPlane& plan
     front_.push(lower, EntryKind::segment, entries_.add(entry));
 }
 
-void SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
+double SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
     ++front_.result.evaluations;
     const Interval& interval = intervals_[interval_index];
     const IntervalBound& prepared = bounds_[interval_index];
@@ -99,7 +91,10 @@ void SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
     const double slack = segment_of(interval).slack, motion = prepared.motion(piece_of_a, piece_of_b);
     const double at_once = gap.apart - motion - slack;
     const bool elements = piece_of_a.is_element() && piece_of_b.is_element();
-    if (at_once >= front_.cutoff() || (interval.start == interval.end && !elements)) return keep(entry, at_once, plane, true);
+    if (at_once >= front_.cutoff() || (interval.start == interval.end && !elements)) {
+        keep(entry, at_once, plane, true);
+        return at_once;
+    }
     const SegmentBound bound = prepared.along(gap.direction, piece_of_a, piece_of_b, elements ? &corners_a(a) : nullptr,
                                               elements ? &corners_b(b) : nullptr, front_.options.deviation_scale);
     if (!elements && can_halve(interval)) {
@@ -107,7 +102,9 @@ void SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
         entry.halve = bound.at_ends - bound.lower > 0.5 * size || (gap.apart <= 0 && motion > size);
     }
     // With the exact values of their corners elements may do better than at once, boxes with an overlap worse.
-    keep(entry, std::max(bound.lower, at_once), plane, true);
+    const double lower = std::max(bound.lower, at_once);
+    keep(entry, lower, plane, true);
+    return lower;
 }
 
 SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1) {

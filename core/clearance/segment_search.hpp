@@ -18,10 +18,8 @@ public:
 
     /// Both whole bodies, over every segment.
     void try_roots();
-    /// Two pieces over a whole segment.
-    void try_segment(int segment, int a, int b) { try_pieces(segment, a, b, recorder_.root(segment)); }
-    /// Queues two elements over a whole segment, during which `lower` bounds their distance.
-    void add_elements(int segment, int a, int b, double lower);
+    /// Two pieces over a whole segment; returns a lower bound of their distance there.
+    double try_segment(int segment, int a, int b) { return try_pieces(segment, a, b, recorder_.root(segment)); }
     /// Halves an entry that the queue gave back, in time or in space, unless its bound has become good enough.
     void split(int entry, double lower);
 
@@ -58,7 +56,7 @@ private:
     int add_instant(const PairSegment& segment, double s);
     void make_halves(int index);
     void keep(const Entry& entry, double lower, const LeafPlane& plane, bool splittable);
-    void try_pieces(int interval_index, int a, int b, int cell);
+    double try_pieces(int interval_index, int a, int b, int cell);
     SegmentBound elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1);
     void try_elements(Entry entry, const Vector3& n0, const Vector3& n1);
     Separation measure(int segment_index, const Instant& at, int a, int b);

@@ -115,11 +115,12 @@ void SpanSearch::split_space(const Entry& entry) {
     try_pieces(half);
 }
 
-void SpanSearch::halve_span(const Entry& entry, int span) {
+// Returns a lower bound over the span, if there is more than before.
+double SpanSearch::halve_span(const Entry& entry, int span) {
     const SpanGroup& group = spans_.group(entry.group);
-    if (group.level > 0) return try_pieces(whole_group(group.first + span, entry.a, entry.b, entry.lower.spans[span]));
-    if (!are_elements(entry)) return segments_.try_segment(group.first + span, entry.a, entry.b);
-    segments_.add_elements(group.first + span, entry.a, entry.b, entry.lower.spans[span]);
+    if (group.level == 0) return segments_.try_segment(group.first + span, entry.a, entry.b);
+    try_pieces(whole_group(group.first + span, entry.a, entry.b, entry.lower.spans[span]));
+    return entry.lower.spans[span];
 }
 
 // Along the direction of the closest points at the most promising node.
@@ -133,10 +134,13 @@ void SpanSearch::measure_elements(Entry entry) {
     const Separation found = measure_at(nearest);
     tighten(entry, unit_direction(frame.transpose() * (exchanged_ ? -found.direction : found.direction)), found.apart);
     close(entry);
+    for (int j = 0; j < group.count; ++j) {
+        if ((entry.open_spans >> j & 1) == 0) continue;
+        const double lower = halve_span(entry, j);
+        for (const int node : {j, j + 1}) entry.lower.nodes[node] = std::max(entry.lower.nodes[node], lower);
+    }
     for (int j = 0; j <= group.count; ++j)
         if (j != nearest && (entry.open_nodes >> j & 1) != 0 && entry.lower.nodes[j] < front_.sampling_cutoff()) measure_at(j);
-    for (int j = 0; j < group.count; ++j)
-        if ((entry.open_spans >> j & 1) != 0) halve_span(entry, j);
 }
 
 }  // namespace fettle::core::clearance

@@ -42,7 +42,7 @@ private:
     void close(Entry& entry);
     void try_pieces(Entry entry);
     void split_space(const Entry& entry);
-    void halve_span(const Entry& entry, int span);
+    double halve_span(const Entry& entry, int span);
     void measure_elements(Entry entry);
 
     SearchFront& front_;
