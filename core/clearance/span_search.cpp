@@ -123,24 +123,36 @@ double SpanSearch::halve_span(const Entry& entry, int span) {
     return entry.lower.spans[span];
 }
 
-// Along the direction of the closest points at the most promising node.
-void SpanSearch::measure_elements(Entry entry) {
-    const SpanGroup& group = spans_.group(entry.group);
-    const auto measure_at = [&](int node) { return segments_.measure_at(group.node[static_cast<std::size_t>(node)], entry.a, entry.b); };
-    const int nearest = entry.nearest;
-    const SegmentEnd& place = group.node[static_cast<std::size_t>(nearest)];
+// Bounds along the direction of the closest points at a node, which is an upper bound, too.
+void SpanSearch::measure_at(Entry& entry, int node) {
+    const SegmentEnd& place = spans_.group(entry.group).node[static_cast<std::size_t>(node)];
     const PairSegment& segment = front_.segments[static_cast<std::size_t>(place.segment)];
     const Matrix3& frame = (exchanged_ ? segment.a : segment.b).poses[place.at_end ? 2 : 0].rotation;
-    const Separation found = measure_at(nearest);
+    const Separation found = segments_.measure_at(place, entry.a, entry.b);
+    entry.nearest = node;
+    entry.open_nodes &= ~(1U << node);
     tighten(entry, unit_direction(frame.transpose() * (exchanged_ ? -found.direction : found.direction)), found.apart);
     close(entry);
+}
+
+void SpanSearch::measure_elements(Entry entry) {
+    const SpanGroup& group = spans_.group(entry.group);
+    measure_at(entry, entry.nearest);
     for (int j = 0; j < group.count; ++j) {
         if ((entry.open_spans >> j & 1) == 0) continue;
         const double lower = halve_span(entry, j);
         for (const int node : {j, j + 1}) entry.lower.nodes[node] = std::max(entry.lower.nodes[node], lower);
     }
-    for (int j = 0; j <= group.count; ++j)
-        if (j != nearest && (entry.open_nodes >> j & 1) != 0 && entry.lower.nodes[j] < front_.sampling_cutoff()) measure_at(j);
+    entry.open_spans = 0;
+    close(entry);
+    while (entry.open_nodes != 0) {
+        int nearest = 0;
+        for (int j = 0; j <= group.count; ++j)
+            if ((entry.open_nodes >> j & 1) != 0 &&
+                ((entry.open_nodes >> nearest & 1) == 0 || entry.lower.nodes[j] < entry.lower.nodes[nearest]))
+                nearest = j;
+        measure_at(entry, nearest);
+    }
 }
 
 }  // namespace fettle::core::clearance

@@ -43,6 +43,7 @@ private:
     void try_pieces(Entry entry);
     void split_space(const Entry& entry);
     double halve_span(const Entry& entry, int span);
+    void measure_at(Entry& entry, int node);
     void measure_elements(Entry entry);
 
     SearchFront& front_;

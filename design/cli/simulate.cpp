@@ -60,6 +60,7 @@ Json certified_minimum(const core::model::Model& model, const Simulation& simula
     core::clearance::ClearanceOptions options;
     options.motion = true;
     options.tolerance = 1e-2 * seen;
+    options.sample_nodes = false;
     double minimum = std::numeric_limits<double>::infinity();
     for (const auto& pair : core::clearance::certify_clearance(model, simulation.trajectory, pairs, options))
         minimum = std::min(minimum, pair.lower);

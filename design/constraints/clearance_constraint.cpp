@@ -29,6 +29,7 @@ std::pair<int, int> window_steps(int steps, int window, int windows) {
 objectives::Quantity ClearanceConstraint::value(const objectives::Simulated& s) const {
     core::clearance::ClearanceOptions options;
     options.tolerance = s.clearance_tolerance;
+    options.sample_nodes = false;
     options.motion = requirement_.motion;
     const std::vector<core::clearance::PairRequest> request{{requirement_.a, requirement_.b, bounds().lower}};
     core::clearance::PairClearance pair;

@@ -8,6 +8,7 @@ namespace fettle::design::objectives {
 Quantity Play::value(const Simulated& s) const {
     core::clearance::ClearanceOptions options;
     options.tolerance = s.clearance_tolerance;
+    options.sample_nodes = false;
     const auto pair = core::clearance::certify_clearance(s.model, s.trajectory, {{a_, b_, 0}}, options).front();
     return {pair.upper, pair.lower, pair.upper, pair};
 }
