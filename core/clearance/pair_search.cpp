@@ -48,10 +48,10 @@ private:
             result.complete = result.evaluations < front_.options.max_evaluations && !is_stopped();
             if (!result.complete) break;
             const SearchFront::Key key = front_.pop();
-            if (key.kind == EntryKind::spans) {
-                spans_->split(key.entry);
+            if (key.is_spans != 0) {
+                spans_->split(static_cast<int>(key.entry));
             } else {
-                segments_.split(key.entry, key.lower);
+                segments_.split(static_cast<int>(key.entry), key.lower);
             }
         }
     }

@@ -69,22 +69,14 @@ void set_span(SpanGroup& group, int j, const Rest& rest, const Rest& step, doubl
     group.step_shift[j] = scale * step.shift * rounded_up;
 }
 
-// Values at the next node.
-Lanes shifted(const Lanes& x) {
-    Lanes next;
-    next.head<most_spans>() = x.tail<most_spans>();
-    next[most_spans] = x[most_spans];
-    return next;
-}
+// Four nodes at a time, which fit the registers; blocks without a wanted node are left out.
+constexpr int block_size = 4;
+using Block = Eigen::Array<double, block_size, 1>;
+using Blocks = std::array<Block, 3>;
+static_assert((most_spans + 1) % block_size == 0);
 
-Lanes dot(const Lanes& x, const Lanes& y, const Lanes& z, const Vector3& v) { return v[0] * x + v[1] * y + v[2] * z; }
-Lanes dot(const Directions& n, const Vector3& v) { return dot(n[0], n[1], n[2], v); }
-
-// R_j^T n_j.
-Directions seen_from_a(const SpanGroup& group, const Directions& n) {
-    const auto& r = group.rotation;
-    return {n[0] * r[0] + n[1] * r[3] + n[2] * r[6], n[0] * r[1] + n[1] * r[4] + n[2] * r[7], n[0] * r[2] + n[1] * r[5] + n[2] * r[8]};
-}
+auto block_of(const Lanes& lanes, int block) { return lanes.segment<block_size>(block * block_size); }
+[[gnu::always_inline]] inline Block dot(const Blocks& n, const Vector3& v) { return v[0] * n[0] + v[1] * n[1] + v[2] * n[2]; }
 
 // The chain of nodes of all segments, from which groups of every level are made.
 struct Chain {
@@ -170,46 +162,63 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, double ra
     }
 }
 
-Directions directions_along(const SpanGroup& group, int node, const Vector3& n, const Vector3& center, double rate) {
-    Directions directions{Lanes::Constant(n[0]), Lanes::Constant(n[1]), Lanes::Constant(n[2])};
-    if (rate == 0) return directions;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes* row = &group.rotation[3 * k];
-        const Lanes along = dot(row[0], row[1], row[2], center) + group.offset[k];
-        directions[k] += rate * (along - along[node]);
+// `at_nodes` is told n_j and R_j^T n_j: the rest of f_j, beside n_j.p_j.
+template <class AtNodes>
+SpanBounds RelativeSpans::bounds(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted,
+                                 const AtNodes& at_nodes) const {
+    const auto& r = group.rotation;
+    const RelativePose at = group.at(plane.node);
+    const Vector3 here = at.rotation * a.center + at.offset;
+    Eigen::Array<double, most_spans + 2, 1> f = Eigen::Array<double, most_spans + 2, 1>::Zero();  // one more, so that each has a next one
+    std::array<Eigen::Array<double, most_spans + 2, 1>, 3> directions{f, f, f};
+    for (int i = 0; i * block_size <= most_spans; ++i) {
+        if ((wanted >> (i * block_size) & ((1U << block_size) - 1)) == 0) continue;
+        Blocks n{Block::Constant(plane.n[0]), Block::Constant(plane.n[1]), Block::Constant(plane.n[2])};
+        if (plane.rate != 0) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Block goes = a.center[0] * block_of(r[3 * k], i) + a.center[1] * block_of(r[3 * k + 1], i) +
+                                   a.center[2] * block_of(r[3 * k + 2], i) + block_of(group.offset[k], i);
+                n[k] += plane.rate * (goes - here[static_cast<int>(k)]);
+            }
+            const Block squared = n[0].square() + n[1].square() + n[2].square();
+            const Block scale = (1 - 8 * unit_roundoff) / squared.max(Block::Constant(1e-3)).sqrt();
+            for (std::size_t k = 0; k < 3; ++k) directions[k].segment<block_size>(i * block_size) = n[k] *= scale;
+        }
+        Blocks m;
+        for (std::size_t k = 0; k < 3; ++k) m[k] = n[0] * block_of(r[k], i) + n[1] * block_of(r[3 + k], i) + n[2] * block_of(r[6 + k], i);
+        const Block along = n[0] * block_of(group.offset[0], i) + n[1] * block_of(group.offset[1], i) + n[2] * block_of(group.offset[2], i);
+        f.segment<block_size>(i * block_size) = along + at_nodes(n, m);
     }
-    const Lanes squared = directions[0].square() + directions[1].square() + directions[2].square();
-    const Lanes scale = (1 - 8 * unit_roundoff) / squared.max(Lanes::Constant(1e-3)).sqrt();
-    for (Lanes& d : directions) d *= scale;
-    return directions;
-}
-
-SpanBounds RelativeSpans::bounds(const SpanGroup& group, const Directions& n, const Lanes& at_nodes, double radius) const {
-    const double outer = radius * rounded_up;
-    const Lanes turned =
-        ((shifted(n[0]) - n[0]).square() + (shifted(n[1]) - n[1]).square() + (shifted(n[2]) - n[2]).square()).sqrt() * (0.25 * rounded_up);
-    const Lanes rest = group.rest_shift + outer * group.rest_turn + turned * (group.step_shift + outer * group.step_turn);
-    return {(at_nodes.min(shifted(at_nodes)) - rest) * shrink_ - slack_, at_nodes * shrink_ - slack_};
-}
-
-SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const Directions& n, const Piece& a, const Piece& b) const {
-    const Directions m = seen_from_a(group, n);
-    Lanes f = dot(m, a.center) - dot(n, b.center);
-    for (int k = 0; k < 3; ++k) {
-        f += n[static_cast<std::size_t>(k)] * group.offset[static_cast<std::size_t>(k)];
-        f -= a.half_extent[k] * dot(m, a.axes.col(k)).abs() + b.half_extent[k] * dot(n, b.axes.col(k)).abs();
+    const double outer = a.radius * rounded_up;
+    Lanes rest = group.rest_shift + outer * group.rest_turn;
+    if (plane.rate != 0) {
+        Lanes squared = Lanes::Zero();
+        for (const auto& n : directions) squared += (n.tail<most_spans + 1>() - n.head<most_spans + 1>()).square();
+        rest += squared.sqrt() * (0.25 * rounded_up) * (group.step_shift + outer * group.step_turn);
     }
-    return bounds(group, n, f, a.radius);
+    const Lanes nodes = f.head<most_spans + 1>();
+    return {(nodes.min(f.tail<most_spans + 1>()) - rest) * shrink_ - slack_, nodes * shrink_ - slack_};
 }
 
-SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const Directions& n, const Piece& a, const Corners& element_a,
-                                      const Corners& element_b) const {
-    const Directions m = seen_from_a(group, n);
-    Lanes low = dot(m, element_a.x.col(0)), high = dot(n, element_b.x.col(0));
-    for (int k = 1; k < element_a.count; ++k) low = low.min(dot(m, element_a.x.col(k)));
-    for (int k = 1; k < element_b.count; ++k) high = high.max(dot(n, element_b.x.col(k)));
-    const Lanes f = (n[0] * group.offset[0] + n[1] * group.offset[1] + n[2] * group.offset[2]) + (low - high);
-    return bounds(group, n, f, a.radius);
+SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,
+                                   std::uint32_t wanted) const {
+    return bounds(group, plane, a, wanted, [&](const Blocks& n, const Blocks& m) {
+        Block f = dot(m, a.center) - dot(n, b.center);
+        for (int k = 0; k < 3; ++k) f -= a.half_extent[k] * dot(m, a.axes.col(k)).abs() + b.half_extent[k] * dot(n, b.axes.col(k)).abs();
+        return f;
+    });
+}
+
+SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
+                                      const Corners& element_b, std::uint32_t wanted) const {
+    return bounds(group, plane, a, wanted, [&](const Blocks& n, const Blocks& m) {
+        Block low = dot(m, element_a.x.col(0)), high = dot(n, element_b.x.col(0));
+        for (int k = 1; k < 3; ++k) {
+            low = low.min(dot(m, element_a.x.col(k)));
+            high = high.max(dot(n, element_b.x.col(k)));
+        }
+        return Block(low - high);
+    });
 }
 
 std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments) {

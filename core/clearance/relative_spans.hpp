@@ -23,6 +23,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "fettle/core/clearance/piece_bound.hpp"
@@ -32,6 +33,7 @@ namespace fettle::core::clearance {
 
 inline constexpr int most_spans = 15;
 using Lanes = Eigen::Array<double, most_spans + 1, 1>;  ///< one value per node of a group
+inline constexpr std::uint32_t all_nodes = (2U << most_spans) - 1;
 
 /// Of body a in b's frame.
 struct RelativePose {
@@ -60,12 +62,13 @@ struct SpanGroup {
 /// As separation() of two placed boxes, the direction in b's frame.
 Separation separation(const RelativePose& at, const Piece& a, const Piece& b);
 
-/// The vectors n_j.
-using Directions = std::array<Lanes, 3>;
-
-/// `n` at one node, turned at the others as `center` (a point of a) goes round b: by `rate` times its displacement across n.
-/// Contract: |n| <= 1.
-Directions directions_along(const SpanGroup& group, int node, const Vector3& n, const Vector3& center, double rate);
+/// The vectors n_j: n at one node, |n| <= 1, turned at the others as the center of a's piece goes round b: by `rate` times its displacement
+/// across n.
+struct TurningPlane {
+    int node = 0;
+    Vector3 n = Vector3::Zero();
+    double rate = 0;
+};
 
 /// Lower bounds; entries beyond the group's count mean nothing.
 struct SpanBounds {
@@ -85,12 +88,16 @@ public:
     /// The group that holds all segments.
     int root() const { return static_cast<int>(groups_.size()) - 1; }
 
-    SpanBounds of_boxes(const SpanGroup& group, const Directions& n, const Piece& a, const Piece& b) const;
-    SpanBounds of_elements(const SpanGroup& group, const Directions& n, const Piece& a, const Corners& element_a,
-                           const Corners& element_b) const;
+    /// Bounds at the nodes of `wanted` (bits), and over the spans between two of them.
+    SpanBounds of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,
+                        std::uint32_t wanted = all_nodes) const;
+    SpanBounds of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
+                           const Corners& element_b, std::uint32_t wanted = all_nodes) const;
 
 private:
-    SpanBounds bounds(const SpanGroup& group, const Directions& n, const Lanes& at_nodes, double radius) const;
+    template <class AtNodes>
+    SpanBounds bounds(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted,
+                      const AtNodes& at_nodes) const;
 
     std::vector<SpanGroup> groups_;  // level by level
     double slack_ = 0, shrink_ = 1, mean_rest_ = 0;

@@ -46,9 +46,9 @@ public:
     /// What the heap moves about: the entries themselves stay where they are.
     struct Key {
         double lower = 0;
-        std::int64_t order = 0;  ///< of making: breaks ties the same way on every run
-        int entry = 0;
-        EntryKind kind = EntryKind::segment;
+        std::uint32_t order = 0;  ///< of making: breaks ties the same way on every run
+        std::uint32_t entry : 31 = 0;
+        std::uint32_t is_spans : 1 = 0;
     };
 
     /// `within` >= 0: everything as near as that is wanted, instead of the least distance.
@@ -80,7 +80,7 @@ public:
     void set_aside(double lower) { aside_ = std::min(aside_, lower); }
 
     void push(double lower, EntryKind kind, int entry) {
-        queue_.push_back({lower, made_++, entry, kind});
+        queue_.push_back({lower, made_++, static_cast<std::uint32_t>(entry), kind == EntryKind::spans});
         std::push_heap(queue_.begin(), queue_.end(), Later{});
     }
     Key pop() {
@@ -120,7 +120,7 @@ private:
     double within_ = -1;
     std::vector<Key> queue_;   // a heap
     double aside_ = infinity;  // least bound of the entries that are not in the queue any more and were not split
-    std::int64_t made_ = 0;
+    std::uint32_t made_ = 0;
 };
 
 }  // namespace fettle::core::clearance

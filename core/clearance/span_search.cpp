@@ -2,12 +2,19 @@
 #include "fettle/core/clearance/span_search.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace fettle::core::clearance {
 namespace {
 
 constexpr double infinity = SearchFront::infinity;
+
+// Calls with the index of every bit that is set.
+template <class Call>
+void for_bits(std::uint32_t bits, const Call& call) {
+    for (; bits != 0; bits &= bits - 1) call(std::countr_zero(bits));
+}
 
 const Corners& corners(const PieceTree& tree, const Piece& piece) { return tree.elements[static_cast<std::size_t>(piece.first)].corners; }
 
@@ -48,40 +55,47 @@ void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart) {
     const PieceTree &tree_x = exchanged_ ? front_.b : front_.a, &tree_y = exchanged_ ? front_.a : front_.b;
     const SpanGroup& group = spans_.group(entry.group);
     const double reach = apart + x.size + y.size;
-    const Directions along = directions_along(group, entry.nearest, n, x.center, apart / (reach * reach));
-    const SpanBounds found = are_elements(entry) ? spans_.of_elements(group, along, x, corners(tree_x, x), corners(tree_y, y))
-                                                 : spans_.of_boxes(group, along, x, y);
-    entry.lower = {entry.lower.spans.max(found.spans), entry.lower.nodes.max(found.nodes)};
+    const TurningPlane plane{entry.nearest, n, apart / (reach * reach)};
     const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
+    const SpanBounds found = are_elements(entry) ? spans_.of_elements(group, plane, x, corners(tree_x, x), corners(tree_y, y), open)
+                                                 : spans_.of_boxes(group, plane, x, y, open);
+    entry.lower = {entry.lower.spans.max(found.spans), entry.lower.nodes.max(found.nodes)};
     double least = infinity;
-    for (int j = 0; j <= group.count; ++j) {
-        if ((open >> j & 1) == 0 || !(found.nodes[j] < least)) continue;
+    for_bits(open, [&](int j) {
+        if (!(found.nodes[j] < least)) return;
         least = found.nodes[j];
         entry.nearest = j;
-    }
+    });
 }
 
-void SpanSearch::close(Entry& entry) {
+// Returns the least bound of what stays open.
+double SpanSearch::close(Entry& entry) {
     const double enough = span_cutoff(spans_.group(entry.group)), sampling = front_.sampling_cutoff();
-    for (int j = 0; j <= most_spans; ++j) {
-        const std::uint32_t bit = 1U << j;
-        if ((entry.open_spans & bit) != 0 && entry.lower.spans[j] >= enough) {
-            front_.set_aside(entry.lower.spans[j]);
-            entry.open_spans ^= bit;
+    double least = infinity;
+    for_bits(entry.open_spans, [&](int j) {
+        const double lower = entry.lower.spans[j];
+        if (lower < enough) {
+            least = std::min(least, lower);
+        } else {
+            front_.set_aside(lower);
+            entry.open_spans ^= 1U << j;
         }
-        if ((entry.open_nodes & bit) != 0 && entry.lower.nodes[j] >= sampling) entry.open_nodes ^= bit;
-    }
+    });
+    for_bits(entry.open_nodes, [&](int j) {
+        const double lower = entry.lower.nodes[j];
+        if (lower < sampling) {
+            least = std::min(least, lower);
+        } else {
+            entry.open_nodes ^= 1U << j;
+        }
+    });
+    return least;
 }
 
 void SpanSearch::try_pieces(Entry entry) {
     const Separation gap = separation(spans_.group(entry.group).at(entry.nearest), moving(entry), fixed(entry));
     tighten(entry, gap.direction, gap.apart);
-    close(entry);
-    double least = infinity;
-    for (int j = 0; j <= most_spans; ++j) {
-        if ((entry.open_spans >> j & 1) != 0) least = std::min(least, entry.lower.spans[j]);
-        if ((entry.open_nodes >> j & 1) != 0) least = std::min(least, entry.lower.nodes[j]);
-    }
+    const double least = close(entry);
     if (least < infinity) front_.push(least, EntryKind::spans, entries_.add(entry));
 }
 
@@ -94,14 +108,13 @@ void SpanSearch::split(int index) {
     const SpanGroup& group = spans_.group(entry.group);
     const double size = piece_a(entry.a).size + piece_b(entry.b).size, enough = span_cutoff(group);
     const double radius = moving(entry).radius;
-    for (int j = 0; j < group.count; ++j) {
-        if ((entry.open_spans >> j & 1) == 0) continue;
+    for_bits(entry.open_spans, [&](int j) {
         const double at_ends = std::min(entry.lower.nodes[j], entry.lower.nodes[j + 1]);
         const bool goes_far = group.level > 0 && group.step_shift[j] + radius * group.step_turn[j] > size;
-        if (at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) continue;
+        if (at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) return;
         halve_span(entry, j);
         entry.open_spans ^= 1U << j;
-    }
+    });
     if (entry.open_spans != 0 || entry.open_nodes != 0) split_space(entry);
 }
 
@@ -136,21 +149,18 @@ void SpanSearch::measure_at(Entry& entry, int node) {
 }
 
 void SpanSearch::measure_elements(Entry entry) {
-    const SpanGroup& group = spans_.group(entry.group);
     measure_at(entry, entry.nearest);
-    for (int j = 0; j < group.count; ++j) {
-        if ((entry.open_spans >> j & 1) == 0) continue;
+    for_bits(entry.open_spans, [&](int j) {
         const double lower = halve_span(entry, j);
         for (const int node : {j, j + 1}) entry.lower.nodes[node] = std::max(entry.lower.nodes[node], lower);
-    }
+    });
     entry.open_spans = 0;
     close(entry);
     while (entry.open_nodes != 0) {
-        int nearest = 0;
-        for (int j = 0; j <= group.count; ++j)
-            if ((entry.open_nodes >> j & 1) != 0 &&
-                ((entry.open_nodes >> nearest & 1) == 0 || entry.lower.nodes[j] < entry.lower.nodes[nearest]))
-                nearest = j;
+        int nearest = std::countr_zero(entry.open_nodes);
+        for_bits(entry.open_nodes, [&](int j) {
+            if (entry.lower.nodes[j] < entry.lower.nodes[nearest]) nearest = j;
+        });
         measure_at(entry, nearest);
     }
 }

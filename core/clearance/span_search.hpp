@@ -39,7 +39,7 @@ private:
     const Piece& moving(const Entry& entry) const { return exchanged_ ? piece_b(entry.b) : piece_a(entry.a); }
     const Piece& fixed(const Entry& entry) const { return exchanged_ ? piece_a(entry.a) : piece_b(entry.b); }
     void tighten(Entry& entry, const Vector3& n, double apart);
-    void close(Entry& entry);
+    double close(Entry& entry);
     void try_pieces(Entry entry);
     void split_space(const Entry& entry);
     double halve_span(const Entry& entry, int span);

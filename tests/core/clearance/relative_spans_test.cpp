@@ -100,9 +100,7 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
         const int node = static_cast<int>(random() % static_cast<unsigned>(group.count + 1));
         const ElementPairDistance nearest = distance_at(group, node, a, b);
         const double rate = random() % 2 ? 1 / (nearest.distance + size) : 0;
-        const Directions n = directions_along(group, node, unit_direction(nearest.difference), piece_of(a).center, rate);
-        for (const Lanes& k : n) REQUIRE(k.isFinite().all());
-        CHECK((n[0].square() + n[1].square() + n[2].square()).maxCoeff() <= 1);
+        const TurningPlane n{node, unit_direction(nearest.difference), rate};
         const SpanBounds of_elements = spans.of_elements(group, n, piece_of(a), a, b),
                          of_boxes = spans.of_boxes(group, n, piece_of(a), piece_of(b));
         for (int j = 0; j < group.count; ++j) {
@@ -162,7 +160,7 @@ TEST_CASE("Bodies that move together are at rest for each other", "[clearance]")
     a.x.row(2).array() += 3;
     const SpanGroup& all = spans.group(spans.root());
     const ElementPairDistance nearest = distance_at(all, 0, a, b);
-    const Directions n = directions_along(all, 0, unit_direction(nearest.difference), piece_of(a).center, 0);
+    const TurningPlane n{0, unit_direction(nearest.difference), 0};
     const SpanBounds bounds = spans.of_elements(all, n, piece_of(a), a, b);
     // What is left are the segments' own terms of third order and of rounding; nothing grows with the number of segments.
     for (int j = 0; j < all.count; ++j) CHECK(bounds.spans[j] > nearest.distance - 0.01);
