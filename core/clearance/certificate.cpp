@@ -5,71 +5,42 @@
 #include <cmath>
 
 #include "fettle/core/base/atomic_file.hpp"
-#include "fettle/core/base/contract.hpp"
 #include "fettle/core/scene/json_document.hpp"
 #include "fettle/core/scene/json_keys.hpp"
+#include "fettle/core/scene/json_writer.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
 using base::ErrorCode;
 using scene::JsonNode;
+using scene::JsonWriter;
 
 const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};  // in the order of Primitive
 
-/// Appends JSON to a string. Only what this file needs.
-class Writer {
-public:
-    std::string text;
-
-    void number(double x) {
-        FETTLE_ASSERT(std::isfinite(x), "a certificate with a number that is not finite");
-        char buffer[32];
-        const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, x);
-        FETTLE_ASSERT(code == std::errc(), "a number longer than its buffer");
-        const std::string_view digits(buffer, static_cast<std::size_t>(end - buffer));
-        text += digits == "-0" ? "-0.0" : digits;  // readers take "-0" for a whole number, which has no sign
-    }
-    void key(const char* name) {
-        if (text.back() != '{') text += ",\n ";
-        text += '"';
-        text += name;
-        text += "\": ";
-    }
-    template <class Values>
-    void list(const Values& values) {
-        text += '[';
-        for (const auto& value : values) {
-            if (text.back() != '[') text += ',';
-            number(static_cast<double>(value));
-        }
-        text += ']';
-    }
-};
-
-void write_point(Writer& out, const char* name, const CertifiedPoint& point) {
+void write_point(JsonWriter& out, const char* name, const CertifiedPoint& point) {
     out.key(name);
-    out.text += "{\"kind\": \"";
-    out.text += kind_names[static_cast<std::size_t>(point.kind)];
-    out.text += '"';
+    out.text += '{';
+    out.key("kind");
+    out.string(kind_names[static_cast<std::size_t>(point.kind)]);
     out.key("index");
     out.number(point.index);
     out.key("weight");
-    out.list(point.weight);
+    out.numbers(point.weight);
     out.text += '}';
 }
 
-void write_segment(Writer& out, const SegmentProof& proof) {
+void write_segment(JsonWriter& out, const SegmentProof& proof) {
     out.text += "{\"splits\": \"" + proof.splits + '"';
     out.key("planes");
     std::vector<double> numbers;
     for (const LeafPlane& plane : proof.planes)
         for (const Vector3* n : {&plane.n0, &plane.n1}) numbers.insert(numbers.end(), n->begin(), n->end());
-    out.list(numbers);
+    out.numbers(numbers);
     out.text += '}';
 }
 
-void write_pair(Writer& out, const PairCertificate& pair) {
+void write_pair(JsonWriter& out, const PairCertificate& pair) {
     out.text += "{\"a\": " + std::to_string(pair.a) + ", \"b\": " + std::to_string(pair.b);
     for (const auto& [name, value] : {std::pair<const char*, double>{"lower", pair.lower},
                                       {"upper", pair.upper},
@@ -82,12 +53,8 @@ void write_pair(Writer& out, const PairCertificate& pair) {
     write_point(out, "point_a", pair.point_a);
     write_point(out, "point_b", pair.point_b);
     out.key("segments");
-    out.text += '[';
-    for (const SegmentProof& proof : pair.segments) {
-        if (out.text.back() != '[') out.text += ",\n  ";
-        write_segment(out, proof);
-    }
-    out.text += "]}";
+    out.list(pair.segments.size(), ",\n  ", [&](std::size_t i) { write_segment(out, pair.segments[i]); });
+    out.text += '}';
 }
 
 std::vector<int> whole_numbers(const JsonNode& node) {
@@ -149,7 +116,7 @@ std::uint64_t read_hash(const JsonNode& node) {
 }  // namespace
 
 base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
-    Writer out;
+    JsonWriter out;
     out.text = "{";
     out.key("fettle_certificate");
     out.number(certificate.version);
@@ -160,23 +127,17 @@ base::Errors write_certificate(const std::filesystem::path& path, const Certific
     out.key("motion");
     out.text += certificate.motion ? "true" : "false";
     out.key("bodies");
-    out.text += '[';
-    for (const BodyPieces& body : certificate.bodies) {
-        out.text += out.text.back() == '[' ? "{" : ",\n {";
+    out.list(certificate.bodies.size(), ",\n ", [&](std::size_t i) {
+        out.text += '{';
         out.key("elements");
-        out.list(body.elements);
+        out.numbers(certificate.bodies[i].elements);
         out.key("cuts");
-        out.list(body.cuts);
+        out.numbers(certificate.bodies[i].cuts);
         out.text += '}';
-    }
-    out.text += ']';
+    });
     out.key("pairs");
-    out.text += '[';
-    for (const PairCertificate& pair : certificate.pairs) {
-        if (out.text.back() != '[') out.text += ",\n ";
-        write_pair(out, pair);
-    }
-    out.text += "]}\n";
+    out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
+    out.text += "}\n";
     return base::write_file_atomically(path, out.text);
 }
 

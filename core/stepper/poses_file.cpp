@@ -10,6 +10,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/scene/json_document.hpp"
 #include "fettle/core/scene/json_keys.hpp"
+#include "fettle/core/scene/json_writer.hpp"
 #include "fettle/core/stepper/poses_table.hpp"
 
 namespace fettle::core::stepper {
@@ -171,19 +172,6 @@ std::string quoted_for_csv(const std::string& text) {
     return out + "\"";
 }
 
-std::string quoted_for_json(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (static_cast<unsigned char>(c) < 0x20) {
-            out += std::string("\\u00") + "0123456789abcdef"[c >> 4] + "0123456789abcdef"[c & 15];
-            continue;
-        }
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + "\"";
-}
-
 // px py pz and the matrix row by row, with commas between.
 std::string pose_numbers(const Pose& pose, const model::Body& body, double unit) {
     const Vector3 position = kinematics::world_position(pose, -body.reference_point) / unit;
@@ -230,16 +218,17 @@ base::Errors write_poses(const std::filesystem::path& path, const Trajectory& tr
         }
         return base::write_file_atomically(path, text);
     }
-    text = "{\"fettle_poses\": 1, \"units\": \"" + unit + "\", \"rotation\": \"matrix\",\n \"times\": [";
-    for (std::size_t t = 0; t < count; ++t) text += (t ? "," : "") + shortest(time_at(trajectory, static_cast<int>(t)));
-    text += "],\n \"bodies\": {";
+    scene::JsonWriter out;
+    out.text = "{\"fettle_poses\": 1, \"units\": \"" + unit + "\", \"rotation\": \"matrix\",\n \"times\": ";
+    out.list(count, ",", [&](std::size_t t) { out.text += shortest(time_at(trajectory, static_cast<int>(t))); });
+    out.text += ",\n \"bodies\": {";
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        text += std::string(b ? "," : "") + "\n  " + quoted_for_json(model.bodies[b].name) + ": [";
-        for (std::size_t t = 0; t < count; ++t)
-            text += std::string(t ? ",\n    " : "") + "[" + pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "]";
-        text += "]";
+        out.key(model.bodies[b].name);
+        out.list(count, ",\n    ",
+                 [&](std::size_t t) { out.text += "[" + pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "]"; });
     }
-    return base::write_file_atomically(path, text + "}}\n");
+    out.text += "}}\n";
+    return base::write_file_atomically(path, out.text);
 }
 
 bool is_poses_file(const std::filesystem::path& path) { return scene::has_top_level_key(path, "fettle_poses"); }

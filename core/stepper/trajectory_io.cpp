@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene/json_document.hpp"
 #include "fettle/core/scene/json_keys.hpp"
+#include "fettle/core/scene/json_writer.hpp"
+#include "fettle/core/stepper/checkpoint_io.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -22,6 +22,7 @@ using kinematics::ChartPoint;
 using kinematics::Pose;
 using scene::JsonDocument;
 using scene::JsonNode;
+using scene::JsonWriter;
 
 const std::vector<std::string_view> type_names{"dynamic", "static", "kinematic"};  // in the order of scene::BodyType
 
@@ -39,73 +40,22 @@ std::string hexadecimal(std::uint64_t number) {
     return out;
 }
 
-/// Appends JSON to a string. Only what this file needs.
-class Writer {
-public:
-    std::string text;
-
-    void number(double x) {
-        FETTLE_ASSERT(std::isfinite(x), "a trajectory with a number that is not finite");
-        if (x == 0 && std::signbit(x)) {
-            text += "-0.0";  // readers take "-0" for a whole number, which has no sign
-            return;
-        }
-        char buffer[32];
-        const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, x);
-        FETTLE_ASSERT(code == std::errc(), "a number longer than its buffer");
-        text.append(buffer, end);
-    }
-    void string(const std::string& value) {
-        text += '"';
-        for (const char c : value) {
-            if (c == '"' || c == '\\') text += '\\';
-            if (static_cast<unsigned char>(c) < 0x20) {
-                text += "\\u00";
-                text += "0123456789abcdef"[c >> 4];
-                text += "0123456789abcdef"[c & 15];
-            } else {
-                text += c;
-            }
-        }
-        text += '"';
-    }
-    void key(const char* name) {
-        if (text.back() != '{') text += ",\n ";
-        string(name);
-        text += ": ";
-    }
-    /// "[", one item after the other as `write(i)` puts them, "]".
-    template <class Write>
-    void list(std::size_t count, const char* separator, const Write& write) {
-        text += '[';
-        for (std::size_t i = 0; i < count; ++i) {
-            if (i > 0) text += separator;
-            write(i);
-        }
-        text += ']';
-    }
-    template <class Vector>
-    void vector(const Vector& v) {
-        list(static_cast<std::size_t>(v.size()), ",", [&](std::size_t i) { number(v[static_cast<Eigen::Index>(i)]); });
-    }
-};
-
-void write_body(Writer& out, const model::Body& body) {
+void write_body(JsonWriter& out, const model::Body& body) {
     out.text += '{';
     out.key("name");
     out.string(body.name);
     out.key("type");
-    out.string(std::string(type_names[static_cast<std::size_t>(body.type)]));
+    out.string(type_names[static_cast<std::size_t>(body.type)]);
     out.key("group");
     out.number(body.group);
     out.key("reference_point");
-    out.vector(body.reference_point);
+    out.numbers(body.reference_point);
     out.key("mesh");
     out.text += '{';
     out.key("name");
     out.string(body.mesh.name);
     out.key("vertices");
-    out.vector(body.mesh.vertices.reshaped());
+    out.numbers(body.mesh.vertices.reshaped());
     const auto whole = [&](int index) { out.text += std::to_string(index); };
     out.key("triangles");
     out.list(3 * body.mesh.triangles.size(), ",", [&](std::size_t i) { whole(body.mesh.triangles[i / 3][i % 3]); });
@@ -115,33 +65,16 @@ void write_body(Writer& out, const model::Body& body) {
     out.text += "}}";
 }
 
-void write_pose(Writer& out, const Pose& pose) {
+void write_pose(JsonWriter& out, const Pose& pose) {
     Eigen::Matrix<double, 12, 1> numbers;
     numbers << pose.rotation.row(0).transpose(), pose.rotation.row(1).transpose(), pose.rotation.row(2).transpose(), pose.position;
-    out.vector(numbers);
+    out.numbers(numbers);
 }
 
-void write_node(Writer& out, const ChartPoint& node) {
+void write_node(JsonWriter& out, const ChartPoint& node) {
     Vector6 numbers;
     numbers << node.position, node.rotation_vector;
-    out.vector(numbers);
-}
-
-void write_checkpoint(Writer& out, const Checkpoint& checkpoint) {
-    const energy::History& history = checkpoint.state.history;
-    out.text += '{';
-    out.key("step");
-    out.number(checkpoint.step);
-    out.key("kappa");
-    out.number(checkpoint.state.kappa);
-    for (const auto& [name, list] : {std::pair{"velocities", &history.velocities},
-                                     {"poses_before", &history.poses_before},
-                                     {"velocities_before", &history.velocities_before},
-                                     {"accelerations", &history.accelerations}}) {
-        out.key(name);
-        out.list(12 * list->size(), ",", [&](std::size_t i) { out.number((*list)[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)]); });
-    }
-    out.text += '}';
+    out.numbers(numbers);
 }
 
 class Reader {
@@ -167,7 +100,7 @@ public:
         read_steps(root.require("steps"));
         if (!document_.errors().empty()) return document_.errors();
         check_path(root);
-        if (root["checkpoint"].exists()) read_checkpoint(root["checkpoint"]);
+        if (root["checkpoint"].exists()) out_.checkpoint = read_checkpoint(root["checkpoint"], out_.trajectory);
         finish_model(root.require("geometry_hash"));
         if (!document_.errors().empty()) return document_.errors();
         return std::move(out_);
@@ -313,28 +246,6 @@ private:
         }
     }
 
-    void read_checkpoint(const JsonNode& node) {
-        node.allow_keys({"step", "kappa", "velocities", "poses_before", "velocities_before", "accelerations"});
-        Checkpoint checkpoint;
-        checkpoint.step = node.require("step").integer(0, static_cast<int>(out_.trajectory.steps.size())).value_or(0);
-        StepState& state = checkpoint.state;
-        state.time = checkpoint.step * out_.trajectory.timestep;
-        state.kappa = node.require("kappa").number(scene::positive).value_or(1);
-        state.history = {out_.trajectory.poses[static_cast<std::size_t>(checkpoint.step)], read_rates(node.require("velocities"), false),
-                         read_rates(node.require("poses_before"), true), read_rates(node.require("velocities_before"), true),
-                         read_rates(node.require("accelerations"), true)};
-        out_.checkpoint = std::move(checkpoint);
-    }
-
-    std::vector<Matrix34> read_rates(const JsonNode& node, bool may_be_empty) {
-        const auto numbers = node.numbers().value_or(std::vector<double>{});
-        std::vector<Matrix34> out(numbers.size() / 12);
-        for (std::size_t i = 0; i < 12 * out.size(); ++i) out[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)] = numbers[i];
-        if (numbers.size() != 12 * body_count() && !(may_be_empty && numbers.empty()))
-            node.fail(ErrorCode::inconsistent, "12 numbers per body are wanted, " + std::to_string(numbers.size()) + " found");
-        return out;
-    }
-
     void finish_model(const JsonNode& hash) {
         for (std::size_t b = 0; b < body_count(); ++b) out_.model.bodies[b].pose_start = out_.trajectory.poses[0][b];
         model::complete_geometry(out_.model.bodies);
@@ -379,7 +290,7 @@ base::Errors write_trajectory(const std::filesystem::path& path, const Trajector
                               const std::string& scene_path, const Checkpoint* checkpoint) {
     FETTLE_ASSERT(trajectory.body_names.size() == model.bodies.size() && trajectory.poses.size() == trajectory.steps.size() + 1,
                   "a trajectory that is not of this model");
-    Writer out;
+    JsonWriter out;
     out.text = "{";
     out.key("fettle_trajectory");
     out.number(1);

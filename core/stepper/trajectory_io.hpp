@@ -18,9 +18,7 @@
 ///   steps   [t][node][body]: 6 numbers px py pz rx ry rz. Between two nodes of step t, at s in [0, 1], a body point X is at
 ///           exp([r0 + s (r1 - r0)]) R X + p0 + s (p1 - p0), with R the rotation of poses[t][body]. The k-th of n segments covers
 ///           [t + k/n, t + (k+1)/n] time steps.
-///   checkpoint  optional; what a simulation of the scene needs to go on from poses[step] with the same bits: { step, kappa, velocities,
-///           poses_before, velocities_before, accelerations }, lists of 12 numbers per body (3 x 4, column by column; energy::History),
-///           empty where the integrator has no use for them
+///   checkpoint  optional; what going on with the simulation takes: checkpoint_io.hpp
 #pragma once
 
 #include <cstdint>
