@@ -51,11 +51,6 @@ std::array<WitnessVertex, 4> witness_vertices(const core::model::Model& model, i
     return {{{single, w.vertex_on_a ? w.primitive_a : w.primitive_b}, {other, t[0]}, {other, t[1]}, {other, t[2]}}};
 }
 
-Pose witness_pose(const Trajectory& trajectory, const Witness& witness, int body) {
-    if (witness.step < 0) return trajectory.poses.front()[body];
-    return core::kinematics::pose_at(core::stepper::path_segment(trajectory, witness.step, witness.segment, body), witness.s);
-}
-
 struct Wrench {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // dual to dq and to phi in dR = [phi] R
 };
@@ -69,7 +64,8 @@ struct WitnessForces {
 std::optional<WitnessForces> witness_forces(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
                                             const Witness& witness) {
     const auto vertices = witness_vertices(model, a, b, witness);
-    const Pose pose_a = witness_pose(trajectory, witness, a), pose_b = witness_pose(trajectory, witness, b);
+    const Pose pose_a = pose_at(trajectory, witness.step, witness.segment, witness.s, a);
+    const Pose pose_b = pose_at(trajectory, witness.step, witness.segment, witness.s, b);
     const Vector3 offset = pose_a.position - pose_b.position;
     std::array<Vector3, 4> arms, x;  // R X; relative to q_b, so that a place far from the origin costs no digits
     for (std::size_t i = 0; i < 4; ++i) {

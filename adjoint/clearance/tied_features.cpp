@@ -20,11 +20,6 @@ struct Feature {
     int index;
 };
 
-Pose pose_at_witness(const core::stepper::Trajectory& trajectory, const Witness& w, int body) {
-    if (w.step < 0) return trajectory.poses.front()[body];
-    return core::kinematics::pose_at(core::stepper::path_segment(trajectory, w.step, w.segment, body), w.s);
-}
-
 struct Placed {
     const Mesh& mesh;
     Matrix3X x;  // relative to b's reference point
@@ -83,7 +78,8 @@ bool is_pair(const Feature& a, const Feature& b) {
 
 std::vector<Witness> tied_features(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
                                    const Witness& witness, double tolerance) {
-    const Pose pose_a = pose_at_witness(trajectory, witness, a), pose_b = pose_at_witness(trajectory, witness, b);
+    const Pose pose_a = pose_at(trajectory, witness.step, witness.segment, witness.s, a);
+    const Pose pose_b = pose_at(trajectory, witness.step, witness.segment, witness.s, b);
     const Mesh &mesh_a = model.bodies[a].mesh, &mesh_b = model.bodies[b].mesh;
     const Placed on_a{mesh_a, (pose_a.rotation * mesh_a.vertices).colwise() + (pose_a.position - pose_b.position)};
     const Placed on_b{mesh_b, pose_b.rotation * mesh_b.vertices};

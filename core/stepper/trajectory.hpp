@@ -48,4 +48,10 @@ inline double time_at(const Trajectory& trajectory, int t, int k, double s) {
     return trajectory.times[t] + fraction * (trajectory.times[t + 1] - trajectory.times[t]);
 }
 
+/// Pose of a body at s in [0, 1] of segment `k` of step `t`; its pose at the start if t is -1 (no step).
+inline kinematics::Pose pose_at(const Trajectory& trajectory, int t, int k, double s, int body) {
+    if (t < 0) return trajectory.poses.front()[body];
+    return kinematics::pose_at(path_segment(trajectory, t, k, body), s);
+}
+
 }  // namespace fettle::core::stepper

@@ -153,11 +153,7 @@ bool is_finding(const std::string& status) { return status == "violated" || stat
 }  // namespace
 
 core::kinematics::Pose file_pose(const Subject& subject, const Witness& witness, int body) {
-    const auto& trajectory = subject.trajectory;
-    const core::kinematics::Pose pose =
-        witness.step < 0
-            ? trajectory.poses.front()[static_cast<size_t>(body)]
-            : core::kinematics::pose_at(core::stepper::path_segment(trajectory, witness.step, witness.segment, body), witness.s);
+    const core::kinematics::Pose pose = pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
     return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[static_cast<size_t>(body)].reference_point)};
 }
 

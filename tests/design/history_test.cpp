@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/history.hpp"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "fettle/design/optimisers/optimiser.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace {
 
 using namespace fettle;
 using namespace fettle::design;
-namespace fs = std::filesystem;
 
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "fettle_history_XXXXXX").string();
-        path = ::mkdtemp(name.data());
-    }
-    ~Folder() { fs::remove_all(path); }
-    std::string file() const { return (path / "history.jsonl").string(); }
+struct Folder : tests::support::TemporaryFolder {
+    std::string file() const { return TemporaryFolder::file("history.jsonl"); }
 };
 
 std::string contents(const std::string& path) {

@@ -3,11 +3,9 @@
 /// active.
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <string>
+
+#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::tests::design_support {
 
@@ -52,18 +50,12 @@ inline const char* small_design = R"({
 })";
 
 /// A folder of its own with the two files in it.
-struct DesignFolder {
-    std::filesystem::path path;
+struct DesignFolder : support::TemporaryFolder {
     explicit DesignFolder(const std::string& design = small_design, const std::string& scene = small_scene) {
-        std::string name = (std::filesystem::temp_directory_path() / "fettle_design_XXXXXX").string();
-        path = ::mkdtemp(name.data());
-        std::ofstream(path / "small.scene.json") << scene;
-        std::ofstream(path / "small.design.json") << design;
+        write("small.scene.json", scene);
+        write("small.design.json", design);
     }
-    ~DesignFolder() { std::filesystem::remove_all(path); }
-    DesignFolder(const DesignFolder&) = delete;
-    DesignFolder& operator=(const DesignFolder&) = delete;
-    std::string design() const { return (path / "small.design.json").string(); }
+    std::string design() const { return file("small.design.json"); }
 };
 
 /// `text` with the first `from` replaced; empty if it is not there, so that a test that replaces nothing fails.

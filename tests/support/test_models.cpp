@@ -11,24 +11,6 @@ namespace fettle::tests::support {
 using core::model::Body;
 using core::scene::BodyType;
 
-core::geometry::Mesh box_mesh(const Vector3& low, const Vector3& high) {
-    Matrix3X v(3, 8);
-    for (int i = 0; i < 8; ++i) v.col(i) << (i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z();
-    return core::geometry::make_mesh("box", v,
-                                     {{0, 2, 3},
-                                      {0, 3, 1},
-                                      {4, 5, 7},
-                                      {4, 7, 6},
-                                      {0, 1, 5},
-                                      {0, 5, 4},
-                                      {2, 6, 7},
-                                      {2, 7, 3},
-                                      {0, 4, 6},
-                                      {0, 6, 2},
-                                      {1, 3, 7},
-                                      {1, 7, 5}});
-}
-
 void refresh(Body& body) {
     body.moments.setZero();
     if (body.type == BodyType::dynamic_body)

@@ -5,11 +5,9 @@
 #include <string>
 
 #include "fettle/core/model/model.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
 
 namespace fettle::tests::support {
-
-/// A box from `low` to `high` in its own frame (so that its first moments vanish only if it is centred), outward oriented.
-core::geometry::Mesh box_mesh(const Vector3& low, const Vector3& high);
 
 /// Everything that follows from mesh, density and type: moments, radius, edge lengths, hierarchy. Call it after moving vertices.
 void refresh(core::model::Body& body);

@@ -2,29 +2,15 @@
 #include "fettle/core/base/atomic_file.hpp"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "fettle/tests/support/temporary_folder.hpp"
+
 using namespace fettle::core::base;
+using fettle::tests::support::TemporaryFolder;
 namespace fs = std::filesystem;
-
-namespace {
-
-struct TemporaryFolder {
-    fs::path path;
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "fettle_test_XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~TemporaryFolder() { fs::remove_all(path); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-}  // namespace
 
 TEST_CASE("a file is written whole, over an older one too, and nothing is left beside it", "[base]") {
     const TemporaryFolder folder;

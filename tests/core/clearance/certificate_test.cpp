@@ -4,7 +4,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <filesystem>
 #include <functional>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/interval_motion.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 using namespace fettle;
 using namespace fettle::tests::clearance;
@@ -344,12 +344,12 @@ TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
     std::mt19937 random(3);
     Case c = random_case(random, 0.1, 2, 1e-5);
     while (!(c.results[0].lower > 0)) c = random_case(random, 0.1, 2, 1e-5);
-    const auto path = std::filesystem::temp_directory_path() / "fettle_certificate_test.certificate.json";
+    const tests::support::TemporaryFolder folder;
+    const std::string path = folder.file("a.certificate.json");
     REQUIRE(write_certificate(path, c.certificate).empty());
     CHECK(is_certificate_file(path));
     const auto read = read_certificate(path);
     REQUIRE(read);
-    std::filesystem::remove(path);
     CHECK(read->geometry_hash == c.certificate.geometry_hash);
     CHECK(read->motion == c.certificate.motion);
     const PairCertificate &x = read->pairs.at(0), &y = c.certificate.pairs.at(0);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/contact/ccd_queries.hpp"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 
 #include "fettle/tests/support/shared_files.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 using namespace fettle;
 using namespace fettle::core::contact;
@@ -15,21 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class Folder {
-public:
-    Folder() {
-        static int count = 0;
-        root = fs::temp_directory_path() / ("fettle_ccd_queries_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-        fs::create_directories(root);
-    }
-    ~Folder() { fs::remove_all(root); }
-    std::string write(const std::string& name, const std::string& text) const {
-        fs::create_directories((root / name).parent_path());
-        std::ofstream(root / name) << text;
-        return (root / name).string();
-    }
-    fs::path root;
-};
+using Folder = tests::support::TemporaryFolder;
 
 std::string rows(const std::string& row, int count) {
     std::string text;
@@ -98,7 +82,7 @@ TEST_CASE("faults of query files are named by file and line") {
     const std::string good = "0,1,0,1,0,1,0";
     const auto at_line_3 = [&](const std::string& row) {
         const Error error = fault(rows(good, 2) + row + "\n" + rows(good, 5));
-        CHECK(error.where == (f.root / "vertex-face/a.csv").string() + ":3");
+        CHECK(error.where == (f.path / "vertex-face/a.csv").string() + ":3");
         return error;
     };
     CHECK(at_line_3("0,1,0,1,0").code == ErrorCode::parse);
@@ -113,8 +97,8 @@ TEST_CASE("faults of query files are named by file and line") {
     CHECK(at_line_3("0,1,0,1,0,1").code == ErrorCode::inconsistent);
     CHECK(fault(rows(good, 12)).message.find("within a query") != std::string::npos);
     CHECK(fault("").code == ErrorCode::parse);
-    CHECK(only_error(read_ccd_queries((f.root / "none.csv").string())).code == ErrorCode::file_not_found);
-    CHECK(only_error(read_ccd_queries(f.root.string())).code == ErrorCode::file_unreadable);
+    CHECK(only_error(read_ccd_queries((f.path / "none.csv").string())).code == ErrorCode::file_not_found);
+    CHECK(only_error(read_ccd_queries(f.path.string())).code == ErrorCode::file_unreadable);
     CHECK(only_error(read_ccd_queries(f.write("a.txt", good))).code == ErrorCode::unsupported);
 }
 
@@ -136,8 +120,8 @@ TEST_CASE("rigid queries: both kinds, and their faults") {
         text.replace(text.find(from), from.size(), to);
         return only_error(read_ccd_queries(f.write("b.json", text)));
     };
-    CHECK(fault("\"fv\"", "\"ev\"").where == (f.root / "b.json").string() + "#/type");
-    CHECK(fault("\"vertex1\"", "\"vertex9\"").where == (f.root / "b.json").string() + "#/face");
+    CHECK(fault("\"fv\"", "\"ev\"").where == (f.path / "b.json").string() + "#/type");
+    CHECK(fault("\"vertex1\"", "\"vertex9\"").where == (f.path / "b.json").string() + "#/face");
     CHECK(fault("\"vertex1\"", "\"vertex9\"").message.find("vertex1") != std::string::npos);
     CHECK(fault("[7, 8, 9]", "[7, 8]").where.find("#/vertex/vertex") != std::string::npos);
     CHECK(fault("{\"type\"", "{\"tpye\"").code == ErrorCode::missing_key);
@@ -153,7 +137,7 @@ TEST_CASE("folders become their files, sorted, without files of truth") {
     f.write("mma_bool/3ee_mma_bool.json", "[true]");
     f.write("boxes/3ee.json", "\n [[1, 2]]");
     f.write("LICENSE", "");
-    const std::string root = f.root.string();
+    const std::string root = f.path.string();
     const auto files = find_ccd_query_files({root, root + "/b/2vf.csv", root + "/mma_bool/3ee_mma_bool.json"});
     REQUIRE(files);
     CHECK(*files == std::vector<std::string>{root + "/a/3ee.csv", root + "/b/1.json", root + "/b/2vf.csv", root + "/b/2vf.csv"});

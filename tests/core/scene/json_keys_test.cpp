@@ -4,19 +4,17 @@
 
 #include <catch2/catch.hpp>
 
-#include <fstream>
 #include <string>
+
+#include "fettle/tests/support/temporary_folder.hpp"
 
 using fettle::core::scene::has_top_level_key;
 
 namespace {
 
 bool has_kind(const std::string& text) {
-    const auto path = std::filesystem::temp_directory_path() / "fettle_json_keys_test.json";
-    std::ofstream(path, std::ios::binary) << text;
-    const bool found = has_top_level_key(path, "kind");
-    std::filesystem::remove(path);
-    return found;
+    const fettle::tests::support::TemporaryFolder folder;
+    return has_top_level_key(folder.write("a.json", text), "kind");
 }
 
 }  // namespace

@@ -2,12 +2,9 @@
 #include "fettle/core/scene/mesh_reader.hpp"
 
 #include <minizip/zip.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -15,6 +12,7 @@
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 using namespace fettle;
 using namespace fettle::core::scene;
@@ -24,21 +22,10 @@ using core::geometry::Triangle;
 
 namespace {
 
-/// A folder of its own, removed at the end.
-class Folder {
-public:
-    Folder() : path_(std::filesystem::temp_directory_path() / ("fettle_mesh_reader_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-
-    std::string file(const std::string& name, const std::string& content) const {
-        std::ofstream(path_ / name, std::ios::binary) << content;
-        return path_ / name;
-    }
+struct Folder : tests::support::TemporaryFolder {
     /// A 3MF archive with one model part.
     std::string file_3mf(const std::string& name, const std::string& model) const {
-        const std::string path = path_ / name;
+        const std::string path = file(name);
         zipFile zip = zipOpen(path.c_str(), APPEND_STATUS_CREATE);
         const auto add = [&](const char* part, const std::string& content) {
             zip_fileinfo info{};
@@ -59,10 +46,6 @@ public:
         zipClose(zip, nullptr);
         return path;
     }
-    std::string path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
 };
 
 const std::string tetrahedron_obj =
@@ -98,7 +81,7 @@ double volume(const Mesh& mesh) { return core::geometry::solid_moments(mesh.vert
 
 TEST_CASE("OBJ: forms of indices, names, unit") {
     const Folder folder;
-    const Mesh mesh = read_mesh(folder.file("part.OBJ", tetrahedron_obj), {0.001, true}).value();
+    const Mesh mesh = read_mesh(folder.write("part.OBJ", tetrahedron_obj), {0.001, true}).value();
     CHECK(mesh.name == "part.OBJ");
     CHECK(mesh.vertices.cols() == 4);
     CHECK(mesh.vertices(0, 1) == 0.001);
@@ -111,7 +94,7 @@ TEST_CASE("OBJ: forms of indices, names, unit") {
 TEST_CASE("OBJ: full double precision, long lines, CR LF, signs and exponents") {
     const Folder folder;
     const Mesh mesh =
-        read_mesh(folder.file("a.obj", "v 100.123456789012345 -0.1e-3 +5\r\nv 1 \\\r\n 0 0 1\r\nv 0 1\r\nf 1 2 \\\r\n 3")).value();
+        read_mesh(folder.write("a.obj", "v 100.123456789012345 -0.1e-3 +5\r\nv 1 \\\r\n 0 0 1\r\nv 0 1\r\nf 1 2 \\\r\n 3")).value();
     CHECK(mesh.vertices(0, 0) == 100.123456789012345);
     CHECK(mesh.vertices(1, 0) == -0.1e-3);
     CHECK(mesh.vertices(2, 0) == 5);
@@ -121,10 +104,10 @@ TEST_CASE("OBJ: full double precision, long lines, CR LF, signs and exponents") 
 
 TEST_CASE("OBJ: polylines are codimensional edges, unused vertices are points") {
     const Folder folder;
-    const Mesh mesh = read_mesh(folder.file("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 5 5 5\nl 1 2 3\nf 1 2 4\np 5\n")).value();
+    const Mesh mesh = read_mesh(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 5 5 5\nl 1 2 3\nf 1 2 4\np 5\n")).value();
     CHECK(mesh.edges == std::vector<Edge>{{0, 1}, {1, 3}, {3, 0}, {1, 2}});
     CHECK(mesh.codimensional_points == std::vector<int>{4});
-    const Mesh wire = read_mesh(folder.file("b.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")).value();
+    const Mesh wire = read_mesh(folder.write("b.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")).value();
     CHECK(wire.triangles.empty());
     CHECK(wire.edges.size() == 1);
 }
@@ -135,13 +118,13 @@ TEST_CASE("OBJ: polygons are cut inside their outline, with its orientation") {
     const std::string text =
         "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
         "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
-    const Mesh mesh = read_mesh(folder.file("l.obj", text)).value();
+    const Mesh mesh = read_mesh(folder.write("l.obj", text)).value();
     CHECK(mesh.triangles.size() == 2 * 4 + 6 * 2);
     CHECK(core::geometry::validate_mesh(mesh, {}).empty());
     CHECK(volume(mesh) == Approx(3).epsilon(1e-14));
     // The same from every side: turned so that the concave corner comes first, and mirrored to the other planes.
     const std::string turned = "v 0 0 0\nv 0 2 0\nv 0 2 1\nv 0 1 1\nv 0 1 2\nv 0 0 2\nf 4 5 6 1 2 3\n";
-    const Mesh flat = read_mesh(folder.file("t.obj", turned)).value();
+    const Mesh flat = read_mesh(folder.write("t.obj", turned)).value();
     double area = 0;
     for (const Triangle& t : flat.triangles) {
         const Vector3 normal = (flat.vertices.col(t[1]) - flat.vertices.col(t[0]))
@@ -151,8 +134,8 @@ TEST_CASE("OBJ: polygons are cut inside their outline, with its orientation") {
         area += normal.x() / 2;
     }
     CHECK(area == 3);
-    CHECK(read_mesh(folder.file("c.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4 5")).value().triangles.size() == 3);
-    const Error error = only_error(folder.file("x.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4"));
+    CHECK(read_mesh(folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4 5")).value().triangles.size() == 3);
+    const Error error = only_error(folder.write("x.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4"));
     CHECK(error.code == ErrorCode::mesh_invalid);
     CHECK(contains(error.message, "crosses itself"));
 }
@@ -160,7 +143,7 @@ TEST_CASE("OBJ: polygons are cut inside their outline, with its orientation") {
 TEST_CASE("OBJ: shells are named after their object") {
     const Folder folder;
     const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nv 9 0 0\nv 9 1 0\nv 9 0 1\n";
-    const auto names = [&](const std::string& faces) { return read_mesh(folder.file("n.obj", points + faces)).value().shell_names; };
+    const auto names = [&](const std::string& faces) { return read_mesh(folder.write("n.obj", points + faces)).value().shell_names; };
     CHECK(names("o pin\nf 1 2 3\no the hub\nf 4 5 6\nf 7 8 9") == std::vector<std::string>{"pin", "the hub/0", "the hub/1"});
     CHECK(names("f 1 2 3\ng hub\nf 4 5 6\ng default\nf 7 8 9") == std::vector<std::string>{"n.obj/0", "hub", "n.obj/2"});
 }
@@ -169,7 +152,7 @@ TEST_CASE("vertices are welded on request, names survive") {
     const Folder folder;
     const std::string text =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv 0 1 0\nv -1 0 0\nv 1 0 0\no a\nf 1 4 5\no b\nf 1 2 3\nf 4 5 6\nf 2 7 3\n";
-    const std::string path = folder.file("w.obj", text);
+    const std::string path = folder.write("w.obj", text);
     const Mesh welded = read_mesh(path).value();
     CHECK(welded.vertices.cols() == 4);
     CHECK(welded.triangles.size() == 2);
@@ -184,11 +167,11 @@ TEST_CASE("OFF: header forms, comments, colours") {
     const std::string body = "0 0 0\n1.000000000000001 0 0 # comment\n\n0 1 0\n0 0 1\n3 0 2 1 255 0 0\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
     for (const std::string header : {"OFF\n4 4 6\n", "OFF 4 4 6\n", "4 4 0\n", "# made by hand\nCOFF\n4 4 0\n"}) {
         INFO(header);
-        const Mesh mesh = read_mesh(folder.file("a.off", header + body)).value();
+        const Mesh mesh = read_mesh(folder.write("a.off", header + body)).value();
         CHECK(mesh.vertices(0, 1) == 1.000000000000001);
         CHECK(core::geometry::validate_mesh(mesh, {}).empty());
     }
-    CHECK(read_mesh(folder.file("q.off", "OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")).value().triangles.size() == 2);
+    CHECK(read_mesh(folder.write("q.off", "OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")).value().triangles.size() == 2);
 }
 
 TEST_CASE("STL: text and binary, welded") {
@@ -211,8 +194,8 @@ TEST_CASE("STL: text and binary, welded") {
         text += "endloop\nendfacet\n";
         append(static_cast<std::uint16_t>(0));
     }
-    const Mesh from_text = read_mesh(folder.file("t.stl", text + "endsolid brick\n")).value();
-    const Mesh from_binary = read_mesh(folder.file("b.stl", binary)).value();
+    const Mesh from_text = read_mesh(folder.write("t.stl", text + "endsolid brick\n")).value();
+    const Mesh from_binary = read_mesh(folder.write("b.stl", binary)).value();
     for (const Mesh& mesh : {from_text, from_binary}) {
         CHECK(mesh.vertices.cols() == 8);
         CHECK(mesh.edges.size() == 18);
@@ -228,7 +211,7 @@ TEST_CASE("PLY through assimp") {
     const std::string text =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
         "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-    const Mesh mesh = read_mesh(folder.file("a.ply", text), {0.5, true}).value();
+    const Mesh mesh = read_mesh(folder.write("a.ply", text), {0.5, true}).value();
     CHECK(core::geometry::validate_mesh(mesh, {}).empty());
     CHECK(volume(mesh) == Approx(0.125 / 6).epsilon(1e-14));
 }
@@ -251,7 +234,7 @@ TEST_CASE("3MF: its own unit, its build transform") {
     const Error unknown = only_error(folder.file_3mf("u.3mf", model_3mf("unit=\"furlong\"")));
     CHECK(unknown.code == ErrorCode::out_of_range);
     CHECK(contains(unknown.message, "furlong"));
-    CHECK(only_error(folder.file("n.3mf", "not a zip")).code == ErrorCode::parse);
+    CHECK(only_error(folder.write("n.3mf", "not a zip")).code == ErrorCode::parse);
 }
 
 TEST_CASE("errors say what is wrong and where") {
@@ -259,7 +242,7 @@ TEST_CASE("errors say what is wrong and where") {
     const auto check = [&](const std::string& name, const std::string& text, ErrorCode code, const std::string& where,
                            const std::string& part) {
         INFO(name << ": " << text);
-        const Error error = only_error(folder.file(name, text));
+        const Error error = only_error(folder.write(name, text));
         CHECK(error.code == code);
         INFO(error.where << ": " << error.message);
         CHECK(contains(error.where, where));
@@ -268,8 +251,8 @@ TEST_CASE("errors say what is wrong and where") {
     const Error missing = only_error("no/such/gear.obj");
     CHECK(missing.code == ErrorCode::file_not_found);
     CHECK(contains(missing.message, std::filesystem::current_path().string() + "/no/such/gear.obj"));
-    std::filesystem::create_directories(folder.path() + "/folder.stl");
-    CHECK(only_error(folder.path() + "/folder.stl").code == ErrorCode::file_unreadable);
+    std::filesystem::create_directories(folder.path / "folder.stl");
+    CHECK(only_error(folder.file("folder.stl")).code == ErrorCode::file_unreadable);
     check("a.step", "x", ErrorCode::unsupported, "a.step", ".stl .obj .off .ply .3mf");
     check("a.obj", "v 0 0 0\nv 1 x 0\n", ErrorCode::parse, "a.obj:2", "`x` is not a number");
     check("a.obj", "v 0 0 0\nf 1 2 3\n", ErrorCode::out_of_range, "a.obj:2", "vertex 3, but the file has 1");

@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/poses_file.hpp"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::core::stepper {
 namespace {
 
-namespace fs = std::filesystem;
 using base::ErrorCode;
 
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("fettle-poses-" + std::to_string(::getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-    fs::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name) << text;
-        return path / name;
-    }
-};
+using Folder = tests::support::TemporaryFolder;
 
 // Two boxes whose reference points lie off their file's origin, and a third that no file names.
 model::Model boxes() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/trajectory_io.hpp"
 
-#include <unistd.h>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -20,11 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using base::ErrorCode;
 
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("fettle-trajectory-" + std::to_string(::getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-};
+using Folder = tests::support::TemporaryFolder;
 
 model::Model two_boxes() {
     scene::Scene scene;

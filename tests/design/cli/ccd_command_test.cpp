@@ -1,61 +1,27 @@
 // SPDX-License-Identifier: MIT
-// `fettle ccd` from outside: keys, exit codes, messages. FETTLE_PROGRAM (a definition or the environment) says where the program is.
-#include <sys/wait.h>
-#include <unistd.h>
-
+// `fettle ccd` from outside: keys, exit codes, messages.
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/shared_files.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
-namespace fs = std::filesystem;
+using fettle::tests::support::Answer;
 using fettle::tests::support::shared_file;
 
-std::string program() {
-    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
-    return FETTLE_PROGRAM;
-}
-
-struct Answer {
-    int code = -1;
-    std::string out;
-    Json json() const { return Json::parse(out, nullptr, false); }
-};
-
-Answer run(const std::string& arguments, bool with_errors = false) {
-    const std::string command = "'" + program() + "' ccd " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
-    Answer answer;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
-    const int status = ::pclose(pipe);
-    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return answer;
-}
+Answer run(const std::string& arguments, bool with_errors = false) { return fettle::tests::support::run("ccd " + arguments, with_errors); }
 
 /// Query files of a point that passes through, or beside, a triangle.
-class Queries {
-public:
-    Queries() : root(fs::temp_directory_path() / ("fettle_ccd_command_" + std::to_string(::getpid()))) { fs::create_directories(root); }
-    ~Queries() { fs::remove_all(root); }
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(root / name) << text;
-        return (root / name).string();
-    }
+struct Queries : fettle::tests::support::TemporaryFolder {
     /// `x`: of the point, which falls from z = 1 to z = -1; the triangle is (0 0 0), (1 0 0), (0 1 0).
     static std::string query(const std::string& x, const std::string& truth) {
         const std::string triangle = "0,1,0,1,0,1" + truth + "\n1,1,0,1,0,1" + truth + "\n0,1,1,1,0,1" + truth + "\n";
         return x + ",1,4,1,1" + truth + "\n" + triangle + x + ",1,4,-1,1" + truth + "\n" + triangle;
     }
-    fs::path root;
 };
 
 }  // namespace
@@ -102,7 +68,7 @@ TEST_CASE("ccd: a contact that the file claims and nobody finds is a violation, 
     CHECK(untold.json()["false_negatives"].is_null());
     CHECK(untold.json()["false_positives"].is_null());
     // Several files, a folder: the counts of truth are over the queries that have one.
-    const Json both = run(q.root.string() + " --json").json();
+    const Json both = run(q.path.string() + " --json").json();
     CHECK(both["queries"] == 3);
     CHECK(both["queries_with_truth"] == 2);
     CHECK(both["files"].size() == 2);

@@ -1,61 +1,19 @@
 // SPDX-License-Identifier: MIT
-// fettle clearance from outside: sources of motion, pairs, presets, reports. FETTLE_PROGRAM says where the program is.
-#include <sys/wait.h>
-
+// fettle clearance from outside: sources of motion, pairs, presets, reports.
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/program.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
-
-std::string program() {
-    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
-#ifdef FETTLE_PROGRAM
-    return FETTLE_PROGRAM;
-#else
-    return {};
-#endif
-}
-
-struct Answer {
-    int code = -1;
-    std::string out;
-    Json json() const { return Json::parse(out, nullptr, false); }
-    /// The pair of two names, in either order.
-    Json pair(const std::string& a, const std::string& b) const {
-        const Json report = json();
-        for (const Json& p : report["pairs"])
-            if ((p["a"] == a && p["b"] == b) || (p["a"] == b && p["b"] == a)) return p;
-        return nullptr;
-    }
-    bool says(const std::string& text) const { return out.find(text) != std::string::npos; }
-};
-
-Answer run(const std::string& arguments, bool with_errors = false) {
-    const std::string command = "'" + program() + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
-    Answer answer;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    char buffer[4096];
-    for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
-    const int status = ::pclose(pipe);
-    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return answer;
-}
-
-bool absent() {
-    if (!program().empty()) return false;
-    WARN("skipped: FETTLE_PROGRAM does not say where the program is");
-    return true;
-}
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
 
 // Cubes of 10 mm in a row, 0.5 mm, 0.2 mm and 3 mm apart; `slide` moves along the row, `spin` turns about its own axis.
 const char* row_scene = R"({
@@ -74,12 +32,7 @@ const char* row_scene = R"({
 
 struct RowFolder : DesignFolder {
     RowFolder() : DesignFolder(small_design, row_scene) {}
-    std::string scene() const { return (path / "small.scene.json").string(); }
-    std::string file(const std::string& name) const { return (path / name).string(); }
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name) << text;
-        return file(name);
-    }
+    std::string scene() const { return file("small.scene.json"); }
 };
 
 std::string contents(const std::string& path) {
@@ -91,7 +44,6 @@ std::string contents(const std::string& path) {
 }  // namespace
 
 TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its minimum") {
-    if (absent()) return;
     const RowFolder folder;
     const std::string command = "clearance " + folder.scene() + " --json ";
     // Everything that moves against everything: not pin1 against pin2, which are both static. Worst first.
@@ -129,7 +81,6 @@ TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its 
 }
 
 TEST_CASE("clearance: usage that is wrong is refused with what to do") {
-    if (absent()) return;
     const RowFolder folder;
     const auto refused = [&](const std::string& arguments, const std::string& says) {
         const Answer answer = run("clearance " + folder.scene() + " " + arguments, true);
@@ -156,7 +107,6 @@ TEST_CASE("clearance: usage that is wrong is refused with what to do") {
 }
 
 TEST_CASE("clearance: process presets, per side, by size of the parts") {
-    if (absent()) return;
     const RowFolder folder;
     const Answer sla = run("clearance " + folder.scene() + " --process sla --json");
     CHECK(sla.code == 0);
@@ -170,7 +120,6 @@ TEST_CASE("clearance: process presets, per side, by size of the parts") {
 }
 
 TEST_CASE("clearance: over scripted motion, and over the same motion as poses") {
-    if (absent()) return;
     const RowFolder folder;
     const std::string command = "clearance " + folder.scene() + " --minimum 0.4mm --json ";
     const Answer scripted = run(command + "--motion");
@@ -206,7 +155,6 @@ TEST_CASE("clearance: over scripted motion, and over the same motion as poses") 
 }
 
 TEST_CASE("simulate --poses writes what clearance --poses reads") {
-    if (absent()) return;
     const RowFolder folder;
     for (const char* name : {"out.csv", "out.json"}) {
         REQUIRE(run("simulate " + folder.scene() + " --steps 4 --poses " + folder.file(name)).code == 0);
@@ -221,7 +169,6 @@ TEST_CASE("simulate --poses writes what clearance --poses reads") {
 }
 
 TEST_CASE("clearance: a clash is told, between surfaces and of a body inside another") {
-    if (absent()) return;
     const RowFolder folder;
     const std::string command = "clearance " + folder.scene() + " --minimum 0.1mm --json --pairs slide:pin1 --poses ";
     const std::string head = "time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz\n";
@@ -247,7 +194,6 @@ TEST_CASE("clearance: a clash is told, between surfaces and of a body inside ano
 }
 
 TEST_CASE("clearance: bodies that dynamics lets touch are in contact, and judged when named") {
-    if (absent()) return;
     const DesignFolder folder;
     const std::string command = "clearance " + (folder.path / "small.scene.json").string() + " --minimum 0.5mm --motion --steps 12 --json";
     const Answer all = run(command);
@@ -265,7 +211,6 @@ TEST_CASE("clearance: bodies that dynamics lets touch are in contact, and judged
 }
 
 TEST_CASE("clearance --certificate writes a proof that validate accepts, and rejects once it is changed") {
-    if (absent()) return;
     const RowFolder folder;
     const std::string file = folder.file("row.certificate.json");
     const Answer written =
@@ -306,7 +251,6 @@ TEST_CASE("clearance --certificate writes a proof that validate accepts, and rej
 }
 
 TEST_CASE("clearance: explanation, margin curves and a comparison with an earlier report") {
-    if (absent()) return;
     const RowFolder folder;
     const std::string command = "clearance " + folder.scene() + " --motion ";
     const Answer text = run(command + "--minimum 0.6mm --explain 1 --csv " + folder.file("m.csv"));

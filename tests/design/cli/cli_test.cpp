@@ -1,59 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The program from outside: exit codes, one JSON object on stdout, messages. FETTLE_PROGRAM (a definition or the environment) says where it
-// is.
-#include <sys/wait.h>
-
+// The program from outside: exit codes, one JSON object on stdout, messages.
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/program.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
-
-std::string program() {
-    if (const char* path = std::getenv("FETTLE_PROGRAM")) return path;
-#ifdef FETTLE_PROGRAM
-    return FETTLE_PROGRAM;
-#else
-    return {};
-#endif
-}
-
-struct Answer {
-    int code = -1;
-    std::string out;
-    Json json() const { return Json::parse(out, nullptr, false); }
-};
-
-// stderr is dropped unless `with_errors`.
-Answer run(const std::string& arguments, bool with_errors = false) {
-    const std::string command = "'" + program() + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
-    Answer answer;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    char buffer[4096];
-    for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) answer.out.append(buffer, n);
-    const int status = ::pclose(pipe);
-    answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return answer;
-}
-
-bool absent() {
-    if (!program().empty()) return false;
-    WARN("skipped: FETTLE_PROGRAM does not say where the program is");
-    return true;
-}
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
 
 }  // namespace
 
 TEST_CASE("usage: version, help, unknown commands and options") {
-    if (absent()) return;
     CHECK(run("--version").code == 0);
     CHECK(run("--version").out.find("fettle ") == 0);
     const Answer help = run("--help");
@@ -76,7 +39,6 @@ TEST_CASE("usage: version, help, unknown commands and options") {
 }
 
 TEST_CASE("validate: what is usable, and every fault with its place") {
-    if (absent()) return;
     const DesignFolder good;
     const Answer design = run("validate " + good.design() + " --json");
     CHECK(design.code == 0);
@@ -100,7 +62,6 @@ TEST_CASE("validate: what is usable, and every fault with its place") {
 }
 
 TEST_CASE("simulate: keys, and a trajectory that clearance takes") {
-    if (absent()) return;
     const DesignFolder folder;
     const std::string out = (folder.path / "out").string();
     const Answer answer = run("simulate " + (folder.path / "small.scene.json").string() + " --steps 6 --json --out " + out);
@@ -122,7 +83,6 @@ TEST_CASE("simulate: keys, and a trajectory that clearance takes") {
 }
 
 TEST_CASE("clearance: exit codes by status, lengths with units") {
-    if (absent()) return;
     const DesignFolder folder;
     const std::string scene = (folder.path / "small.scene.json").string();
     const Answer clear = run("clearance " + scene + " --minimum 0.1mm --json");
@@ -142,7 +102,6 @@ TEST_CASE("clearance: exit codes by status, lengths with units") {
 }
 
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
-    if (absent()) return;
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
     CHECK(gradient.code == 0);

@@ -7,6 +7,7 @@
 #include "fettle/design/objectives/marker_path.hpp"
 #include "fettle/design/objectives/mass.hpp"
 #include "fettle/design/objectives/stroke.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
 namespace {
@@ -18,21 +19,7 @@ using namespace fettle::design::objectives;
 core::model::Model cube_model() {
     core::model::Model model;
     core::model::Body body;
-    Matrix3X vertices(3, 8);
-    for (int i = 0; i < 8; ++i) vertices.col(i) = 0.1 * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-    body.mesh = core::geometry::make_mesh("cube", vertices,
-                                          {{0, 2, 3},
-                                           {0, 3, 1},
-                                           {4, 5, 7},
-                                           {4, 7, 6},
-                                           {0, 1, 5},
-                                           {0, 5, 4},
-                                           {2, 6, 7},
-                                           {2, 7, 3},
-                                           {0, 4, 6},
-                                           {0, 6, 2},
-                                           {1, 3, 7},
-                                           {1, 7, 5}});
+    body.mesh = tests::support::box_mesh(Vector3::Constant(-0.1), Vector3::Constant(0.1));
     body.reference_point = Vector3(0.3, 0.1, -0.2);
     body.density = 500;
     model.bodies.push_back(body);
