@@ -33,16 +33,16 @@ TEST_CASE("ccd: counts, keys and exit codes") {
         const Answer answer = run(file + " --json --method " + method);
         CHECK(answer.code == 0);
         const Json json = answer.json();
-        CHECK(json["status"] == "ok");
-        CHECK(json["queries"] == 3);
-        CHECK(json["truth_hits"] == 1);
-        CHECK(json["hits"] == 1);
-        CHECK(json["false_negatives"] == 0);
-        CHECK(json["false_positives"] == 0);
-        for (const char* key : {"mean_microseconds", "median_microseconds", "worst_microseconds"}) CHECK(json[key].get<double>() >= 0);
-        CHECK(json["files"].size() == 1);
-        CHECK(json["files"][0]["file"] == file);
-        CHECK(json["method"] == (method == "inclusion" ? "inclusion" : "conservative"));
+        CHECK(json.at("status") == "ok");
+        CHECK(json.at("queries") == 3);
+        CHECK(json.at("truth_hits") == 1);
+        CHECK(json.at("hits") == 1);
+        CHECK(json.at("false_negatives") == 0);
+        CHECK(json.at("false_positives") == 0);
+        for (const char* key : {"mean_microseconds", "median_microseconds", "worst_microseconds"}) CHECK(json.at(key).get<double>() >= 0);
+        CHECK(json.at("files").size() == 1);
+        CHECK(json.at("files").at(0).at("file") == file);
+        CHECK(json.at("method") == (method == "inclusion" ? "inclusion" : "conservative"));
     }
     // The point of the second query passes at 1 from the triangle: at most 1.5 is a hit, at most 0.5 is none.
     CHECK(run(file + " --json --minimum-separation 1.5m").json()["false_positives"] == 1);
@@ -69,9 +69,9 @@ TEST_CASE("ccd: a contact that the file claims and nobody finds is a violation, 
     CHECK(untold.json()["false_positives"].is_null());
     // Several files, a folder: the counts of truth are over the queries that have one.
     const Json both = run(q.path.string() + " --json").json();
-    CHECK(both["queries"] == 3);
-    CHECK(both["queries_with_truth"] == 2);
-    CHECK(both["files"].size() == 2);
+    CHECK(both.at("queries") == 3);
+    CHECK(both.at("queries_with_truth") == 2);
+    CHECK(both.at("files").size() == 2);
 }
 
 TEST_CASE("ccd: bad input and usage end with 3 and the place") {

@@ -75,7 +75,7 @@ TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its 
     CHECK(group.json()["pairs"].size() == 3);
     const Json row = group.pair("frame", "slide");
     CHECK((row.value("body_a", "") == "pin1" || row.value("body_b", "") == "pin1"));
-    CHECK(row["upper"].get<double>() == Approx(0.0005).margin(1e-6));
+    CHECK(row.at("upper").get<double>() == Approx(0.0005).margin(1e-6));
     CHECK(group.pair("frame", "spin")["upper"].get<double>() == Approx(0.003).margin(1e-6));
     CHECK(run(command + "--minimum 0.6mm --group frame=pin1,pin2 --pairs frame:spin").code == 0);
 }
@@ -130,12 +130,12 @@ TEST_CASE("clearance: over scripted motion, and over the same motion as poses") 
     // A corner of the turning cube comes within 13 - 5 - 5 sqrt 2 mm of the pin, half way: between two samples.
     const double corner = 1e-3 * (13 - 5 - 5 * std::sqrt(2));
     const Json spin = scripted.pair("spin", "pin2");
-    CHECK(spin["lower"].get<double>() <= corner + 1e-12);
-    CHECK(spin["upper"].get<double>() >= corner - 1e-12);
-    CHECK(spin["gap"].get<double>() <= 4e-7 * (1 + 1e-9));
-    CHECK(spin["time"].get<double>() == Approx(0.5).margin(1e-6));
-    CHECK(spin["sampled"].get<double>() >= spin["upper"].get<double>() - 1e-12);
-    CHECK(spin["pose_a"]["rotation"].size() == 3);
+    CHECK(spin.at("lower").get<double>() <= corner + 1e-12);
+    CHECK(spin.at("upper").get<double>() >= corner - 1e-12);
+    CHECK(spin.at("gap").get<double>() <= 4e-7 * (1 + 1e-9));
+    CHECK(spin.at("time").get<double>() == Approx(0.5).margin(1e-6));
+    CHECK(spin.at("sampled").get<double>() >= spin.at("upper").get<double>() - 1e-12);
+    CHECK(spin.at("pose_a").at("rotation").size() == 3);
 
     // Slide 1 mm away, spin 90 degrees, at uneven times; a body that is not named stays.
     const std::string csv = folder.write("p.csv",
@@ -199,10 +199,10 @@ TEST_CASE("clearance: bodies that dynamics lets touch are in contact, and judged
     const Answer all = run(command);
     CHECK(all.code == 0);
     const Json cube = all.pair("cube", "table");
-    CHECK(cube["status"] == "contact");
-    CHECK(cube["finding"] == "contact");
-    CHECK(cube["upper"].get<double>() < 1e-4);
-    CHECK(cube["upper"].get<double>() > 0);
+    CHECK(cube.at("status") == "contact");
+    CHECK(cube.at("finding") == "contact");
+    CHECK(cube.at("upper").get<double>() < 1e-4);
+    CHECK(cube.at("upper").get<double>() > 0);
     CHECK(all.pair("cube", "wall")["status"] == "clear");
     CHECK(all.json()["left_out"] == Json::array({"table:wall"}));
     const Answer named = run(command + " --pairs cube:table");
@@ -293,10 +293,10 @@ TEST_CASE("clearance: explanation, margin curves and a comparison with an earlie
     CHECK(after.pair("spin", "pin2")["change"] == "existing");
     CHECK(after.pair("slide", "pin2")["change"] == "new");
     const Json baseline = after.json()["baseline"];
-    CHECK(baseline["new"] == 1);
-    CHECK(baseline["existing"] == 1);
-    CHECK(baseline["resolved"] == 1);
-    CHECK(baseline["missing"] == Json::array({"slide:spin"}));
+    CHECK(baseline.at("new") == 1);
+    CHECK(baseline.at("existing") == 1);
+    CHECK(baseline.at("resolved") == 1);
+    CHECK(baseline.at("missing") == Json::array({"slide:spin"}));
     const std::string broken = folder.write("broken.json", R"({"pairs": [{"a": "x"}]})");
     CHECK(run(command + "--minimum 1mm --baseline " + broken).code == 3);
 }

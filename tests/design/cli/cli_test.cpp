@@ -70,12 +70,12 @@ TEST_CASE("simulate: keys, and a trajectory that clearance takes") {
     for (const char* key : {"status", "steps", "newton_iterations", "wall_seconds", "minimum_distance", "bodies", "peak_memory_bytes"}) {
         CHECK(json.contains(key));
     }
-    CHECK(json["status"] == "ok");
-    CHECK(json["steps"] == 6);
-    CHECK(json["minimum_distance"].get<double>() > 0);
-    CHECK(json["bodies"][1]["name"] == "cube");
-    CHECK(json["bodies"][1]["rotation"].size() == 3);
-    CHECK(json["peak_memory_bytes"].get<long>() > 1000000);
+    CHECK(json.at("status") == "ok");
+    CHECK(json.at("steps") == 6);
+    CHECK(json.at("minimum_distance").get<double>() > 0);
+    CHECK(json.at("bodies").at(1).at("name") == "cube");
+    CHECK(json.at("bodies").at(1).at("rotation").size() == 3);
+    CHECK(json.at("peak_memory_bytes").get<long>() > 1000000);
     const Answer certified = run("clearance " + out + "/trajectory.json --minimum 1mm --pairs cube:wall --json");
     CHECK(certified.code == 0);
     CHECK(certified.json()["motion"] == true);
@@ -106,10 +106,10 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
     CHECK(gradient.code == 0);
     const Json g = gradient.json();
-    CHECK(g["gradient"].size() == 5);
-    CHECK(g["constraints"][0].contains("gradient"));
-    CHECK(g["largest_relative_error"].get<double>() < 1e-5);
-    CHECK(g["check"].size() == 30);
+    CHECK(g.at("gradient").size() == 5);
+    CHECK(g.at("constraints").at(0).contains("gradient"));
+    CHECK(g.at("largest_relative_error").get<double>() < 1e-5);
+    CHECK(g.at("check").size() == 30);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));
 
@@ -121,10 +121,10 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
         CHECK(o.contains(key));
     }
     CHECK((optimise.code == 0 || optimise.code == 2));
-    CHECK(o["objective"].get<double>() < o["objective_start"].get<double>());
+    CHECK(o.at("objective").get<double>() < o.at("objective_start").get<double>());
     const Answer again = run("optimise " + folder.design() + " --json --resume --out " + out);
-    CHECK(again.json()["parameters"] == o["parameters"]);
-    CHECK(again.json()["replayed_evaluations"] == o["evaluations"]);
+    CHECK(again.json()["parameters"] == o.at("parameters"));
+    CHECK(again.json()["replayed_evaluations"] == o.at("evaluations"));
     CHECK(run("validate " + out + "/design.final.json").code == 0);
 
     const DesignFolder impossible(replaced(small_design, "\"minimum\": 15", "\"minimum\": 60"));
