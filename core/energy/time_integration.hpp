@@ -9,6 +9,8 @@
 ///                   then A by Euler's equation from the force that the step has balanced, V = V0 + h/2 (A0 + A), for v and omega
 /// with a the acceleration of gravity. Bodies that are prescribed altogether have V = (P - P0) / h.
 /// Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps energy, and rings in stiff contact.
+/// A free spin omega about a principal axis: implicit Euler brakes it by a share h omega^2 per unit of time (after a turn of phi = h omega
+/// comes one of phi - phi^3), so that omega(t) = omega_0 / sqrt(1 + 2 h omega_0^2 t); with BDF2 and Newmark the loss is O(h^2).
 #pragma once
 
 #include <vector>

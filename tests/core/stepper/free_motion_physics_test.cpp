@@ -152,6 +152,29 @@ TEST_CASE("spin about a principal axis follows each integrator's recursion", "[p
     }
 }
 
+TEST_CASE("implicit Euler brakes a spin by h omega^2 per unit of time, the others to second order", "[physics]") {
+    const double spin = pi, time = 1;
+    for (const auto& [integrator, name] : integrators) {
+        std::vector<double> losses;
+        for (const double h : {0.02, 0.01, 0.005}) {
+            core::model::Body body = make_body("brick", box_mesh({-0.05, -0.1, -0.15}, {0.05, 0.1, 0.15}), {});
+            set_velocity(body, Vector3::Zero(), Vector3(0, 0, spin));
+            core::model::Model model = weightless({body}, h);
+            model.integrator = integrator;
+            const int steps = static_cast<int>(std::lround(time / h));
+            const auto spinning = run(model, steps, true);
+            const Matrix3 turn = rotation(spinning, steps) * rotation(spinning, steps - 1).transpose();
+            losses.push_back(1 - core::kinematics::rotation_vector(turn).z() / h / spin);
+            if (integrator != Integrator::implicit_euler) continue;
+            // After a step of angle phi comes one of phi - phi^3 + O(phi^5).
+            CHECK(losses.back() == Approx(1 - 1 / std::sqrt(1 + 2 * h * spin * spin * time)).epsilon(h * spin));
+        }
+        INFO(name << ": relative losses " << losses[0] << " " << losses[1] << " " << losses[2]);
+        CHECK(observed_order(losses) > (integrator == Integrator::implicit_euler ? 0.8 : 1.9));
+        if (integrator != Integrator::implicit_euler) CHECK(losses.front() < 0.01);
+    }
+}
+
 TEST_CASE("angular momentum is kept within the integrator's order", "[physics]") {
     const Vector3 spin(0.05, 6, 0.05);
     for (const auto& [integrator, name] : integrators) {
