@@ -10,6 +10,7 @@
 #include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/scene/warning_groups.hpp"
 
 namespace fettle::core::scene {
 
@@ -21,7 +22,7 @@ struct JsonNode::Context {
     std::string path;
     json tree;
     base::Errors errors;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 namespace {
@@ -168,7 +169,7 @@ std::string JsonNode::shown() const {
 
 void JsonNode::fail(ErrorCode code, std::string message) const { context_->errors.push_back({code, where(), std::move(message)}); }
 
-void JsonNode::warn(const std::string& message) const { context_->warnings.push_back(where() + ": " + message); }
+void JsonNode::warn(const std::string& message) const { context_->warnings.push_back({pointer_, message}); }
 
 JsonNode JsonNode::child(const void* value, const std::string& key) const { return {context_, value, pointer_ + "/" + escaped(key)}; }
 
@@ -387,6 +388,6 @@ base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const st
 const std::string& JsonDocument::path() const { return context_->path; }
 JsonNode JsonDocument::root() { return {context_.get(), &context_->tree, ""}; }
 const base::Errors& JsonDocument::errors() const { return context_->errors; }
-const std::vector<std::string>& JsonDocument::warnings() const { return context_->warnings; }
+std::vector<std::string> JsonDocument::warnings() const { return grouped_warnings(context_->path, context_->warnings); }
 
 }  // namespace fettle::core::scene

@@ -106,8 +106,8 @@ public:
 
     const std::string& path() const;
     JsonNode root();
-    const base::Errors& errors() const;  ///< found so far by reading nodes, in the order of reading
-    const std::vector<std::string>& warnings() const;
+    const base::Errors& errors() const;         ///< found so far by reading nodes, in the order of reading
+    std::vector<std::string> warnings() const;  ///< those that say the same of several elements of a list as one (warning_groups.hpp)
 
 private:
     JsonDocument();

@@ -300,6 +300,9 @@ TEST_CASE("The scenes that must run load with what they say", "[scene]") {
     CHECK(scripted.bodies[3].script.poses.size() == 3);
     CHECK(scripted.bodies[3].script.poses[2].position.isApprox(Vector3(0, 3, 0)));
     CHECK(scripted.bodies[3].script.poses[2].rotation.isApprox(Matrix3::Identity()));
+    const auto house = read_scene(tests::support::shared_file("scenes/fixtures/friction/card-house/card-house-2-levels.json"));
+    REQUIRE(house->warnings.size() == 1);
+    CHECK(contains(house->warnings[0], "/rigid_bodies/[1-7]: the mesh is open"));
     CHECK(load("codimensional/edges/3-link-chain").bodies[1].moments(3, 3) > 0);
     const auto pendulum = load("pendulum/pendulum");
     CHECK(pendulum.dhat == 1e-4);

@@ -116,5 +116,18 @@ TEST_CASE("Other keys of a lenient file are warned of, comments are not", "[scen
     CHECK(document.errors().empty());
 }
 
+TEST_CASE("What is said of several elements of a list is said once", "[scene]") {
+    JsonDocument document = parsed(R"({"list": [{"a": 1}, {"a": 2}, {"b": 3}, {"a": 4}, {"a": 5}, {"a": 6}], "other": [{"a": 7}]})");
+    const JsonNode root = document.root();
+    root["other"].warn("odd");
+    for (const JsonNode& element : root["list"].elements()) element.warn_of_other_keys({});
+    root["other"].warn("odd");
+    for (const JsonNode& element : root["other"].elements()) element.warn_of_other_keys({});
+    const std::string path = document.path();
+    CHECK(document.warnings() == std::vector<std::string>{path + "#/other: odd", path + "#/list/[0, 1, 3-5]/a: unknown key `a` is ignored",
+                                                          path + "#/list/2/b: unknown key `b` is ignored",
+                                                          path + "#/other/0/a: unknown key `a` is ignored"});
+}
+
 }  // namespace
 }  // namespace fettle::core::scene
