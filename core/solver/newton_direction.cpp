@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/solver/newton_direction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle::core::solver {
+namespace {
+
+using contact::HessianKind;
+using energy::ChartDerivatives;
+using energy::StepProblem;
+using kinematics::ChartPoint;
+
+constexpr double largest_turn = 0.3;   // of one iteration [rad], or twice what the body turns in a step as it goes
+constexpr double largest_shift = 0.1;  // of the scene's size, or twice what the body moves
+
+Vector6 coordinates(const ChartPoint& p) {
+    Vector6 y;
+    y << p.position, p.rotation_vector;
+    return y;
+}
+
+ChartDerivatives derivatives(const StepProblem& problem, const Iterate& at, HessianKind kind, NewtonWorkspace& workspace) {
+    const auto span = workspace.clock.charge(SolvePhase::derivatives);
+    return energy::chart_derivatives(problem, at.points, at.poses, at.contacts, kind);
+}
+
+double residual_of(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs) {
+    double square = 0, magnitude = 0;
+    for (std::size_t i = 0; i < d.gradient.size(); ++i) {
+        for (int k = 0; k < 6; ++k) {
+            if (dofs.index[i][k] < 0) continue;
+            const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model.bodies[i].radius, model.dhat);
+            square += g * g;
+        }
+        magnitude += d.force_magnitude[i] + model.bodies[i].moments(3, 3) * model.velocity_tolerance * model.timestep;
+    }
+    return magnitude > 0 ? std::sqrt(square) / magnitude : std::sqrt(square);
+}
+
+// Positions carry an error of a few ulp of their size; the value moves by force times that, and by its square through the inertia.
+double rounding_of(const ChartDerivatives& d, const model::Model& model, const std::vector<ChartPoint>& points) {
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const model::Body& body = model.bodies[i];
+        const double ulp = 16 * std::numeric_limits<double>::epsilon() * (points[i].position.norm() + body.radius);
+        sum += d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
+    }
+    return sum;
+}
+
+// Leaves the linear solver with a factor of d's Hessian, made definite. @return false if it could not be.
+bool factorise(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d, HessianKind& kind) {
+    const auto is_definite = [&] {
+        const auto span = workspace.clock.charge(SolvePhase::linear_solve);
+        return workspace.linear.factorise(d.hessian);
+    };
+    if (workspace.dofs.count == 0) return true;
+    bool definite = is_definite();
+    if (!definite && kind == HessianKind::exact) {
+        kind = HessianKind::projected;
+        d = derivatives(problem, at, kind, workspace);
+        definite = is_definite();
+    }
+    for (double shift = 1e-12; !definite && shift < 1e3; shift *= 100) {
+        for (Matrix6& block : d.hessian.diagonal) block.diagonal() *= 1 + shift;
+        definite = is_definite();
+    }
+    return definite;
+}
+
+void measure_remaining(const std::vector<Vector6>& targets, const std::vector<ChartPoint>& points, const model::Model& model,
+                       const FreeDofs& dofs, Direction& direction) {
+    direction.remaining.assign(points.size(), Vector6::Zero());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vector6 current = coordinates(points[i]);
+        for (int k = 0; k < 6; ++k) {
+            if (dofs.index[i][k] >= 0) continue;
+            direction.remaining[i][k] = targets[i][k] - current[k];
+            direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model.bodies[i].radius);
+        }
+    }
+}
+
+void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direction& direction) {
+    direction.step = direction.remaining;
+    for (Vector6& step : direction.step) step *= direction.drive;
+    if (workspace.dofs.count == 0) return;
+    VectorX rhs = -gather(workspace.dofs, d.gradient);
+    if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs, multiply(d.hessian, direction.step));
+    const auto span = workspace.clock.charge(SolvePhase::linear_solve);
+    scatter(workspace.dofs, workspace.linear.solve(rhs), direction.step);
+}
+
+// A nearly singular Hessian sends bodies round the world, where every search is dear and nothing is gained.
+void shorten(const StepProblem& problem, Direction& direction) {
+    double fraction = 1;
+    for (std::size_t i = 0; i < direction.step.size(); ++i) {
+        const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
+        const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
+        const double shift = std::max(largest_shift * problem.model->diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
+        const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
+        fraction = std::min(fraction, shift / std::max(shift, step.head<3>().norm()));
+        fraction = std::min(fraction, turn / std::max(turn, step.tail<3>().norm()));
+    }
+    if (fraction == 1) return;
+    for (Vector6& step : direction.step) step *= fraction;
+    direction.drive *= fraction;
+}
+
+void measure_step(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, Direction& direction) {
+    for (std::size_t i = 0; i < direction.step.size(); ++i) {
+        const Vector6& step = direction.step[i];
+        direction.slope += d.gradient[i].dot(step);
+        const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
+        if (solved_for)
+            direction.motion = std::max(direction.motion, step.head<3>().norm() + step.tail<3>().norm() * model.bodies[i].radius);
+    }
+}
+
+}  // namespace
+
+std::optional<Direction> newton_direction(const StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
+                                          HessianKind kind, double drive, NewtonWorkspace& workspace) {
+    const model::Model& model = *problem.model;
+    const FreeDofs& dofs = workspace.dofs;
+    Direction direction;
+    ChartDerivatives d = derivatives(problem, at, kind, workspace);
+    if (!factorise(problem, at, workspace, d, kind)) return std::nullopt;
+    direction.kind = kind;
+    direction.residual = residual_of(d, model, dofs);
+    direction.rounding = rounding_of(d, model, at.points);
+    measure_remaining(targets, at.points, model, dofs, direction);
+    direction.drive = direction.remaining_norm > 0 ? drive : 1;
+    solve_for_step(d, workspace, direction);
+    shorten(problem, direction);
+    measure_step(d, model, dofs, direction);
+    return direction;
+}
+
+std::vector<ChartPoint> moved(const std::vector<ChartPoint>& points, const Direction& direction, double fraction,
+                              const std::vector<Vector6>& targets, const FreeDofs& dofs) {
+    std::vector<ChartPoint> out(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Vector6 y = coordinates(points[i]) + fraction * direction.step[i];
+        if (fraction == 1 && direction.drive == 1)
+            for (int k = 0; k < 6; ++k)
+                if (dofs.index[i][k] < 0) y[k] = targets[i][k];
+        out[i] = {y.head<3>(), y.tail<3>()};
+    }
+    return out;
+}
+
+double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
+    return residual_of(derivatives(problem, at, HessianKind::projected, workspace), *problem.model, workspace.dofs);
+}
+
+}  // namespace fettle::core::solver

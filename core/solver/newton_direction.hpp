@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// The direction of one Newton iteration (newton.hpp): the step of the prescribed coordinates, that of the free ones given it,
+///   dy_k = drive (target_k - y_k),   H_ff dy_f = -g_f - H_fk dy_k,
+/// made definite where it must be, and shortened where it would carry bodies round the world.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fettle/core/energy/incremental_potential.hpp"
+#include "fettle/core/solver/newton.hpp"
+
+namespace fettle::core::solver {
+
+/// Where the solver stands.
+struct Iterate {
+    std::vector<kinematics::ChartPoint> points;
+    std::vector<kinematics::Pose> poses;  ///< of `points`
+    contact::ContactSet contacts;         ///< at `poses`
+};
+
+struct Direction {
+    std::vector<Vector6> step;       ///< per body
+    std::vector<Vector6> remaining;  ///< of the prescribed coordinates: target - y
+    double remaining_norm = 0;       ///< l1, rotations times the body's radius [m]
+    double drive = 1;                ///< share of what remains that the step takes
+    double slope = 0;                ///< g . step
+    double motion = 0;               ///< bound on the largest motion of a point of a body that is solved for [m]
+    double residual = 0;             ///< NewtonResult::residual, here
+    double rounding = 0;             ///< of the potential's value here: what a difference of two values may be wrong by
+    contact::HessianKind kind = contact::HessianKind::exact;
+};
+
+/// @param kind     the Hessian to try first; where the exact one is not positive definite the projected one is taken, and its diagonal
+///                 raised if rounding asks for it.
+/// @param targets  as for minimise.
+/// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
+/// @return nullopt if no matrix could be made positive definite.
+std::optional<Direction> newton_direction(const energy::StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
+                                          contact::HessianKind kind, double drive, NewtonWorkspace& workspace);
+
+/// points + fraction * step; a whole step that takes all that remains puts the prescribed coordinates on their targets, bit for bit.
+std::vector<kinematics::ChartPoint> moved(const std::vector<kinematics::ChartPoint>& points, const Direction& direction, double fraction,
+                                          const std::vector<Vector6>& targets, const FreeDofs& dofs);
+
+/// NewtonResult::residual at this point.
+double residual_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);
+
+}  // namespace fettle::core::solver
