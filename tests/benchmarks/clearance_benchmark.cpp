@@ -4,8 +4,7 @@
 // triangles, 48 mm across), the first held, swinging under gravity from a bent start: neighbours in contact, the others near and turning.
 // All 45 pairs are certified, as the program does by default. Before a time counts, the bounds are checked: lower <= the least distance at
 // the ends of the steps (searched one by one), upper attained at its witness (evaluated here in long double), the gap within the tolerance.
-// Then once more with a certificate, which is checked. Prints JSON,
-// seconds of the processor. Arguments: steps (200), links (10).
+// Then once more with a certificate, which is checked. Prints JSON, seconds of the processor. Arguments: steps (200), links (10).
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
