@@ -31,11 +31,19 @@ void write_point(JsonWriter& out, const char* name, const CertifiedPoint& point)
 }
 
 void write_segment(JsonWriter& out, const SegmentProof& proof) {
-    out.text += "{\"splits\": \"" + proof.splits + '"';
-    out.key("planes");
+    std::string splits = proof.splits;
     std::vector<double> numbers;
-    for (const LeafPlane& plane : proof.planes)
-        for (const Vector3* n : {&plane.n0, &plane.n1}) numbers.insert(numbers.end(), n->begin(), n->end());
+    std::size_t leaf = 0;
+    for (char& kind : splits) {
+        if (kind != '.' || leaf >= proof.planes.size()) continue;
+        const LeafPlane& plane = proof.planes[leaf++];
+        numbers.insert(numbers.end(), plane.n0.begin(), plane.n0.end());
+        if (plane.n0 == plane.n1) continue;
+        kind = ':';
+        numbers.insert(numbers.end(), plane.n1.begin(), plane.n1.end());
+    }
+    out.text += "{\"splits\": \"" + splits + '"';
+    out.key("planes");
     out.numbers(numbers);
     out.text += '}';
 }
@@ -84,9 +92,17 @@ SegmentProof read_segment(const JsonNode& node) {
     proof.splits = node.require("splits").string().value_or("");
     const JsonNode planes = node.require("planes");
     const auto numbers = planes.numbers().value_or(std::vector<double>{});
-    if (numbers.size() % 6 != 0) planes.fail(ErrorCode::inconsistent, "six numbers per leaf are wanted: n0 and n1");
-    for (std::size_t i = 0; i + 6 <= numbers.size(); i += 6)
-        proof.planes.push_back({{numbers[i], numbers[i + 1], numbers[i + 2]}, {numbers[i + 3], numbers[i + 4], numbers[i + 5]}});
+    std::size_t taken = 0;
+    for (char& kind : proof.splits) {
+        if (kind != '.' && kind != ':') continue;
+        const std::size_t first = taken, second = kind == ':' ? taken + 3 : taken;
+        kind = '.';
+        taken = second + 3;
+        if (taken > numbers.size()) break;
+        proof.planes.push_back(
+            {{numbers[first], numbers[first + 1], numbers[first + 2]}, {numbers[second], numbers[second + 1], numbers[second + 2]}});
+    }
+    if (taken != numbers.size()) planes.fail(ErrorCode::inconsistent, "three numbers per `.` and six per `:` are wanted");
     return proof;
 }
 

@@ -10,11 +10,12 @@
 ///   a  piece of A split into its two parts, in their order;   b  the same of B
 ///   .  a leaf: `planes` has its proof, in the order of the leaves.
 /// So the leaves cover all time and all pairs of elements by construction, and every s is a dyadic number.
-/// A leaf's proof is two vectors n0, n1 with |n| <= 1 in world axes: with n(u) = (1 - u) n0 + u n1, u = (s - s0)/(s1 - s0),
-///   n(u).(x_a(s) - x_b(s)) >= lower   for all s of the interval and all points x_a, x_b of the two pieces,
-/// which is what a checker has to verify, for the corners of the elements. How far above `lower` it lies is not recorded: ours leave a
-/// room of at least 8 times the search's own bound of its rounding (PairSegment::slack), and 1/8 of the tolerance, for a checker's rounding
-/// and for its own way of bounding curves.
+/// A leaf's proof is two vectors n0, n1 in world axes: with n(u) = (1 - u) n0 + u n1, u = (s - s0)/(s1 - s0),
+///   n(u).(x_a(s) - x_b(s)) >= lower max(|n0|, |n1|) > 0   for all s of the interval and all points x_a, x_b of the two pieces,
+/// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
+/// room of at least 4 times the search's own bound of its rounding (PairSegment::slack), and 1/16 of the tolerance, for a checker's
+/// rounding and for its own way of bounding curves. Leaves are merged and vectors rounded as far as this room and this checker allow
+/// (certificate_thinning.hpp).
 /// `upper` is the distance of two points of the bodies at one instant.
 ///
 /// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered
@@ -36,7 +37,7 @@
 namespace fettle::core::clearance {
 
 struct LeafPlane {
-    Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
+    Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();  ///< about as long as 1
 };
 
 /// Of one path segment: see the top of the file.
@@ -79,7 +80,8 @@ struct Certificate {
 /// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
 ///   fettle_certificate 1, geometry_hash (hexadecimal), motion, bodies [{elements, cuts}],
 ///   pairs [{a, b, lower, upper, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
-/// `planes` is flat: n0x n0y n0z n1x n1y n1z, leaf after leaf. Written whole or not at all.
+/// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
+/// others, which it writes `:`. Written whole or not at all.
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 base::Result<Certificate> read_certificate(const std::filesystem::path& path);
 

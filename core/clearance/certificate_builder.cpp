@@ -4,6 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/clearance/certificate_thinning.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/stepper/trajectory_io.hpp"
 
@@ -83,6 +86,26 @@ void complete_certificate(const PairMotion& pair, const SearchResult& found, Pai
     certificate.point_a = certified_point(*pair.a.mesh, kind_a, index_a, on_a);
     certificate.point_b = certified_point(*pair.b.mesh, kind_b, index_b, on_b);
     if (!(found.lower > 0)) certificate.segments.clear();
+}
+
+std::vector<checker::CertifiedBody> certified_bodies(const Certificate& certificate, const model::Model& model) {
+    std::vector<checker::CertifiedBody> bodies(model.bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (certificate.bodies[i].elements.empty()) continue;
+        auto body = checker::certified_body(certificate.bodies[i], model.bodies[i].mesh);
+        FETTLE_ASSERT(body.has_value(), "pieces of our own that are wrong");
+        bodies[i] = std::move(body).value();
+    }
+    return bodies;
+}
+
+void thin_certificate(const PairMotion& pair, const checker::CertifiedBody& a, const checker::CertifiedBody& b, double room,
+                      PairCertificate& certificate) {
+    base::parallel_for(static_cast<int>(certificate.segments.size()), 1, [&](int i) {
+        const PairSegment& segment = pair.segments[static_cast<std::size_t>(i)];
+        SegmentProof& proof = certificate.segments[static_cast<std::size_t>(i)];
+        proof = thinned(proof, certificate, a, b, pair.trajectory, segment.step, segment.segment, room);
+    });
 }
 
 }  // namespace fettle::core::clearance

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fettle/core/clearance/certificate.hpp"
+#include "fettle/core/clearance/certified_body.hpp"
 #include "fettle/core/clearance/pair_details.hpp"
 
 namespace fettle::core::clearance {
@@ -15,5 +16,12 @@ Certificate start_certificate(const model::Model& model, const std::vector<const
 
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
 void complete_certificate(const PairMotion& pair, const SearchResult& found, PairCertificate& certificate);
+
+/// The bodies as the certificate cuts them; empty ones for those of no pair.
+std::vector<checker::CertifiedBody> certified_bodies(const Certificate& certificate, const model::Model& model);
+
+/// Fewer leaves and shorter normals, with `room` [m] above the claim: see certificate_thinning.hpp.
+void thin_certificate(const PairMotion& pair, const checker::CertifiedBody& a, const checker::CertifiedBody& b, double room,
+                      PairCertificate& certificate);
 
 }  // namespace fettle::core::clearance

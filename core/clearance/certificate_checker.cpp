@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/clearance/certified_body.hpp"
 #include "fettle/core/clearance/interval_motion.hpp"
 
 namespace fettle::core::clearance {
@@ -18,52 +18,9 @@ using namespace checker;
 constexpr std::size_t most_faults = 1000;
 constexpr int leaf_halvings = 24;
 
-// A part of a body's list of elements.
-struct Part {
-    int left = -1, right = -1;
-    Region region;
-};
-
-struct Body {
-    std::vector<Vector3> corners;  // three for each of the listed elements
-    std::vector<Part> parts;       // whose regions are ranges of them
-};
-
 struct Place {
     int step = -1, segment = 0;
 };
-
-// Corners of the element with this number; empty if there is none.
-std::vector<int> corners_of(const geometry::Mesh& mesh, int number) {
-    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
-    if (number < 0) return {};
-    if (number < triangles) return {mesh.triangles[number].begin(), mesh.triangles[number].end()};
-    if (number < triangles + edges) return {mesh.edges[number - triangles].begin(), mesh.edges[number - triangles].end()};
-    if (number - triangles - edges < mesh.vertices.cols()) return {number - triangles - edges};
-    return {};
-}
-
-// Numbers of the elements that a list has to have: triangles, edges of none of them, vertices of no edge and no triangle.
-std::vector<int> wanted_elements(const geometry::Mesh& mesh) {
-    std::vector<int> wanted;
-    std::set<std::pair<int, int>> of_triangles;
-    std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
-    for (int i = 0; i < triangles; ++i) {
-        wanted.push_back(i);
-        const auto& t = mesh.triangles[i];
-        for (int k = 0; k < 3; ++k) of_triangles.insert(std::minmax(t[k], t[(k + 1) % 3]));
-        for (const int v : t) used[v] = true;
-    }
-    for (int i = 0; i < edges; ++i) {
-        const auto& e = mesh.edges[i];
-        if (of_triangles.count(std::minmax(e[0], e[1])) == 0) wanted.push_back(triangles + i);
-        for (const int v : e) used[v] = true;
-    }
-    for (int v = 0; v < static_cast<int>(used.size()); ++v)
-        if (!used[v]) wanted.push_back(triangles + edges + v);
-    return wanted;
-}
 
 class Checker {
 public:
@@ -128,87 +85,17 @@ private:
         }
     }
 
-    // The body's parts with their regions, once; false if its lists are wrong.
+    // The body's parts, once; false if its lists are wrong.
     bool prepare(int index, const std::string& where) {
-        std::optional<Body>& body = bodies_[static_cast<std::size_t>(index)];
+        std::optional<CertifiedBody>& body = bodies_[static_cast<std::size_t>(index)];
         if (!body) {
-            body.emplace();
-            if (!list_corners(index, body->corners) || !split_parts(index, *body)) body->parts.clear();
+            auto made =
+                certified_body(certificate_.bodies[static_cast<std::size_t>(index)], model_.bodies[static_cast<std::size_t>(index)].mesh);
+            for (const base::Error& e : made.errors()) fault("/bodies/" + std::to_string(index) + e.where, e.message);
+            body.emplace(made ? std::move(made).value() : CertifiedBody());
         }
-        if (body->parts.empty()) fault(where, "the pieces of body " + std::to_string(index) + " are wrong");
-        return !body->parts.empty();
-    }
-
-    bool list_corners(int body, std::vector<Vector3>& corners) {
-        const BodyPieces& pieces = certificate_.bodies[static_cast<std::size_t>(body)];
-        const geometry::Mesh& mesh = model_.bodies[static_cast<std::size_t>(body)].mesh;
-        const std::string where = "/bodies/" + std::to_string(body) + "/elements";
-        const std::set<int> listed(pieces.elements.begin(), pieces.elements.end());
-        for (const int number : wanted_elements(mesh)) {
-            if (listed.count(number) > 0) continue;
-            fault(where, "element " + std::to_string(number) + " is missing");
-            return false;
-        }
-        for (const int number : pieces.elements) {
-            const std::vector<int> vertices = corners_of(mesh, number);
-            if (vertices.empty()) {
-                fault(where, "there is no element " + std::to_string(number));
-                return false;
-            }
-            for (std::size_t k = 0; k < 3; ++k) corners.emplace_back(mesh.vertices.col(vertices[std::min(k, vertices.size() - 1)]));
-        }
-        return true;
-    }
-
-    bool split_parts(int index, Body& body) {
-        struct Range {
-            std::size_t first, count;
-            int parent;
-            bool second;
-        };
-        const BodyPieces& pieces = certificate_.bodies[static_cast<std::size_t>(index)];
-        const std::string where = "/bodies/" + std::to_string(index) + "/cuts";
-        std::vector<Part>& parts = body.parts;
-        std::vector<Range> pending{{0, pieces.elements.size(), -1, false}};
-        std::size_t next_cut = 0;
-        while (!pending.empty()) {
-            const Range range = pending.back();
-            pending.pop_back();
-            const int part = static_cast<int>(parts.size());
-            parts.emplace_back();
-            parts[part].region.points = std::span<const Vector3>(body.corners).subspan(3 * range.first, 3 * range.count);
-            if (range.parent >= 0) (range.second ? parts[range.parent].right : parts[range.parent].left) = part;
-            if (range.count <= 1) continue;
-            const int cut = next_cut < pieces.cuts.size() ? pieces.cuts[next_cut] : 0;
-            ++next_cut;
-            if (cut < 1 || static_cast<std::size_t>(cut) >= range.count) {
-                fault(where, "cut " + std::to_string(next_cut - 1) + " is missing or leaves nothing to one side");
-                return false;
-            }
-            const auto first = static_cast<std::size_t>(cut);
-            pending.push_back({range.first + first, range.count - first, part, true});
-            pending.push_back({range.first, first, part, false});
-        }
-        if (next_cut != pieces.cuts.size()) fault(where, "there are more cuts than pieces to cut");
-        for (auto part = parts.rbegin(); part != parts.rend(); ++part) measure(parts, part->region, part->left, part->right);
-        return next_cut == pieces.cuts.size();
-    }
-
-    // From the children, which come after their parents, or from the points of an element.
-    static void measure(const std::vector<Part>& parts, Region& region, int left, int right) {
-        if (left >= 0) {
-            const Region &first = parts[left].region, &second = parts[right].region;
-            region.low = first.low.cwiseMin(second.low);
-            region.high = first.high.cwiseMax(second.high);
-            region.radius = std::max(first.radius, second.radius);
-            return;
-        }
-        region.low = region.high = region.points.empty() ? Vector3(Vector3::Zero()) : region.points[0];
-        for (const Vector3& x : region.points) {
-            region.low = region.low.cwiseMin(x);
-            region.high = region.high.cwiseMax(x);
-            region.radius = std::max(region.radius, norm_bound(Interval3{x.x(), x.y(), x.z()}));
-        }
+        if (body->parts().empty()) fault(where, "the pieces of body " + std::to_string(index) + " are wrong");
+        return !body->parts().empty();
     }
 
     BodyPath path(std::size_t place, int body) const { return body_path(trajectory_, places_[place].step, places_[place].segment, body); }
@@ -221,8 +108,8 @@ private:
         CertificateReport report;
         const auto ended = [&](const std::string& message) { return add(report, {where, message}), report; };
         const SegmentProof& proof = pair.segments[place];
-        const std::vector<Part>&parts_a = bodies_[static_cast<std::size_t>(pair.a)]->parts,
-              &parts_b = bodies_[static_cast<std::size_t>(pair.b)]->parts;
+        const std::vector<Part>&parts_a = bodies_[static_cast<std::size_t>(pair.a)]->parts(),
+              &parts_b = bodies_[static_cast<std::size_t>(pair.b)]->parts();
         LeafProver prover(path(place, pair.a), path(place, pair.b));
         std::vector<Cell> pending{{{0, 1}, 0, 0}};
         std::size_t leaf = 0;
@@ -286,7 +173,7 @@ private:
                                                             : static_cast<int>(mesh.vertices.cols());
         if (point.index < 0 || point.index >= count) return false;
         const int offset = point.kind == Primitive::triangle ? 0 : point.kind == Primitive::edge ? triangles : triangles + edges;
-        const std::vector<int> corners = corners_of(mesh, offset + point.index);
+        const std::vector<int> corners = element_vertices(mesh, offset + point.index);
         for (std::size_t i = corners.size(); i < point.weight.size(); ++i)
             if (point.weight[i] != 0) return false;
         Interval total = 0;
@@ -307,7 +194,7 @@ private:
     const model::Model& model_;
     const stepper::Trajectory& trajectory_;
     std::vector<Place> places_;
-    std::vector<std::optional<Body>> bodies_;
+    std::vector<std::optional<CertifiedBody>> bodies_;
     CertificateReport report_;
 };
 

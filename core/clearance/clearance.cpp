@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
@@ -72,7 +73,8 @@ PairStatus judge(const PairClearance& pair, double dhat) {
     return pair.upper < pair.minimum ? PairStatus::violated : PairStatus::undecided;
 }
 
-// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room.
+// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room; half of it after
+// thinning.
 double checking_room(const ClearanceOptions& options, const PairMotion& pair) {
     double slack = 0;
     for (const PairSegment& segment : pair.segments) slack = std::max(slack, segment.slack);
@@ -88,27 +90,36 @@ Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
     return search.nodes_only ? found.nearest : found.sampled;
 }
 
-SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search, PairCertificate* record) {
+// Of one pair, in the making.
+struct PairRecord {
+    PairCertificate& certificate;
+    const checker::CertifiedBody &a, &b;
+};
+
+SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search,
+                              const std::optional<PairRecord>& record) {
     search.enough = options.enough;
-    if (record == nullptr) {
+    if (!record) {
         search.sample_nodes = options.sample_nodes && pair.segments.size() > 1;
         return search_pair(pair.a, pair.b, pair.segments, search);
     }
     search.tolerance *= 0.75;
-    search.proof = &record->segments;
+    search.proof = &record->certificate.segments;
     SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
-    found.lower = std::max(0.0, found.lower - checking_room(options, pair));
-    complete_certificate(pair, found, *record);
+    const double room = checking_room(options, pair);
+    found.lower = std::max(0.0, found.lower - room);
+    complete_certificate(pair, found, record->certificate);
+    thin_certificate(pair, record->a, record->b, 0.5 * room, record->certificate);
     return found;
 }
 
 PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, double dhat, const ClearanceOptions& options,
-                           PairCertificate* record) {
+                           const std::optional<PairRecord>& record) {
     SearchOptions search;
     search.tolerance = options.tolerance;
     search.max_evaluations = options.max_evaluations;
     search.should_stop = options.should_stop;
-    const bool apart = options.sample_nodes && (record != nullptr || pair.segments.size() == 1);
+    const bool apart = options.sample_nodes && (record || pair.segments.size() == 1);
     if (apart) search.seed = least_at_nodes(pair, search);
     const SearchResult found = certified_search(pair, options, search, record);
     PairClearance result;
@@ -169,10 +180,12 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     std::vector<BodyMotion> motions(model.bodies.size());
     parallel_for(static_cast<int>(bodies.size()), 1,
                  [&](int i) { motions[bodies[i]] = body_motion(model, trajectory, places, bodies[i]); });
+    std::vector<checker::CertifiedBody> certified;
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
         for (const BodyMotion& motion : motions) trees.push_back(motion.tree.mesh != nullptr ? &motion.tree : nullptr);
         *options.certificate = start_certificate(model, trees, options.motion && !trajectory.steps.empty(), pairs.size());
+        certified = certified_bodies(*options.certificate, model);
     }
     std::vector<PairClearance> results(pairs.size());
     std::mutex report;
@@ -180,10 +193,11 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     // Each pair is a search of its own: the number of threads cannot change a result.
     parallel_for(count, 1, [&](int i) {
         const PairRequest& request = pairs[i];
-        PairCertificate* record = options.certificate != nullptr ? &options.certificate->pairs[i] : nullptr;
-        if (record != nullptr) {
-            record->a = request.a;
-            record->b = request.b;
+        std::optional<PairRecord> record;
+        if (options.certificate != nullptr) {
+            record.emplace(PairRecord{options.certificate->pairs[i], certified[request.a], certified[request.b]});
+            record->certificate.a = request.a;
+            record->certificate.b = request.b;
         }
         results[i] =
             certify_pair(pair_motion(motions[request.a], motions[request.b], trajectory, places), request, model.dhat, options, record);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "fettle/core/clearance/certificate_checker.hpp"
+#include "fettle/core/clearance/certificate_thinning.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/interval_motion.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
@@ -340,10 +341,21 @@ TEST_CASE("Ten thousand damaged certificates: ten thousand rejected", "[clearanc
     CHECK(rejected == made);
 }
 
-TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
-    std::mt19937 random(3);
+namespace {
+
+Case proven_case(std::mt19937& random) {
     Case c = random_case(random, 0.1, 2, 1e-5);
     while (!(c.results[0].lower > 0)) c = random_case(random, 0.1, 2, 1e-5);
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
+    std::mt19937 random(3);
+    Case c = proven_case(random);
+    for (SegmentProof& segment : c.certificate.pairs[0].segments)  // some leaves whose plane turns, and others
+        for (std::size_t k = 0; k < segment.planes.size(); k += 2) segment.planes[k].n1 *= 1 - 1e-15;
     const tests::support::TemporaryFolder folder;
     const std::string path = folder.file("a.certificate.json");
     REQUIRE(write_certificate(path, c.certificate).empty());
@@ -363,6 +375,43 @@ TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
             CHECK((x.segments[i].planes[k].n0 == y.segments[i].planes[k].n0 && x.segments[i].planes[k].n1 == y.segments[i].planes[k].n1));
     }
     CHECK(check_certificate(*read, c.model, c.trajectory).accepted());
+}
+
+TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove", "[clearance]") {
+    std::mt19937 random(6);
+    std::size_t before = 0, after = 0;
+    for (int i = 0; i < 10; ++i) {
+        Case c = proven_case(random);
+        PairCertificate& pair = c.certificate.pairs[0];
+        const auto a = checker::certified_body(c.certificate.bodies[0], c.model.bodies[0].mesh);
+        const auto b = checker::certified_body(c.certificate.bodies[1], c.model.bodies[1].mesh);
+        REQUIRE((a && b));
+        std::size_t index = 0;
+        for (int t = 0; t < static_cast<int>(c.trajectory.steps.size()); ++t) {
+            for (int k = 0; k < core::stepper::segment_count(c.trajectory, t); ++k) {
+                SegmentProof& proof = pair.segments[index++];
+                SegmentProof wasteful;
+                std::size_t leaf = 0;
+                for (const char kind : proof.splits) {
+                    wasteful.splits += kind == '.' ? "tt..t.." : std::string(1, kind);
+                    if (kind != '.') continue;
+                    const LeafPlane plane = proof.planes[leaf++];
+                    const Vector3 turn = 0.25 * (plane.n1 - plane.n0);
+                    for (int part = 0; part < 4; ++part) wasteful.planes.push_back({plane.n0 + part * turn, plane.n0 + (part + 1) * turn});
+                }
+                CAPTURE(i, t, k);
+                const SegmentProof same = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 100);
+                CHECK((same.splits == wasteful.splits && same.planes[0].n0 == wasteful.planes[0].n0));
+                const SegmentProof thin = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 0);
+                before += wasteful.planes.size();
+                after += thin.planes.size();
+                proof = thin;
+            }
+        }
+        CHECK(check_certificate(c.certificate, c.model, c.trajectory).accepted());
+    }
+    CAPTURE(before, after);
+    CHECK(2 * after < before);  // four to one, but where the checker itself has to halve a leaf
 }
 
 TEST_CASE("Certificates of small, large, far and fast pairs are accepted", "[clearance]") {
