@@ -10,7 +10,7 @@ using namespace fettle;
 using namespace fettle::tests::clearance_cases;
 
 TEST_CASE("Clearance's derivative by poses and vertices agrees with differences of certified bounds", "[clearance][adjoint]") {
-    std::mt19937 random(3);
+    std::mt19937 random(11);  // its nearest features are of all kinds
     int checked = 0, inside = 0, edges = 0, first = 0, second = 0;
     for (int i = 0; i < 12; ++i) {
         Case c = random_case(random, i % 4 != 0);
@@ -32,7 +32,7 @@ TEST_CASE("Clearance's derivative by poses and vertices agrees with differences 
         const VectorX gradient = gradient_of(c, pair, 1);
         tests::support::StepSweep sweep;
         sweep.largest = 1e-4;
-        sweep.count = 3;
+        sweep.count = 5;
         const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
         CAPTURE(i, pair.upper, pair.witness.step, pair.witness.s, pair.witness.edge_edge, check.row, check.analytic, check.difference,
                 check.step);
@@ -43,7 +43,7 @@ TEST_CASE("Clearance's derivative by poses and vertices agrees with differences 
     CAPTURE(checked, inside, edges, first, second);
     CHECK(checked >= 6);
     CHECK(inside >= 2);
-    CHECK(edges >= 1);
+    CHECK(edges >= 3);
     CHECK(first >= 1);
     CHECK(second >= 1);
 }
@@ -112,7 +112,7 @@ TEST_CASE("Steps with intermediate nodes: the end poses carry the nodes along", 
         const VectorX gradient = gradient_of(c, pair, 1);
         tests::support::StepSweep sweep;
         sweep.largest = 1e-4;
-        sweep.count = 3;
+        sweep.count = 5;
         const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
         CAPTURE(i, pair.upper, pair.witness.segment, pair.witness.s, check.row, check.analytic, check.difference, check.step);
         CHECK(check.relative_error < 1e-7);
@@ -169,7 +169,7 @@ TEST_CASE("The stored path's own derivative: nodes and base, whatever moves them
         }
         tests::support::StepSweep sweep;
         sweep.largest = 1e-4;
-        sweep.count = 3;
+        sweep.count = 5;
         const auto check = tests::support::check_gradient(upper, VectorX::Zero(gradient.size()), gradient, sweep);
         CAPTURE(i, pair.upper, pair.witness.segment, pair.witness.s, check.row, check.analytic, check.difference, check.step);
         CHECK(check.relative_error < 1e-7);
