@@ -119,6 +119,8 @@ std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const s
 
 // The entries of `from` that are still wanted, and new ones. @return sorted as `wanted`
 std::vector<BodyPairCandidates> taken_over(std::vector<BodyPairCandidates> from, const std::vector<std::pair<int, int>>& wanted) {
+    const auto is_wanted = [](const BodyPairCandidates& x, const std::pair<int, int>& y) { return std::pair(x.a, x.b) == y; };
+    if (std::equal(from.begin(), from.end(), wanted.begin(), wanted.end(), is_wanted)) return from;
     std::vector<BodyPairCandidates> out;
     out.reserve(wanted.size());
     auto old = from.begin();
@@ -140,14 +142,15 @@ std::vector<BodyPairCandidates> taken_over(std::vector<BodyPairCandidates> from,
 struct Task {
     int pair = 0;  // among those searched
     NodePair from{0, 0};
-    BodyPairCandidates found;
+    PrimitivePairs found;
 };
 
-// One part each, but more of large meshes where there are few pairs: enough for two threads or more.
+// Large meshes in parts where there are few pairs: enough for two threads or more.
 std::vector<Task> make_tasks(const std::vector<SweptPair>& pairs) {
     constexpr std::size_t large = 512, most_parts = 16, wanted = 48;  // `large`: nodes of both bodies
     const std::size_t parts = std::min(most_parts, wanted / std::max<std::size_t>(pairs.size(), 1));
     std::vector<Task> tasks;
+    tasks.reserve(pairs.size());
     for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
         const std::size_t size = pairs[k].a->body->hierarchy->nodes().size() + pairs[k].b->body->hierarchy->nodes().size();
         if (parts < 2 || size < large) {
@@ -161,32 +164,38 @@ std::vector<Task> make_tasks(const std::vector<SweptPair>& pairs) {
 
 void append(std::vector<PrimitivePair>& to, const std::vector<PrimitivePair>& from) { to.insert(to.end(), from.begin(), from.end()); }
 
-void sort_by_distance(BodyPairCandidates& pair) {
-    for (auto* list : {&pair.vertex_triangle, &pair.triangle_vertex, &pair.edge_edge})
+void sort_by_distance(PrimitivePairs& pairs) {
+    for (auto* list : {&pairs.vertex_triangle, &pairs.triangle_vertex, &pairs.edge_edge})
         std::sort(list->begin(), list->end(), [](const PrimitivePair& x, const PrimitivePair& y) {
             return std::tie(x.distance, x.a, x.b) < std::tie(y.distance, y.a, y.b);
         });
 }
 
-// Fills the lists of `out`, searched[k] for pairs[k].
+// Fills the lists of searched[k] with what pairs[k] has.
 void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandidates*>& searched) {
     std::vector<Task> tasks = make_tasks(pairs);
     base::parallel_for(static_cast<int>(tasks.size()), 1, [&](int k) {
         Task& task = tasks[k];
-        const SweptPair& pair = pairs[task.pair];
-        search_leaves(pair, close_nodes(pair, task.from), task.found);
+        search_leaves(pairs[task.pair], close_nodes(pairs[task.pair], task.from), task.found);
     });
-    for (BodyPairCandidates* pair : searched) {
-        pair->vertex_triangle.clear();
-        pair->triangle_vertex.clear();
-        pair->edge_edge.clear();
-    }
-    for (const Task& task : tasks) {
-        append(searched[task.pair]->vertex_triangle, task.found.vertex_triangle);
-        append(searched[task.pair]->triangle_vertex, task.found.triangle_vertex);
-        append(searched[task.pair]->edge_edge, task.found.edge_edge);
-    }
-    base::parallel_for(static_cast<int>(searched.size()), pairs_a_piece, [&](int k) { sort_by_distance(*searched[k]); });
+    // A pair's tasks follow one another.
+    std::vector<std::size_t> first(pairs.size() + 1, tasks.size());
+    for (std::size_t k = tasks.size(); k-- > 0;) first[tasks[k].pair] = k;
+    for (std::size_t p = pairs.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
+    base::parallel_for(static_cast<int>(searched.size()), pairs_a_piece, [&](int p) {
+        PrimitivePairs& out = *searched[p];
+        out = {};
+        for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
+            if (k == first[p]) {
+                out = std::move(tasks[k].found);
+                continue;
+            }
+            append(out.vertex_triangle, tasks[k].found.vertex_triangle);
+            append(out.triangle_vertex, tasks[k].found.triangle_vertex);
+            append(out.edge_edge, tasks[k].found.edge_edge);
+        }
+        sort_by_distance(out);
+    });
 }
 
 }  // namespace
@@ -205,15 +214,16 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
         BodyPairCandidates& pair = candidates.pairs[k];
         pair.fresh = pair.fresh || !(motion_over(model, pair, segments) <= pair.allowance);
     });
-    std::vector<SweptPair> pairs;
     std::vector<BodyPairCandidates*> searched;
-    for (BodyPairCandidates& pair : candidates.pairs) {
-        if (!pair.fresh) continue;
+    for (BodyPairCandidates& pair : candidates.pairs)
+        if (pair.fresh) searched.push_back(&pair);
+    std::vector<SweptPair> pairs(searched.size());
+    base::parallel_for(static_cast<int>(searched.size()), pairs_a_piece, [&](int k) {
+        BodyPairCandidates& pair = *searched[k];
         pair.allowance = allowance;
         pair.along = {segments[pair.a], segments[pair.b]};
-        pairs.push_back(swept_pair(swept[pair.a], swept[pair.b], activation + pair.allowance));
-        searched.push_back(&pair);
-    }
+        pairs[k] = swept_pair(swept[pair.a], swept[pair.b], activation + allowance);
+    });
     search(pairs, searched);
 }
 

@@ -21,17 +21,21 @@ struct PrimitivePair {
     double distance = 0;  ///< [m]
 };
 
-/// Primitives of two bodies, a < b. Each list is sorted by distance.
-struct BodyPairCandidates {
+/// Primitives of two bodies, by kind. Each list is sorted by distance.
+struct PrimitivePairs {
+    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
+    std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
+    std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
+    bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
+};
+
+/// What a search has found between two bodies, a < b, and where.
+struct BodyPairCandidates : PrimitivePairs {
     int a = 0, b = 0;
-    std::vector<PrimitivePair> vertex_triangle;    ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
-    std::vector<PrimitivePair> triangle_vertex;    ///< face of a, vertex of b
-    std::vector<PrimitivePair> edge_edge;          ///< edge of a, edge of b
-    double allowance = 0;                          ///< of the search that found them [m]
+    double allowance = 0;                          ///< of the search [m]
     bool fresh = false;                            ///< found by the last cover(), and not settled yet
     std::array<kinematics::PathSegment, 2> along;  ///< the segments that were searched
     std::array<kinematics::Pose, 2> at;            ///< where on them the bodies went
-    bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
 };
 
 struct Candidates {

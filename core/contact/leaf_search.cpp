@@ -75,7 +75,7 @@ private:
 
 class LeafSearch {
 public:
-    LeafSearch(const SweptPair& pair, PlacedLeaves& placed_a, PlacedLeaves& placed_b, BodyPairCandidates& out)
+    LeafSearch(const SweptPair& pair, PlacedLeaves& placed_a, PlacedLeaves& placed_b, PrimitivePairs& out)
         : pair_(pair),
           body_a_(*pair.a->body->hierarchy),
           body_b_(*pair.b->body->hierarchy),
@@ -194,12 +194,12 @@ private:
     const BodyHierarchy &body_a_, &body_b_;
     PlacedLeaves &placed_a_, &placed_b_;
     double margin_ = 0, lost_ = 0;  // of the pair of leaves being visited
-    BodyPairCandidates& out_;
+    PrimitivePairs& out_;
 };
 
 }  // namespace
 
-void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, BodyPairCandidates& out) {
+void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, PrimitivePairs& out) {
     if (leaves.empty()) return;
     // Kept for their memory.
     static thread_local PlacedLeaves placed_a, placed_b;

@@ -11,6 +11,6 @@ namespace fettle::core::contact {
 
 /// Appends to the lists of `out` every pair of primitives of the given pairs of leaves that may come within pair.margin along the
 /// segments, with lower bounds of their distances. Contract: no pair of leaves comes twice.
-void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, BodyPairCandidates& out);
+void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, PrimitivePairs& out);
 
 }  // namespace fettle::core::contact
