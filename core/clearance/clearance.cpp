@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -39,24 +40,40 @@ std::vector<SegmentPlace> segment_places(const stepper::Trajectory& trajectory, 
 
 // What all pairs of a body share.
 struct BodyMotion {
-    PieceTree tree;
+    std::shared_ptr<const PieceTree> tree;  // that of its first copy, if it is one of several; none: the body is not asked for
     std::vector<BodySegment> segments;
 };
 
-BodyMotion body_motion(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places,
-                       int body) {
-    BodyMotion motion{make_piece_tree(model.bodies[body].mesh, *model.bodies[body].hierarchy), {}};
+std::vector<BodySegment> body_segments(const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places, int body) {
+    std::vector<BodySegment> segments;
     for (const SegmentPlace& place : places)
-        motion.segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
-                                                              : stepper::path_segment(trajectory, place.step, place.segment, body)));
-    return motion;
+        segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
+                                                       : stepper::path_segment(trajectory, place.step, place.segment, body)));
+    return segments;
+}
+
+std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory,
+                                     const std::vector<SegmentPlace>& places, const std::vector<int>& bodies) {
+    std::vector<BodyMotion> motions(model.bodies.size());
+    geometry::ShapeIndex shapes;
+    std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
+    for (const int body : bodies) first.push_back(shapes.add(model.bodies[body].mesh));
+    parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        const model::Body& body = model.bodies[bodies[i]];
+        BodyMotion& motion = motions[bodies[i]];
+        motion.segments = body_segments(trajectory, places, bodies[i]);
+        if (first[i] == static_cast<std::size_t>(i))
+            motion.tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
+    });
+    for (std::size_t i = 0; i < bodies.size(); ++i) motions[bodies[i]].tree = motions[bodies[first[i]]].tree;
+    return motions;
 }
 
 PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::Trajectory& trajectory,
                        const std::vector<SegmentPlace>& places) {
-    PairMotion pair{a.tree, b.tree, trajectory, {}};
+    PairMotion pair{*a.tree, *b.tree, trajectory, {}};
     for (std::size_t i = 0; i < places.size(); ++i) {
-        pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], a.tree.radius(), b.tree.radius()));
+        pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], a.tree->radius(), b.tree->radius()));
         pair.segments.back().step = places[i].step;
         pair.segments.back().segment = places[i].segment;
     }
@@ -177,13 +194,11 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     const auto count = static_cast<int>(pairs.size());
     const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
     const std::vector<SegmentPlace> places = segment_places(trajectory, options.motion);
-    std::vector<BodyMotion> motions(model.bodies.size());
-    parallel_for(static_cast<int>(bodies.size()), 1,
-                 [&](int i) { motions[bodies[i]] = body_motion(model, trajectory, places, bodies[i]); });
+    const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, bodies);
     std::vector<checker::CertifiedBody> certified;
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
-        for (const BodyMotion& motion : motions) trees.push_back(motion.tree.mesh != nullptr ? &motion.tree : nullptr);
+        for (const BodyMotion& motion : motions) trees.push_back(motion.tree.get());
         *options.certificate = start_certificate(model, trees, options.motion && !trajectory.steps.empty(), pairs.size());
         certified = certified_bodies(*options.certificate, model);
     }

@@ -11,7 +11,7 @@
 
 namespace fettle::core::clearance {
 
-/// Larger pieces have boxes along the body's axes. (A certificate's checker bounds pieces of up to this size by their corners.)
+/// Larger pieces have boxes along the body's axes.
 inline constexpr int most_elements_of_turned_box = 128;
 
 /// Elements first .. first + count - 1 of the tree; a single element is a leaf. Children are disjoint and follow each other.

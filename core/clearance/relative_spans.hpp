@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// The motion of body a as seen from body b, over many path segments at once: bounds of the distance of two pieces over up to seven
+/// The motion of body a as seen from body b, over many path segments at once: bounds of the distance of two pieces over up to fifteen
 /// spans of time for little more than the price of one. What moves together is at rest here. Used before segment_bound.hpp, whose bounds
 /// are finer and cost one segment each. (Here b is the body that serves as the frame, a the other one.)
 ///
-/// A span is a path segment, or seven spans of the level below; a group holds up to seven consecutive spans and the relative poses
+/// A span is a path segment, or fifteen spans of the level below; a group holds up to fifteen consecutive ones and the relative poses
 ///   R_j = R_b^T R_a,   p_j = R_b^T (q_a - q_b)   at node j, where span j begins and span j - 1 ends.
 /// For vectors n_j in b's frame with |n_j| <= 1 and points X of a, Z of b put f(t) = n(t).(R(t) X + p(t) - Z), n(t) between n_j and n_{j+1}
 /// in span j. Then |R_b n| dist >= f, and f_j is a difference of support functions of the pieces. In span j, for |X| <= r,

@@ -58,6 +58,7 @@ model::Model chain(int links) {
                                                          kinematics::Pose{tilt * turn, i * pitch * along},
                                                          i == 0 ? scene::BodyType::static_body : scene::BodyType::dynamic_body));
     }
+    model::complete_geometry(model.bodies);  // copies share their hierarchies, as in a model from a file
     model.gravity = Vector3(0, 0, -9.81);
     model.timestep = 0.005;
     model.dhat = 1e-4;
