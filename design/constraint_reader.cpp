@@ -15,7 +15,7 @@ namespace {
 
 using constraints::Bounds;
 using constraints::Constraint;
-using core::scene::JsonNode;
+using core::files::JsonNode;
 
 class ConstraintReader {
 public:
@@ -44,8 +44,8 @@ private:
         const auto a = context_.body(node.require("a")), b = context_.body(node.require("b"));
         Bounds bounds;
         bounds.unit = context_.length_unit;
-        bounds.lower = node.require("minimum").length(context_.length_unit, core::scene::positive).value_or(0);
-        bounds.margin = node["margin"].length(context_.length_unit, core::scene::not_negative).value_or(clearance_margin_);
+        bounds.lower = node.require("minimum").length(context_.length_unit, core::files::positive).value_or(0);
+        bounds.margin = node["margin"].length(context_.length_unit, core::files::not_negative).value_or(clearance_margin_);
         const bool motion = node["motion"].boolean().value_or(false);
         const int windows = node["windows"].integer(1, 1000).value_or(1);
         if (windows > 1 && !motion) node["windows"].fail(ErrorCode::inconsistent, "`windows` divide the motion; set `motion` to true");

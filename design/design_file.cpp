@@ -5,14 +5,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/constraint_reader.hpp"
 #include "fettle/design/history.hpp"
 #include "fettle/design/objectives/objective_table.hpp"
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/parameter_reader.hpp"
 #include "fettle/design/scene_shapes.hpp"
 
@@ -21,8 +22,8 @@ namespace fettle::design {
 namespace {
 
 namespace fs = std::filesystem;
-using core::scene::JsonDocument;
-using core::scene::JsonNode;
+using core::files::JsonDocument;
+using core::files::JsonNode;
 
 std::vector<std::string_view> views(const std::vector<std::string>& names) { return {names.begin(), names.end()}; }
 
@@ -83,7 +84,7 @@ private:
         if (!node.exists()) return;
         node.allow_keys({"steps", "clearance_tolerance"});
         design_.steps = node["steps"].integer(1).value_or(design_.steps);
-        design_.clearance_tolerance = node["clearance_tolerance"].length(design_.length_unit, core::scene::positive).value_or(1e-9);
+        design_.clearance_tolerance = node["clearance_tolerance"].length(design_.length_unit, core::files::positive).value_or(1e-9);
     }
 
     void read_objective(const JsonNode& node, const objectives::ReadContext& context) {
@@ -116,7 +117,7 @@ private:
         settings.name = node["name"].choice(views(optimisers::optimiser_names())).value_or(settings.name);
         settings.max_evaluations = node["max_evaluations"].integer(1).value_or(settings.max_evaluations);
         settings.tolerance = node["tolerance"].number({0, 1, true}).value_or(settings.tolerance);
-        return node["clearance_margin"].length(design_.length_unit, core::scene::not_negative).value_or(default_margin);
+        return node["clearance_margin"].length(design_.length_unit, core::files::not_negative).value_or(default_margin);
     }
 
     Errors all_errors() const {
@@ -152,7 +153,7 @@ Result<Design> read_design(const std::string& path, const DesignReadOptions& opt
     }
     Result<Design> design = DesignReader(*document, options).read();
     if (!design) return design.errors();
-    const Result<std::string> text = core::base::read_file(path);
+    const Result<std::string> text = core::files::read_file(path);
     if (!text) return text.errors();
     design->text = *text;
     return design;
@@ -188,12 +189,12 @@ std::string design_hash(const Design& design) {
     for (const char* key : {"$schema", "description", "optimiser", "output", "scene"}) json.erase(key);
     make_numbers_equal(json);
     std::string all = std::string(core::base::version()) + "\n" + json.dump() + "\n";
-    if (const Result<std::string> scene = core::base::read_file(design.scene_path)) all += *scene;
+    if (const Result<std::string> scene = core::files::read_file(design.scene_path)) all += *scene;
     for (const core::scene::Body& body : design.scene.bodies) {
         append_bytes(all, body.mesh.vertices.data(), static_cast<size_t>(body.mesh.vertices.size()) * sizeof(double));
         append_bytes(all, body.mesh.triangles.data(), body.mesh.triangles.size() * sizeof(core::geometry::Triangle));
     }
-    return hash_of(all);
+    return core::files::hash_of(all);
 }
 
 }  // namespace fettle::design

@@ -68,7 +68,8 @@ Result<std::vector<adjoint::ModelGradient>> sweep(const Simulated& simulated, st
     for (Seeds& seed : seeds) result.push_back(std::move(seed.model_bar));
     std::vector<bool> swept(seeds.size(), false);
     if (!moving.empty()) {
-        const Result<std::vector<adjoint::ModelGradient>> parts = adjoint::reverse_sweep(simulated.model, simulated.trajectory, moving);
+        const Result<std::vector<adjoint::ModelGradient>> parts =
+            adjoint::stepper::reverse_sweep(simulated.model, simulated.trajectory, moving);
         if (!parts) return parts.errors();
         for (size_t j = 0; j < of.size(); ++j) {
             add(result[of[j]], (*parts)[j]);

@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 
 namespace fettle::design {
 
@@ -142,14 +142,6 @@ Result<std::string> rename_away(const fs::path& path) {
 
 }  // namespace
 
-std::string hash_of(const std::string& text) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    std::string hex(16, '0');
-    for (size_t k = 0; k < 16; ++k) hex[15 - k] = "0123456789abcdef"[(hash >> (4 * k)) & 15];
-    return hex;
-}
-
 Result<History> History::open(const std::string& directory, const HistoryHeader& header, HistoryMode mode) {
     History history;
     history.header_ = header;
@@ -180,7 +172,7 @@ Result<History> History::open(const std::string& directory, const HistoryHeader&
 }
 
 Errors History::read_existing(const std::string& path) {
-    const Result<std::string> text = core::base::read_file(path);
+    const Result<std::string> text = core::files::read_file(path);
     if (!text) return text.errors();
     size_t begin = 0;
     for (int line_number = 1;; ++line_number) {

@@ -70,7 +70,4 @@ private:
 /// `evaluate` and appended. The history must outlive the function.
 std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate);
 
-/// 64-bit FNV-1a of a text, as 16 hexadecimal digits.
-std::string hash_of(const std::string& text);
-
 }  // namespace fettle::design

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fettle/core/base/atomic_file.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/design_file.hpp"
 #include "fettle/design/history.hpp"
 
@@ -59,9 +59,9 @@ std::vector<std::string> limits_of(const Design& design, const VectorX& point, c
 Errors write_files(const DesignProblem& problem, const OptimiseOptions& options, const OptimiseOutcome& outcome) {
     const std::filesystem::path folder = options.directory;
     const std::string text = design_text(problem.design(), outcome.report.point, options.directory);
-    Errors errors = core::base::write_file_atomically(folder / "design.final.json", text);
+    Errors errors = core::files::write_file_atomically(folder / "design.final.json", text);
     if (!errors.empty() || !outcome.final.usable) return errors;
-    return core::stepper::write_trajectory(folder / "trajectory.json", outcome.final.simulation.trajectory, *outcome.final.model,
+    return core::records::write_trajectory(folder / "trajectory.json", outcome.final.simulation.trajectory, *outcome.final.model,
                                            problem.design().scene_path);
 }
 

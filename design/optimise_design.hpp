@@ -9,7 +9,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/design/design_problem.hpp"
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
 
 namespace fettle::design {
 

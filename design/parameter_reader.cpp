@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/scene_shapes.hpp"
 
 namespace fettle::design {
 
 namespace {
 
-using core::scene::JsonNode;
+using core::files::JsonNode;
 
 const std::vector<std::string_view> dof_names{"px", "py", "pz", "rx", "ry", "rz"};
 
@@ -161,14 +161,8 @@ private:
         }
         if (std::find(shape->dimensions.begin(), shape->dimensions.end(), name) != shape->dimensions.end()) return true;
         std::vector<std::string_view> known(shape->dimensions.begin(), shape->dimensions.end());
-        std::string message = "generator \"" + body.shape->generator + "\" has no dimension " + node.shown();
-        if (const auto nearest = core::scene::nearest_word(name, known)) {
-            message += "; did you mean \"" + *nearest + "\"?";
-        } else {
-            message += "; it has";
-            for (size_t k = 0; k < known.size(); ++k) message += (k ? ", " : " ") + std::string(known[k]);
-        }
-        node.fail(ErrorCode::out_of_range, message);
+        node.fail(ErrorCode::out_of_range, "generator \"" + body.shape->generator + "\" has no dimension " + node.shown() + "; " +
+                                               core::files::did_you_mean(name, known));
         return false;
     }
 

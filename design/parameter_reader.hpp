@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/files/json_document.hpp"
 #include "fettle/design/objectives/objective_table.hpp"
 #include "fettle/design/parameters.hpp"
 
@@ -14,7 +14,7 @@ namespace fettle::design {
 
 /// @param length_unit_name  Of the file: the unit of a parameter that names none.
 /// Faults go to the node's document.
-std::vector<Parameter> read_parameters(const core::scene::JsonNode& node, const objectives::ReadContext& context,
+std::vector<Parameter> read_parameters(const core::files::JsonNode& node, const objectives::ReadContext& context,
                                        const std::string& length_unit_name);
 
 /// `wanted`, or "wanted 2", "wanted 3", ... if it is taken; takes it.

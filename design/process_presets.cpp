@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 
 namespace fettle::design {
 
@@ -52,10 +52,8 @@ Result<ProcessPreset> process_preset(std::string_view name, const std::string& w
         if (preset.name == name) return preset;
         known.push_back(preset.name);
     }
-    const auto nearest = core::scene::nearest_word(name, known);
     return Error{ErrorCode::out_of_range, where,
-                 "there is no process \"" + std::string(name) + "\"; " +
-                     (nearest ? "did you mean \"" + *nearest + "\"?" : "there are fdm, sla, sls, mjf")};
+                 "there is no process \"" + std::string(name) + "\"; " + core::files::did_you_mean(name, known)};
 }
 
 Result<double> part_tolerance(const ProcessPreset& preset, double size, const std::string& where) {

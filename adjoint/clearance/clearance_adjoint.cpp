@@ -11,7 +11,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/distance.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::clearance {
 namespace {
 
 using core::clearance::PairClearance;
@@ -206,4 +206,4 @@ double clearance_derivative(const core::model::Model& model, const Trajectory& t
     return least;
 }
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::clearance

@@ -26,7 +26,7 @@
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::clearance {
 
 /// Derivative of a witness's distance, sparse. Poses: (f, tau), dual to (dq, phi). Poses of one body and time may stand in several parts,
 /// which add up.
@@ -83,4 +83,4 @@ double directional(const ClearanceGradient& gradient, const ClearanceDirection& 
 double clearance_derivative(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                             const core::clearance::PairClearance& pair, const ClearanceDirection& direction, double tolerance);
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::clearance

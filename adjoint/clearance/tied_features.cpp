@@ -4,7 +4,7 @@
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::clearance {
 namespace {
 
 using core::clearance::Primitive;
@@ -109,4 +109,4 @@ std::vector<Witness> tied_features(const core::model::Model& model, const core::
     return out;
 }
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::clearance

@@ -8,11 +8,11 @@
 
 #include "fettle/core/clearance/clearance.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::clearance {
 
 /// Vertex-triangle and edge-edge pairs at most `tolerance` [m] farther apart than the points of `witness`, which is one of them.
 /// O(n log n + pairs near each other). Wires and points of codimensional bodies count against triangles and edges only.
 std::vector<core::clearance::Witness> tied_features(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a,
                                                     int b, const core::clearance::Witness& witness, double tolerance);
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::clearance

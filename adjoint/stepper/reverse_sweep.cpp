@@ -12,7 +12,7 @@
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 namespace {
 
 using core::kinematics::pose_matrix;
@@ -183,4 +183,4 @@ Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Traje
     return sweep.take();
 }
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

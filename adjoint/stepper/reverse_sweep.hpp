@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. method.md section 10.
+/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. docs/method.md section 10.
 /// Contract: the trajectory was simulated from this model with for_gradient = true. The result is as exact as the steps' residuals are
 /// small.
 ///
@@ -21,11 +21,11 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 
 /// One ModelGradient per seed; all seeds share each step's assembly and factorisation.
 /// Errors: what check_differentiable (step_linearisation.hpp) refuses, and a step whose Hessian is singular (names the step).
 Result<std::vector<ModelGradient>> reverse_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                  const std::vector<TrajectoryGradient>& seeds);
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

@@ -7,7 +7,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 namespace {
 
 using core::kinematics::pose_matrix;
@@ -129,4 +129,4 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
     return errors;
 }
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

@@ -8,7 +8,7 @@
 #include "fettle/core/solver/linear_solver.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 
 struct LinearisedStep {
     core::energy::StepProblem problem;
@@ -38,4 +38,4 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.
 bool rotates_freely(const core::model::Body& body);
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

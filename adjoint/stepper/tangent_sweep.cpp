@@ -11,7 +11,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 namespace {
 
 using core::kinematics::pose_matrix;
@@ -173,4 +173,4 @@ Result<std::vector<std::vector<Vector6>>> tangent_sweep(const Model& model, cons
     return sweep.take();
 }
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

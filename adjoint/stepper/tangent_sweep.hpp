@@ -8,7 +8,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
-namespace fettle::adjoint {
+namespace fettle::adjoint::stepper {
 
 /// The residual is differentiated as the contraction of dE/dP (3x4 per body) with dP/dy: no torque, no left Jacobian and no Hessian over
 /// prescribed coordinates enters, so that agreement with reverse_sweep checks those.
@@ -17,4 +17,4 @@ namespace fettle::adjoint {
 Result<std::vector<std::vector<Vector6>>> tangent_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                         const ModelTangent& direction);
 
-}  // namespace fettle::adjoint
+}  // namespace fettle::adjoint::stepper

@@ -17,7 +17,8 @@ struct Unit {
     std::string_view name;
     double numerator, denominator;
 };
-constexpr std::array<Unit, 6> units{{{"um", 1, 1'000'000}, {"mm", 1, 1000}, {"cm", 1, 100}, {"m", 1, 1}, {"in", 254, 10'000}, {"ft", 3048, 10'000}}};
+constexpr std::array<Unit, 6> units{
+    {{"um", 1, 1'000'000}, {"mm", 1, 1000}, {"cm", 1, 100}, {"m", 1, 1}, {"in", 254, 10'000}, {"ft", 3048, 10'000}}};
 
 const Unit* find_unit(std::string_view name) {
     for (const Unit& unit : units) {
@@ -50,7 +51,9 @@ Result<double> parse_length(std::string_view text, const std::string& where) {
     double number = 0;
     const auto [end, code] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
     if (code == std::errc::invalid_argument) {
-        return Error{ErrorCode::parse, where, "\"" + std::string(text) + "\" is not a length; write a number and a unit, such as 0.3mm (units: " + allowed_units + ")"};
+        return Error{
+            ErrorCode::parse, where,
+            "\"" + std::string(text) + "\" is not a length; write a number and a unit, such as 0.3mm (units: " + allowed_units + ")"};
     }
     if (code == std::errc::result_out_of_range || !std::isfinite(number)) {
         return Error{ErrorCode::not_finite, where, "\"" + std::string(text) + "\" is not a finite length"};
@@ -67,8 +70,8 @@ std::string format_length(double metres, std::string_view unit, int digits) {
     const Unit* found = find_unit(unit);
     FETTLE_ASSERT(found != nullptr && digits >= 1, "unknown unit " + std::string(unit));
     std::array<char, 64> text{};
-    const auto [end, code] =
-        std::to_chars(text.data(), text.data() + text.size(), metres * found->denominator / found->numerator, std::chars_format::general, std::min(digits, 17));
+    const auto [end, code] = std::to_chars(text.data(), text.data() + text.size(), metres * found->denominator / found->numerator,
+                                           std::chars_format::general, std::min(digits, 17));
     FETTLE_ASSERT(code == std::errc(), "a number longer than its buffer");
     return std::string(text.data(), end) + " " + std::string(unit);
 }

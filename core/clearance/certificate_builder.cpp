@@ -6,16 +6,16 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/certificate_thinning.hpp"
+#include "fettle/core/certificate/certificate_thinning.hpp"
 #include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
-BodyPieces body_pieces(const PieceTree& tree) {
+certificate::BodyPieces body_pieces(const PieceTree& tree) {
     const auto triangles = static_cast<int>(tree.mesh->triangles.size()), edges = static_cast<int>(tree.mesh->edges.size());
-    BodyPieces body;
+    certificate::BodyPieces body;
     for (const PieceElement& e : tree.elements) {
         const int offset = e.corners.count == 3 ? 0 : e.corners.count == 2 ? triangles : triangles + edges;
         body.elements.push_back(offset + e.primitive);
@@ -26,8 +26,8 @@ BodyPieces body_pieces(const PieceTree& tree) {
 }
 
 // Weights of a point of a primitive with corners x in its mesh's order: those of the closest point to it.
-CertifiedPoint certified_point(const geometry::Mesh& mesh, Primitive kind, int index, const Vector3& X) {
-    CertifiedPoint point{kind, index, {1, 0, 0}};
+certificate::CertifiedPoint certified_point(const geometry::Mesh& mesh, Primitive kind, int index, const Vector3& X) {
+    certificate::CertifiedPoint point{kind, index, {1, 0, 0}};
     if (kind == Primitive::edge) {
         const auto& e = mesh.edges[index];
         const auto closest = geometry::edge_edge_closest(X, X, mesh.vertices.col(e[0]), mesh.vertices.col(e[1]));
@@ -57,16 +57,17 @@ void name_crossing_edge(const PieceTree& tree, int element, int corner, const Ve
 
 }  // namespace
 
-Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs) {
-    Certificate certificate;
-    certificate.geometry_hash = stepper::geometry_hash(model);
+certificate::Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion,
+                                           std::size_t pairs) {
+    certificate::Certificate certificate;
+    certificate.geometry_hash = records::geometry_hash(model);
     certificate.motion = motion;
-    for (const PieceTree* tree : trees) certificate.bodies.push_back(tree != nullptr ? body_pieces(*tree) : BodyPieces{});
+    for (const PieceTree* tree : trees) certificate.bodies.push_back(tree != nullptr ? body_pieces(*tree) : certificate::BodyPieces{});
     certificate.pairs.resize(pairs);
     return certificate;
 }
 
-void complete_certificate(const PairMotion& pair, const SearchResult& found, PairCertificate& certificate) {
+void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate) {
     const Encounter& nearest = found.nearest;
     const Witness witness = witness_of(pair, nearest);
     const Instant at = instant_at(pair.segments[nearest.segment], nearest.s);
@@ -88,23 +89,23 @@ void complete_certificate(const PairMotion& pair, const SearchResult& found, Pai
     if (!(found.lower > 0)) certificate.segments.clear();
 }
 
-std::vector<checker::CertifiedBody> certified_bodies(const Certificate& certificate, const model::Model& model) {
-    std::vector<checker::CertifiedBody> bodies(model.bodies.size());
+std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Certificate& certificate, const model::Model& model) {
+    std::vector<certificate::CertifiedBody> bodies(model.bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (certificate.bodies[i].elements.empty()) continue;
-        auto body = checker::certified_body(certificate.bodies[i], model.bodies[i].mesh);
+        auto body = certificate::certified_body(certificate.bodies[i], model.bodies[i].mesh);
         FETTLE_ASSERT(body.has_value(), "pieces of our own that are wrong");
         bodies[i] = std::move(body).value();
     }
     return bodies;
 }
 
-void thin_certificate(const PairMotion& pair, const checker::CertifiedBody& a, const checker::CertifiedBody& b, double room,
-                      PairCertificate& certificate) {
+void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
+                      certificate::PairCertificate& certificate) {
     base::parallel_for(static_cast<int>(certificate.segments.size()), 1, [&](int i) {
         const PairSegment& segment = pair.segments[static_cast<std::size_t>(i)];
-        SegmentProof& proof = certificate.segments[static_cast<std::size_t>(i)];
-        proof = thinned(proof, certificate, a, b, pair.trajectory, segment.step, segment.segment, room);
+        certificate::SegmentProof& proof = certificate.segments[static_cast<std::size_t>(i)];
+        proof = certificate::thinned(proof, certificate, a, b, pair.trajectory, segment.step, segment.segment, room);
     });
 }
 

@@ -5,23 +5,25 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/clearance/certificate.hpp"
-#include "fettle/core/clearance/certified_body.hpp"
+#include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/certificate/certified_body.hpp"
 #include "fettle/core/clearance/pair_details.hpp"
+#include "fettle/core/model/model.hpp"
 
 namespace fettle::core::clearance {
 
 /// Hash, pieces of the bodies (null: of no pair), room for the pairs.
-Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs);
+certificate::Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion,
+                                           std::size_t pairs);
 
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
-void complete_certificate(const PairMotion& pair, const SearchResult& found, PairCertificate& certificate);
+void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate);
 
 /// The bodies as the certificate cuts them; empty ones for those of no pair.
-std::vector<checker::CertifiedBody> certified_bodies(const Certificate& certificate, const model::Model& model);
+std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Certificate& certificate, const model::Model& model);
 
 /// Fewer leaves and shorter normals, with `room` [m] above the claim: see certificate_thinning.hpp.
-void thin_certificate(const PairMotion& pair, const checker::CertifiedBody& a, const checker::CertifiedBody& b, double room,
-                      PairCertificate& certificate);
+void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
+                      certificate::PairCertificate& certificate);
 
 }  // namespace fettle::core::clearance

@@ -11,7 +11,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
 #include "fettle/core/clearance/pair_details.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -109,8 +109,8 @@ Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
 
 // Of one pair, in the making.
 struct PairRecord {
-    PairCertificate& certificate;
-    const checker::CertifiedBody &a, &b;
+    certificate::PairCertificate& certificate;
+    const certificate::CertifiedBody &a, &b;
 };
 
 SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search,
@@ -195,7 +195,7 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
     const std::vector<SegmentPlace> places = segment_places(trajectory, options.motion);
     const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, bodies);
-    std::vector<checker::CertifiedBody> certified;
+    std::vector<certificate::CertifiedBody> certified;
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
         for (const BodyMotion& motion : motions) trees.push_back(motion.tree.get());

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 
 namespace fettle::core::clearance {
 
-enum class Primitive { vertex, edge, triangle };
+using certificate::Primitive;
 
 /// Corners of an element, one a column; those beyond `count` repeat the last, so that what holds for all columns holds for the element.
 struct Corners {

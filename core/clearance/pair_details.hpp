@@ -5,8 +5,9 @@
 
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
 #include "fettle/core/clearance/pair_search.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::core::clearance {
 

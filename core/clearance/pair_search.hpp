@@ -9,38 +9,12 @@
 /// recorded, which is told segment by segment; then each one is (segment_search.hpp), and costs at least one entry.
 #pragma once
 
-#include <functional>
-#include <limits>
-#include <optional>
+#include <cstddef>
 #include <vector>
 
-#include "fettle/core/clearance/certificate.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "fettle/core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
-
-struct SearchOptions {
-    double tolerance = 1e-6;
-    long max_evaluations = 50'000'000;
-    double deviation_scale = 1;                               ///< less than 1 breaks the proof: for tests that must notice
-    std::function<bool()> should_stop;                        ///< optional
-    double enough = std::numeric_limits<double>::infinity();  ///< a lower bound of this much ends the search, whatever the gap [m]
-    bool nodes_only = false;                                  ///< at the ends of the segments instead of over them
-    bool seek_intersection = false;  ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
-    std::optional<Encounter> seed;   ///< of the same bodies: its distance is the first upper bound
-    bool sample_nodes = false;       ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
-    PairProof* proof = nullptr;      ///< the tree of entries is recorded here, one proof per segment
-};
-
-struct SearchResult {
-    double lower = 0, upper = 0;  ///< [m], lower >= 0; upper - lower <= tolerance unless rounding or the budget stands in the way
-    Encounter nearest;            ///< attains `upper`
-    Encounter sampled;            ///< if asked for: the least at ends of segments, to a hundredth of the tolerance
-    long evaluations = 0;         ///< bounds computed
-    bool complete = true;         ///< false: out of budget, or stopped
-    bool intersecting = false;    ///< `nearest` is an edge that passes through a triangle, deeper than rounding
-};
 
 /// Contract: at least one segment.
 SearchResult search_pair(const PieceTree& a, const PieceTree& b, const std::vector<PairSegment>& segments, const SearchOptions& options);

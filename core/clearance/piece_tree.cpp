@@ -13,10 +13,10 @@ namespace {
 
 class Builder {
 public:
-    Builder(PieceTree& tree, const contact::BodyHierarchy& hierarchy) : tree_(tree), hierarchy_(hierarchy) {}
+    Builder(PieceTree& tree, const geometry::BodyHierarchy& hierarchy) : tree_(tree), hierarchy_(hierarchy) {}
 
     int add_node(int index) {
-        const contact::HierarchyNode& node = hierarchy_.nodes()[index];
+        const geometry::HierarchyNode& node = hierarchy_.nodes()[index];
         Piece box;
         box.center = node.center;
         box.half_extent = node.half_extent;
@@ -112,15 +112,15 @@ private:
     }
 
     PieceTree& tree_;
-    const contact::BodyHierarchy& hierarchy_;
+    const geometry::BodyHierarchy& hierarchy_;
 };
 
 }  // namespace
 
-PieceTree make_piece_tree(const geometry::Mesh& mesh, const contact::BodyHierarchy& hierarchy) {
+PieceTree make_piece_tree(const geometry::Mesh& mesh, const geometry::BodyHierarchy& hierarchy) {
     PieceTree tree;
     tree.mesh = &mesh;
-    for (const contact::HierarchyElement& e : hierarchy.elements()) {
+    for (const geometry::HierarchyElement& e : hierarchy.elements()) {
         PieceElement element;
         element.vertices = e.vertices;
         element.corners.count = e.vertex_count;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fettle/core/clearance/element_pair.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 
@@ -42,6 +42,6 @@ struct PieceTree {
 };
 
 /// `mesh` must outlive the tree; `hierarchy` is that of the mesh.
-PieceTree make_piece_tree(const geometry::Mesh& mesh, const contact::BodyHierarchy& hierarchy);
+PieceTree make_piece_tree(const geometry::Mesh& mesh, const geometry::BodyHierarchy& hierarchy);
 
 }  // namespace fettle::core::clearance

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/clearance/certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 
 namespace fettle::core::clearance {
 
@@ -25,11 +25,11 @@ public:
         cells_.resize(cells_.size() + 2);
         return {first, first + 1};
     }
-    void set_plane(int cell, const LeafPlane& plane) {
+    void set_plane(int cell, const certificate::LeafPlane& plane) {
         if (on_) cells_[static_cast<std::size_t>(cell)].plane = plane;
     }
     /// One proof per segment.
-    void write(PairProof& proof) const {
+    void write(certificate::PairProof& proof) const {
         const std::size_t segments = segment_count();
         proof.assign(segments, {});
         for (std::size_t i = 0; i < segments; ++i) write_cells(i, proof[i]);
@@ -39,7 +39,7 @@ private:
     struct Cell {
         char split = '.';
         int first_child = -1;
-        LeafPlane plane;
+        certificate::LeafPlane plane;
     };
     std::size_t segment_count() const {
         std::size_t count = cells_.size();
@@ -47,7 +47,7 @@ private:
             if (cell.split != '.') count -= 2;
         return count;
     }
-    void write_cells(std::size_t root, SegmentProof& proof) const {
+    void write_cells(std::size_t root, certificate::SegmentProof& proof) const {
         std::vector<std::size_t> pending{root};
         while (!pending.empty()) {
             const Cell& cell = cells_[pending.back()];

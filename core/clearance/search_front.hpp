@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "fettle/core/clearance/pair_search.hpp"
+#include "fettle/core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
 

@@ -70,7 +70,7 @@ void SegmentSearch::make_halves(int index) {
 }
 
 // Queues the entry, or sets it aside if it cannot change the result. `plane` proves `lower`.
-void SegmentSearch::keep(const Entry& entry, double lower, const LeafPlane& plane, bool splittable) {
+void SegmentSearch::keep(const Entry& entry, double lower, const certificate::LeafPlane& plane, bool splittable) {
     recorder_.set_plane(entry.cell, plane);
     if (!splittable || lower >= front_.cutoff()) return front_.set_aside(lower);
     front_.push(lower, EntryKind::segment, entries_.add(entry));
@@ -82,7 +82,7 @@ double SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
     const IntervalBound& prepared = bounds_[interval_index];
     const Piece &piece_of_a = piece_a(a), &piece_of_b = piece_b(b);
     const Separation gap = separation(instants_[interval.middle], piece_of_a, piece_of_b);
-    const LeafPlane plane{gap.direction, gap.direction};
+    const certificate::LeafPlane plane{gap.direction, gap.direction};
     Entry entry;
     entry.interval = interval_index;
     entry.a = a;

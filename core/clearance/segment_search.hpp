@@ -55,7 +55,7 @@ private:
     void push_interval(const Interval& i);
     int add_instant(const PairSegment& segment, double s);
     void make_halves(int index);
-    void keep(const Entry& entry, double lower, const LeafPlane& plane, bool splittable);
+    void keep(const Entry& entry, double lower, const certificate::LeafPlane& plane, bool splittable);
     double try_pieces(int interval_index, int a, int b, int cell);
     SegmentBound elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1);
     void try_elements(Entry entry, const Vector3& n0, const Vector3& n1);

@@ -82,7 +82,7 @@ double deviation(const std::array<PathSegment, 2>& from, const PathSegment& a, c
 
 // World-axis box of a whole body along its segment.
 geometry::Box swept_box(const SweptBody& s, double margin) {
-    const HierarchyNode& root = s.body->hierarchy->nodes()[0];
+    const geometry::HierarchyNode& root = s.body->hierarchy->nodes()[0];
     geometry::Box box{Vector3::Constant(std::numeric_limits<double>::infinity()),
                       Vector3::Constant(-std::numeric_limits<double>::infinity())};
     for (const Pose& pose : s.ends) {

@@ -9,25 +9,11 @@
 #include <array>
 #include <vector>
 
+#include "fettle/core/contact/primitive_pair.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
 
 namespace fettle::core::contact {
-
-/// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
-/// those by less, the pair needs no second look.
-struct PrimitivePair {
-    int a = 0, b = 0;
-    double distance = 0;  ///< [m]
-};
-
-/// Primitives of two bodies, by kind. Each list is sorted by distance.
-struct PrimitivePairs {
-    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
-    std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
-    std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
-    bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
-};
 
 /// What a search has found between two bodies, a < b, and where.
 struct BodyPairCandidates : PrimitivePairs {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/kinematics/rotation.hpp"
 
 namespace fettle::core::contact {
 

@@ -2,7 +2,7 @@
 /// How far the arc of a turning arm leaves its chord: the parts of chord_deviation (curved_ccd.hpp) that need no translation.
 /// The arm's end is x(s) = R(theta + s w) Y, s in [0, 1], and bounds are of |x(s) - ((1 - s) x(0) + s x(1))|.
 ///
-/// Bounds, for exact arithmetic (method.md section 7):
+/// Bounds, for exact arithmetic (docs/method.md section 7):
 ///   B0 = |w|^2 |Y| / 8,   because |x''| <= |w|^2 |Y|;
 ///   B1 = |w| (|w x Y| + |theta x w| |Y| / 3) / 8: x'' = 2 int e^{aM} w x (e^{bM} (w x e^{cM} Y)) over a + b + c = 1, M = [theta + s w],
 ///        and |w x e^{cM} Y| = |e^{-cM} w x Y| <= |w x Y| + c |theta x w| |Y|, with c of mean 1/3;
@@ -14,6 +14,7 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/geometry/interval.hpp"
+#include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::core::contact {
 
@@ -49,5 +50,11 @@ double arc_deviation_interval(const Vector3& theta, const Vector3& w, const Vect
 /// root, 2.5u relative, so 2.5u |theta + s w| in the angle; sine, cosine (1 ulp) and the sums and products of the entries, 44u; products
 /// with base and X, 6u each, their sum with a translation 1u of its size (charged by the caller), and headroom.
 double rotated_rounding(double theta_norm, double w_norm, double s_end, double radius);
+
+enum class DeviationBound { closed_form, interval };
+
+/// Upper bound (rounding included) of |curve(s) - chord(s)| at equal parameter over the whole segment, for body point X:
+/// the least of B0, B1, B3 (closed form), or the paper's interval bound without what it charges for translation.
+double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X, DeviationBound bound = DeviationBound::closed_form);
 
 }  // namespace fettle::core::contact

@@ -27,7 +27,8 @@
 /// at the reported toi > 0 the distance still is dmin + g/2 or more. toi is 0 only if no gap can be proven at t = 0.
 #pragma once
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/contact/linear_ccd_result.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 
 namespace fettle::core::contact {
 

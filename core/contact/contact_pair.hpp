@@ -12,7 +12,7 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 

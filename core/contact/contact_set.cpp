@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
 namespace {

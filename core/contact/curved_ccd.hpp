@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Continuous collision detection of primitives of two rigid bodies on curved paths: the curve of each vertex is replaced by its
-/// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. method.md section 7.
+/// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. docs/method.md section 7.
 ///
 /// From time s, proven to be clear so far, take the rest of the segment if its deviation is at most 3/4 of the gap (lower bound of the
 /// distance less dmin), else a piece whose deviation is at most 1/8 of it. The linear query with dmin + deviation + rounding either clears
@@ -22,16 +22,11 @@
 
 #include <array>
 
+#include "fettle/core/contact/chord_deviation.hpp"
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::core::contact {
-
-enum class DeviationBound { closed_form, interval };
-
-/// Upper bound (rounding included) of |curve(s) - chord(s)| at equal parameter over the whole segment, for body point X:
-/// the least of B0, B1, B3 (closed form, chord_deviation.hpp), or the paper's interval bound without what it charges for translation.
-double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X, DeviationBound bound = DeviationBound::closed_form);
 
 struct CurvedCcdOptions {
     DeviationBound deviation = DeviationBound::closed_form;

@@ -17,7 +17,8 @@
 /// larger constant and 2 for the shift: err = 36 * 2^-52 = 72u for both.
 #pragma once
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/contact/linear_ccd_result.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 
 namespace fettle::core::contact {
 

@@ -19,7 +19,7 @@ struct SweptElement {
 };
 
 // `origin`: what positions are relative to, at each end.
-SweptElement swept_element(const SweptBody& s, const HierarchyElement& e, const Ends& origin) {
+SweptElement swept_element(const SweptBody& s, const geometry::HierarchyElement& e, const Ends& origin) {
     SweptElement out;
     const geometry::Triangle& face = s.body->hierarchy->faces()[e.face];
     for (int k = 0; k < 3; ++k) {
@@ -55,8 +55,8 @@ public:
     // Where the leaf's elements start.
     int place(int node) {
         if (first_[node] >= 0) return first_[node];
-        const BodyHierarchy& hierarchy = *body_->body->hierarchy;
-        const HierarchyNode& leaf = hierarchy.nodes()[node];
+        const geometry::BodyHierarchy& hierarchy = *body_->body->hierarchy;
+        const geometry::HierarchyNode& leaf = hierarchy.nodes()[node];
         first_[node] = static_cast<int>(elements_.size());
         filled_.push_back(node);
         for (int k = leaf.first; k < leaf.first + leaf.count; ++k)
@@ -90,7 +90,7 @@ public:
     }
 
     void visit(const NodePair& leaves) {
-        const HierarchyNode &na = body_a_.nodes()[leaves[0]], &nb = body_b_.nodes()[leaves[1]];
+        const geometry::HierarchyNode &na = body_a_.nodes()[leaves[0]], &nb = body_b_.nodes()[leaves[1]];
         lost_ = pair_.deviation(na.radius, nb.radius) + search_rounding * pair_.world_size;
         margin_ = pair_.margin + lost_;
         const int first_a = placed_a_.place(leaves[0]), first_b = placed_b_.place(leaves[1]);
@@ -155,8 +155,8 @@ private:
     }
 
     // Vertices that `owner` owns against the face of `other`.
-    void visit_vertices(const HierarchyElement& owner, const SweptElement& v, const HierarchyElement& other, const SweptElement& t,
-                        bool vertex_first) {
+    void visit_vertices(const geometry::HierarchyElement& owner, const SweptElement& v, const geometry::HierarchyElement& other,
+                        const SweptElement& t, bool vertex_first) {
         // Loose edges and points are faces for isolated points only: other vertices are ends of edges, whose own pairs cover them. Two
         // points are one pair, not two.
         if (other.triangle < 0 && (owner.vertex_count > 1 || (other.vertex_count == 1 && !vertex_first))) return;
@@ -172,7 +172,8 @@ private:
         }
     }
 
-    void visit_elements(const HierarchyElement& ea, const SweptElement& a, const HierarchyElement& eb, const SweptElement& b) {
+    void visit_elements(const geometry::HierarchyElement& ea, const SweptElement& a, const geometry::HierarchyElement& eb,
+                        const SweptElement& b) {
         visit_vertices(ea, a, eb, b, true);
         visit_vertices(eb, b, ea, a, false);
         for (int k = 0; k < ea.owned_edge_count; ++k) {
@@ -191,7 +192,7 @@ private:
     }
 
     const SweptPair& pair_;
-    const BodyHierarchy &body_a_, &body_b_;
+    const geometry::BodyHierarchy &body_a_, &body_b_;
     PlacedLeaves &placed_a_, &placed_b_;
     double margin_ = 0, lost_ = 0;  // of the pair of leaves being visited
     PrimitivePairs& out_;

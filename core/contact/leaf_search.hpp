@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 #include "fettle/core/contact/swept_pair.hpp"
 
 namespace fettle::core::contact {

@@ -4,31 +4,10 @@
 /// Curved paths: curved_ccd.hpp.
 #pragma once
 
-#include <array>
-
-#include "fettle/core/base/types.hpp"
+#include "fettle/core/contact/linear_ccd_result.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 
 namespace fettle::core::contact {
-
-enum class PairType { point_triangle, edge_edge };
-
-/// Vertices of a pair: point_triangle p t0 t1 t2, edge_edge ea0 ea1 eb0 eb1.
-using PairVertices = std::array<Vector3, 4>;
-
-enum class LinearCcdMethod { conservative_advancement, inclusion };
-
-struct LinearCcdOptions {
-    LinearCcdMethod method = LinearCcdMethod::conservative_advancement;
-    double tolerance = 1e-6;  ///< [m] advancement: a hit is reported where distance - dmin <= min(tolerance, a tenth of the first gap);
-                              ///< inclusion: size of a box's image, so hits are within sqrt(3) (tolerance + dmin)
-    /// Directions (never more than 5000; 78 on the public queries) or boxes; past it the answer is a conservative hit.
-    int max_iterations = 1'000'000;
-};
-
-struct LinearCcdResult {
-    bool hit = false;  ///< may come within `dmin` in [0, 1]; false is a proof that it does not
-    double toi = 1;    ///< proven: distance > dmin for all times in [0, toi); by advancement at toi > 0 itself too. 1 if no hit.
-};
 
 /// Do the primitives come within `dmin` for some time in [0, 1], the vertices moving from `t0` to `t1`?
 /// toi is 0 only for pairs that start within dmin, as far as doubles can tell (conservative_advancement.hpp). NaN and infinities are hits

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
 namespace {

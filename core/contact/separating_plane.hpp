@@ -6,7 +6,7 @@
 /// square roots and divisions, in a layout that compilers turn into vector instructions (of the same bits).
 #pragma once
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/contact/primitive_pair.hpp"
 
 namespace fettle::core::contact {
 

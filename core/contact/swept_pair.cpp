@@ -19,7 +19,7 @@ SweptAxis swept_axis(const SweptBody& a, const SweptBody& b, const Vector3& n) {
 }
 
 // True only if the boxes stay farther apart than the margin.
-bool are_separated(const SweptPair& pair, const HierarchyNode& a, const HierarchyNode& b) {
+bool are_separated(const SweptPair& pair, const geometry::HierarchyNode& a, const geometry::HierarchyNode& b) {
     const double bound = pair.margin + pair.deviation(a.radius, b.radius) +
                          search_rounding * (pair.reach + 4 * (a.radius + b.radius + a.half_extent.sum() + b.half_extent.sum()));
     for (const SweptAxis& n : pair.axes) {
@@ -60,7 +60,7 @@ std::vector<NodePair> close_nodes(const SweptPair& pair, NodePair from, std::siz
     while (!stack.empty() && (most == 0 || stack.size() + leaves.size() < most)) {
         const auto [i, j] = stack.back();
         stack.pop_back();
-        const HierarchyNode &a = nodes_a[i], &b = nodes_b[j];
+        const geometry::HierarchyNode &a = nodes_a[i], &b = nodes_b[j];
         if (are_separated(pair, a, b)) continue;
         if (a.is_leaf() && b.is_leaf()) {
             leaves.push_back({i, j});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Inertia and loads of one body in the incremental potential. method.md section 3.
+/// Inertia and loads of one body in the incremental potential. docs/method.md section 3.
 ///   E_d(P) = 1/2 tr((P - P_hat) M (P - P_hat)^T),   load: - weight f . (q - q_t0)
 #pragma once
 

@@ -13,12 +13,12 @@
 namespace fettle::core::geometry {
 
 struct MeshRequirements {
-    bool closed = true;               ///< every edge in exactly two triangles, each direction once; positive volume per solid
+    bool closed = true;  ///< every edge in exactly two triangles, each direction once; positive volume per solid
     bool no_self_intersection = true;
 };
 
-/// Every fault: non-finite vertices, index out of range, degenerate (exactly zero-area) triangles, open / non-manifold / wrongly oriented edges,
-/// inside-out solids, intersecting triangles (which, and where). At most `max_per_kind` of each kind, then a count. Empty: valid.
+/// Every fault: non-finite vertices, index out of range, degenerate (exactly zero-area) triangles, open / non-manifold / wrongly oriented
+/// edges, inside-out solids, intersecting triangles (which, and where). At most `max_per_kind` of each kind, then a count. Empty: valid.
 /// `where` is "<mesh name>: triangle 12" and the like.
 Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int max_per_kind = 5);
 

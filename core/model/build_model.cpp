@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/model/start_check.hpp"
@@ -301,7 +301,7 @@ void complete_geometry(Body& body) {
         body.edge_length_squared.push_back((body.mesh.vertices.col(edge[1]) - body.mesh.vertices.col(edge[0])).squaredNorm());
     }
     add_areas(body);
-    body.hierarchy = std::make_shared<const contact::BodyHierarchy>(body.mesh);
+    body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh);
 }
 
 void complete_geometry(std::vector<Body>& bodies) {

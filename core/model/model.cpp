@@ -3,9 +3,7 @@
 
 namespace fettle::core::model {
 
-kinematics::Pose scripted_pose(const Body& body, double time) {
-    return scene::scripted_pose(body.script, body.pose_start, time);
-}
+kinematics::Pose scripted_pose(const Body& body, double time) { return scene::scripted_pose(body.script, body.pose_start, time); }
 
 bool may_collide(const Model& model, int a, int b) {
     if (a == b) return false;

@@ -7,13 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/scene/scene.hpp"
-
-namespace fettle::core::contact {
-class BodyHierarchy;
-}
 
 namespace fettle::core::model {
 
@@ -38,7 +35,7 @@ struct Body {
     std::vector<double> edge_length_squared;  ///< undeformed, per edge: the mollifier's eps
     std::vector<double> vertex_area;          ///< a third of each adjacent triangle's, per vertex [m^2]
     std::vector<double> edge_area;            ///< the same per edge
-    std::shared_ptr<const contact::BodyHierarchy> hierarchy;
+    std::shared_ptr<const geometry::BodyHierarchy> hierarchy;
 };
 
 inline bool is_free(const Body& body, int dof) { return !body.prescribed[dof].has_value(); }
@@ -57,7 +54,7 @@ struct Model {
     double dhat = 1e-3;                 ///< [m]
     double dmin = 0;                    ///< [m]
     double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
-    bool adaptive_kappa = false;        ///< may a simulation start from a stiffer kappa and raise it (stepper/step.cpp)? never for a gradient
+    bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and raise it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
     Friction friction;
     scene::Integrator integrator = scene::Integrator::implicit_euler;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/geometry/predicates.hpp"
@@ -16,8 +16,8 @@
 namespace fettle::core::model {
 namespace {
 
-using contact::HierarchyElement;
-using contact::HierarchyNode;
+using geometry::HierarchyElement;
+using geometry::HierarchyNode;
 using Corners = std::array<Vector3, 3>;  ///< of an element; an edge or a point repeats its last vertex
 
 struct Box {

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <filesystem>
 
+#include "fettle/core/files/index_rows.hpp"
+#include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/mesh_files/find_mesh_file.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/fixture_state.hpp"
-#include "fettle/core/scene/index_rows.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
-#include "fettle/core/scene/mesh_reader.hpp"
-#include "fettle/core/scene/placement.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -42,8 +44,8 @@ const std::vector<std::string_view> body_keys{"mesh",
 
 constexpr const char* no_2d = "2D scenes are not supported";
 
-Vector3 scale_factors(const JsonNode& node, const geometry::Mesh& mesh) {
-    const JsonNode scale = node["scale"].unless_null(), dimensions = node["dimensions"].unless_null();
+Vector3 scale_factors(const files::JsonNode& node, const geometry::Mesh& mesh) {
+    const files::JsonNode scale = node["scale"].unless_null(), dimensions = node["dimensions"].unless_null();
     if (dimensions.exists()) {
         const Vector3 extent = mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
         Vector3 factors = fixture_vector(dimensions).value_or(Vector3::Ones());
@@ -54,7 +56,7 @@ Vector3 scale_factors(const JsonNode& node, const geometry::Mesh& mesh) {
     return Vector3::Constant(scale.number().value_or(1));
 }
 
-std::array<bool, 6> fixed_dofs(const JsonNode& node) {
+std::array<bool, 6> fixed_dofs(const files::JsonNode& node) {
     std::array<bool, 6> fixed{};
     if (node.is_bool()) {
         fixed.fill(node.boolean().value_or(false));
@@ -70,7 +72,7 @@ std::array<bool, 6> fixed_dofs(const JsonNode& node) {
     return fixed;
 }
 
-BodyType body_type(const JsonNode& node, const std::array<bool, 6>& fixed) {
+BodyType body_type(const files::JsonNode& node, const std::array<bool, 6>& fixed) {
     const std::string type = node.string().value_or("dynamic");
     if (type != "static" && type != "kinematic" && type != "dynamic") node.warn("unknown type " + node.shown() + " means static");
     const bool held = std::all_of(fixed.begin(), fixed.end(), [](bool f) { return f; });
@@ -79,7 +81,7 @@ BodyType body_type(const JsonNode& node, const std::array<bool, 6>& fixed) {
 }
 
 /// What the density is per. A solid that is inside out is turned: which side is out is not what its file meant to say.
-void decide_mass(const JsonNode& node, Body& body) {
+void decide_mass(const files::JsonNode& node, Body& body) {
     geometry::Mesh& mesh = body.mesh;
     const bool dynamic = body.type == BodyType::dynamic_body;
     if (mesh.triangles.empty()) {
@@ -95,10 +97,10 @@ void decide_mass(const JsonNode& node, Body& body) {
         return;
     }
     node.warn("the mesh is inside out: its triangles are turned");
-    turn_triangles(mesh);
+    geometry::turn_triangles(mesh);
 }
 
-void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
+void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
     const double stop = node["kinematic_max_time"].unless_null().number().value_or(-1);
     for (int dof = 0; dof < 6; ++dof) {
         MotionCurve curve;
@@ -112,7 +114,7 @@ void read_kinematic(const JsonNode& node, const std::array<bool, 6>& fixed, doub
     body.script = read_kinematic_poses(node["kinematic_poses"].unless_null(), body, fixed_rotations, timestep, stop_time);
 }
 
-void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
+void read_motion(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
     body.linear_velocity = fixture_vector(node["linear_velocity"].unless_null()).value_or(Vector3::Zero());
     body.angular_velocity = radians(1) * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
     body.force = fixture_vector(node["force"].unless_null()).value_or(Vector3::Zero());
@@ -129,7 +131,7 @@ void read_motion(const JsonNode& node, const std::array<bool, 6>& fixed, double 
 
 }  // namespace
 
-std::optional<Vector3> fixture_vector(const JsonNode& node) {
+std::optional<Vector3> fixture_vector(const files::JsonNode& node) {
     const auto found = node.numbers();
     if (!found) return std::nullopt;
     if (found->size() < 3) {
@@ -140,18 +142,18 @@ std::optional<Vector3> fixture_vector(const JsonNode& node) {
     return Vector3((*found)[0], (*found)[1], (*found)[2]);
 }
 
-std::optional<geometry::Mesh> FixtureBodies::mesh_file(const JsonNode& node, const std::string& name) {
+std::optional<geometry::Mesh> FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) {
     const auto known = files_.find(name);
     if (known != files_.end()) return known->second;
-    const auto file = find_mesh_file(name, document_.path(), options_.mesh_dirs, node.where());
+    const auto file = mesh_files::find_mesh_file(name, document_.path(), options_.mesh_dirs, node.where());
     if (!file) {
         node.fail(file.errors().front().code, file.errors().front().message);
         return std::nullopt;
     }
-    MeshReadOptions options;
+    mesh_files::MeshReadOptions options;
     options.unit = 1;
     options.weld = true;
-    const auto found = read_mesh(*file, options);
+    const auto found = mesh_files::read_mesh(*file, options);
     if (!found) {
         for (const auto& error : found.errors()) node.fail(error.code, (error.where.empty() ? "" : error.where + ": ") + error.message);
         return std::nullopt;
@@ -162,10 +164,10 @@ std::optional<geometry::Mesh> FixtureBodies::mesh_file(const JsonNode& node, con
     return files_[name] = *found;
 }
 
-std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const JsonNode& node) {
+std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const files::JsonNode& node) {
     geometry::Mesh mesh;
     mesh.name = "inline mesh";
-    const JsonNode vertices = node["vertices"].unless_null();
+    const files::JsonNode vertices = node["vertices"].unless_null();
     const auto rows = vertices.elements();
     if (rows.empty()) {
         node.fail(ErrorCode::missing_key, "a body needs a `mesh` or `vertices`");
@@ -180,35 +182,35 @@ std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const JsonNode& node) {
     }
     const std::size_t faults = document_.errors().size();
     const int count = static_cast<int>(rows.size());
-    mesh.triangles = index_rows<3>(node["faces"].unless_null(), count);
-    const auto edges = index_rows<2>(node["edges"].unless_null(), count);
+    mesh.triangles = files::index_rows<3>(node["faces"].unless_null(), count);
+    const auto edges = files::index_rows<2>(node["edges"].unless_null(), count);
     if (!good || document_.errors().size() > faults) return std::nullopt;
     build_connectivity(mesh, edges);
     return weld_exactly(mesh);
 }
 
-std::optional<geometry::Mesh> FixtureBodies::mesh(const JsonNode& node) {
-    const JsonNode file = node["mesh"].unless_null();
+std::optional<geometry::Mesh> FixtureBodies::mesh(const files::JsonNode& node) {
+    const files::JsonNode file = node["mesh"].unless_null();
     const auto name = file.string();
     if (file.exists() && !name) return std::nullopt;
     return name && !name->empty() ? mesh_file(file, *name) : inline_mesh(node);
 }
 
 /// Everything but mass and motion, which a component of a split body has for itself.
-Body FixtureBodies::placed(const JsonNode& node) {
+Body FixtureBodies::placed(const files::JsonNode& node) {
     Body body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
     const auto mesh = this->mesh(node);
     if (!mesh) return body;
     body.mesh = *mesh;
-    scale_mesh(body.mesh, scale_factors(node, body.mesh));
-    const JsonNode file = node["mesh"];
+    geometry::scale_mesh(body.mesh, scale_factors(node, body.mesh));
+    const files::JsonNode file = node["mesh"];
     body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
     if (body.name.empty()) body.name = "body";
     std::replace_if(
         body.name.begin(), body.name.end(), [](char c) { return c == ':' || c == ','; }, '_');
-    const JsonNode rotation = node["rotation"].unless_null();
+    const files::JsonNode rotation = node["rotation"].unless_null();
     if (rotation.is_number()) rotation.fail(ErrorCode::unsupported, no_2d);
     if (rotation.exists() && !rotation.is_number()) {
         body.pose.rotation = rotation_from_degrees(fixture_vector(rotation).value_or(Vector3::Zero()));
@@ -218,18 +220,18 @@ Body FixtureBodies::placed(const JsonNode& node) {
     return body;
 }
 
-std::vector<Body> FixtureBodies::read(const JsonNode& node, double timestep) {
+std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timestep) {
     node.warn_of_other_keys(body_keys);
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
     Body body = placed(node);
     if (body.mesh.vertices.cols() == 0) return {};
     const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
     body.type = body_type(node["type"].unless_null(), fixed);
-    const JsonNode density = node["density"].unless_null();
-    body.density = (body.type == BodyType::dynamic_body ? density.number(positive) : density.number()).value_or(1000);
+    const files::JsonNode density = node["density"].unless_null();
+    body.density = (body.type == BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
     std::vector<Body> bodies;
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
-    for (geometry::Mesh& mesh : split ? split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {
+    for (geometry::Mesh& mesh : split ? geometry::split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {
         bodies.push_back(body);
         bodies.back().mesh = std::move(mesh);
         decide_mass(node, bodies.back());

@@ -6,29 +6,27 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/scene/read_options.hpp"
 
 namespace fettle::core::scene {
-
-/// Three numbers; two of them are a 2D scene, which is `unsupported`; more than three are cut.
-std::optional<Vector3> fixture_vector(const JsonNode& node);
 
 class FixtureBodies {
 public:
     /// Both outlive this object.
-    FixtureBodies(JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
+    FixtureBodies(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
     /// One body, or one per facet-connected component (`split_components`); none if it is switched off (`enabled`) or nothing useful can be
     /// read. Faults go to the document. @param timestep  [s], of the scene.
-    std::vector<Body> read(const JsonNode& node, double timestep);
+    std::vector<Body> read(const files::JsonNode& node, double timestep);
 
 private:
-    Body placed(const JsonNode& node);
-    std::optional<geometry::Mesh> mesh(const JsonNode& node);
-    std::optional<geometry::Mesh> mesh_file(const JsonNode& node, const std::string& name);
-    std::optional<geometry::Mesh> inline_mesh(const JsonNode& node);
+    Body placed(const files::JsonNode& node);
+    std::optional<geometry::Mesh> mesh(const files::JsonNode& node);
+    std::optional<geometry::Mesh> mesh_file(const files::JsonNode& node, const std::string& name);
+    std::optional<geometry::Mesh> inline_mesh(const files::JsonNode& node);
 
-    JsonDocument& document_;
+    files::JsonDocument& document_;
     const ReadOptions& options_;
     std::map<std::string, geometry::Mesh> files_;  ///< already read: scenes repeat one mesh many times
 };

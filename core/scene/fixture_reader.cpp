@@ -45,21 +45,21 @@ const std::vector<std::string_view> solver_keys{
 
 class FixtureReader {
 public:
-    FixtureReader(JsonDocument& document, const ReadOptions& options) : document_(document), bodies_(document, options) {}
+    FixtureReader(files::JsonDocument& document, const ReadOptions& options) : document_(document), bodies_(document, options) {}
 
     base::Result<Scene> read() {
-        const JsonNode root = scene_root();
+        const files::JsonNode root = scene_root();
         root.warn_of_other_keys(top_keys);
         scene_.path = document_.path();
         read_scene_type(root["scene_type"].unless_null());
         read_time(root);
-        const JsonNode problem = root["rigid_body_problem"].unless_null();
+        const files::JsonNode problem = root["rigid_body_problem"].unless_null();
         problem.warn_of_other_keys(problem_keys);
         scene_.gravity = fixture_vector(problem["gravity"].unless_null()).value_or(Vector3::Zero());
         read_stepper(problem["time_stepper"].unless_null());
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
-        for (const JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
+        for (const files::JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
             for (Body& body : bodies_.read(node, scene_.timestep)) scene_.bodies.push_back(std::move(body));
         }
         merge_groups();
@@ -75,20 +75,20 @@ public:
 
 private:
     /// A saved simulation holds its scene under `args`.
-    JsonNode scene_root() {
-        const JsonNode root = document_.root();
+    files::JsonNode scene_root() {
+        const files::JsonNode root = document_.root();
         return root["rigid_body_problem"].exists() ? root : root["args"];
     }
 
-    void read_scene_type(const JsonNode& node) {
+    void read_scene_type(const files::JsonNode& node) {
         const auto type = node.choice({"distance_barrier_rb_problem", "split_distance_barrier_rb_problem"});
         if (type == "split_distance_barrier_rb_problem") {
             node.fail(ErrorCode::unsupported, "`scene_type` split_distance_barrier_rb_problem (2D, restitution) is not supported");
         }
     }
 
-    void read_time(const JsonNode& root) {
-        scene_.timestep = root["timestep"].unless_null().number(positive).value_or(0.01);
+    void read_time(const files::JsonNode& root) {
+        scene_.timestep = root["timestep"].unless_null().number(files::positive).value_or(0.01);
         const double max_time = root["max_time"].unless_null().number().value_or(-1);
         const int max_iterations = root["max_iterations"].unless_null().integer(-1).value_or(-1);
         if (max_time >= 0) {
@@ -98,7 +98,7 @@ private:
         }
     }
 
-    void read_stepper(const JsonNode& node) {
+    void read_stepper(const files::JsonNode& node) {
         const std::string stepper = node.string().value_or("default");
         if (stepper == "implicit_newmark" || stepper == "stabilized_newmark") {
             scene_.integrator = Integrator::newmark;
@@ -107,27 +107,27 @@ private:
         }
     }
 
-    void read_friction(const JsonNode& coefficient, const JsonNode& constraints) {
+    void read_friction(const files::JsonNode& coefficient, const files::JsonNode& constraints) {
         constraints.warn_of_other_keys(friction_keys);
         Friction& friction = scene_.friction;
-        friction.mu = coefficient.number(not_negative).value_or(0);
-        friction.eps_v = constraints["static_friction_speed_bound"].unless_null().number(positive).value_or(friction.eps_v);
+        friction.mu = coefficient.number(files::not_negative).value_or(0);
+        friction.eps_v = constraints["static_friction_speed_bound"].unless_null().number(files::positive).value_or(friction.eps_v);
         friction.rounds = std::max(-1, constraints["iterations"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(1));
     }
 
-    void read_barrier(const JsonNode& node) {
+    void read_barrier(const files::JsonNode& node) {
         node.warn_of_other_keys(barrier_keys);
-        scene_.dhat = node["initial_barrier_activation_distance"].unless_null().number(positive).value_or(1e-3);
-        scene_.dmin = node["minimum_separation_distance"].unless_null().number(not_negative).value_or(0);
+        scene_.dhat = node["initial_barrier_activation_distance"].unless_null().number(files::positive).value_or(1e-3);
+        scene_.dmin = node["minimum_separation_distance"].unless_null().number(files::not_negative).value_or(0);
     }
 
-    void read_solver(const JsonNode& node) {
+    void read_solver(const files::JsonNode& node) {
         node.warn_of_other_keys(solver_keys);
         scene_.max_newton_iterations = node["max_iterations"].unless_null().integer(1).value_or(scene_.max_newton_iterations);
-        const JsonNode criterion = node["convergence_criteria"].unless_null();
+        const files::JsonNode criterion = node["convergence_criteria"].unless_null();
         if (criterion.string().value_or("velocity") != "velocity") criterion.warn("only the `velocity` criterion is used");
         const bool absolute = node["is_velocity_conv_tol_abs"].unless_null().boolean().value_or(false);
-        const double tolerance = node["velocity_conv_tol"].unless_null().number(positive).value_or(1e-2);
+        const double tolerance = node["velocity_conv_tol"].unless_null().number(files::positive).value_or(1e-2);
         const double diagonal = bounding_diagonal(scene_);
         if (absolute || diagonal > 0) scene_.velocity_tolerance = absolute ? tolerance : tolerance * diagonal;
     }
@@ -161,20 +161,22 @@ private:
         }
     }
 
-    JsonDocument& document_;
+    files::JsonDocument& document_;
     FixtureBodies bodies_;
     Scene scene_;
 };
 
 }  // namespace
 
-bool is_fixture(const JsonNode& root) {
+bool is_fixture(const files::JsonNode& root) {
     if (!root.is_object()) return false;
     if (root["rigid_body_problem"].exists()) return true;
-    const JsonNode args = root["args"];
+    const files::JsonNode args = root["args"];
     return args.is_object() && args["rigid_body_problem"].exists();
 }
 
-base::Result<Scene> read_fixture(JsonDocument& document, const ReadOptions& options) { return FixtureReader(document, options).read(); }
+base::Result<Scene> read_fixture(files::JsonDocument& document, const ReadOptions& options) {
+    return FixtureReader(document, options).read();
+}
 
 }  // namespace fettle::core::scene

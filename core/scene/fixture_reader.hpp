@@ -4,15 +4,15 @@
 /// why: README.md beside this file.
 #pragma once
 
-#include "fettle/core/scene/json_document.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/scene/read_options.hpp"
 
 namespace fettle::core::scene {
 
 /// Is this the root of such a file (or of a saved simulation, which holds its scene under `args`)?
-bool is_fixture(const JsonNode& root);
+bool is_fixture(const files::JsonNode& root);
 
 /// `document` stays the owner of faults and warnings. @return the scene, or every fault.
-base::Result<Scene> read_fixture(JsonDocument& document, const ReadOptions& options);
+base::Result<Scene> read_fixture(files::JsonDocument& document, const ReadOptions& options);
 
 }  // namespace fettle::core::scene

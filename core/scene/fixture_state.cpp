@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/scene/fixture_body.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 
 namespace fettle::core::scene {
@@ -40,13 +39,13 @@ struct SavedPose {
     Matrix3 rotation = Matrix3::Identity();
 };
 
-SavedPose saved_pose(const JsonNode& node) {
+SavedPose saved_pose(const files::JsonNode& node) {
     return {fixture_vector(node["position"].unless_null()).value_or(Vector3::Zero()),
             kinematics::rotation(fixture_vector(node["rotation"].unless_null()).value_or(Vector3::Zero()))};
 }
 
 /// World axes, radians per second: from dQ/dt = [omega] Q if it is there, else `angular_velocity`, which is about the principal axes.
-Vector3 saved_angular_velocity(const JsonNode& node, const Matrix3& rotation) {
+Vector3 saved_angular_velocity(const files::JsonNode& node, const Matrix3& rotation) {
     const auto rows = node["Qdot"].unless_null().elements();
     if (rows.size() != 3) return rotation * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
     Matrix3 derivative;
@@ -69,7 +68,7 @@ void shift_script(Body& body, double passed) {
     }
 }
 
-void continue_body(const JsonNode& first, const JsonNode& last, Body& body) {
+void continue_body(const files::JsonNode& first, const files::JsonNode& last, Body& body) {
     const SavedPose start = saved_pose(first), end = saved_pose(last);
     const bool moved = start.position != end.position || start.rotation != end.rotation;
     if (moved) {  // a body at rest stays where its file puts it, to the last bit
@@ -98,14 +97,14 @@ Matrix3 fixture_principal_axes(const Body& body, int fixed_rotations) {
     return axes;
 }
 
-PoseScript read_kinematic_poses(const JsonNode& node, const Body& body, int fixed_rotations, double timestep,
+PoseScript read_kinematic_poses(const files::JsonNode& node, const Body& body, int fixed_rotations, double timestep,
                                 std::optional<double> stop_time) {
     PoseScript script;
     const auto entries = node.elements();
     if (entries.empty() || stop_time == 0.0) return script;
     const Vector3 centre = centre_of_mass(body.mesh, body.mass_kind).value_or(Vector3::Zero());
     const Matrix3 unturned = fixture_principal_axes(body, fixed_rotations).transpose() * body.pose.rotation;
-    for (const JsonNode& entry : entries) {
+    for (const files::JsonNode& entry : entries) {
         entry.warn_of_other_keys({"position", "rotation"});
         if (!entry.is_object())
             entry.fail(ErrorCode::wrong_type, "an object with `position` and `rotation` is wanted, found " + entry.shown());
@@ -126,8 +125,8 @@ PoseScript read_kinematic_poses(const JsonNode& node, const Body& body, int fixe
     return script;
 }
 
-void continue_from_last_state(const JsonNode& animation, Scene& scene) {
-    const JsonNode sequence = animation["state_sequence"].unless_null();
+void continue_from_last_state(const files::JsonNode& animation, Scene& scene) {
+    const files::JsonNode sequence = animation["state_sequence"].unless_null();
     const auto states = sequence.elements();
     if (states.size() < 2) return;
     const auto first = states.front()["rigid_bodies"].elements(), last = states.back()["rigid_bodies"].elements();

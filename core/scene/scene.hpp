@@ -62,7 +62,7 @@ struct Friction {
     int rounds = 1;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree; 0: off
 };
 
-/// Time integration (method.md section 3). First order and dissipative; second order; second order and energy keeping.
+/// Time integration (docs/method.md section 3). First order and dissipative; second order; second order and energy keeping.
 enum class Integrator { implicit_euler, bdf2, newmark };
 
 /// How strictly meshes are taken: our own files refuse what a printable part cannot be; the paper's files load with warnings.
@@ -77,42 +77,42 @@ struct ShapeSpec {
 
 struct Body {
     std::string name;
-    std::string where;                ///< file and JSON pointer, for messages
+    std::string where;  ///< file and JSON pointer, for messages
     BodyType type = BodyType::dynamic_body;
-    geometry::Mesh mesh;              ///< vertices in the file's frame, scaled, [m]
-    std::optional<ShapeSpec> shape;   ///< what `mesh` was made from, if a generator made it
+    geometry::Mesh mesh;             ///< vertices in the file's frame, scaled, [m]
+    std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if a generator made it
     MeshPolicy mesh_policy = MeshPolicy::strict;
-    double density = 1000;            ///< per what `mass_kind` says
+    double density = 1000;  ///< per what `mass_kind` says
     MassKind mass_kind = MassKind::volume;
-    std::string material;             ///< for friction; empty: none named
-    std::optional<double> mu;         ///< its own friction coefficient
-    kinematics::Pose pose;            ///< of the file's frame at the start: world = rotation * x + position
+    std::string material;                        ///< for friction; empty: none named
+    std::optional<double> mu;                    ///< its own friction coefficient
+    kinematics::Pose pose;                       ///< of the file's frame at the start: world = rotation * x + position
     Vector3 linear_velocity = Vector3::Zero();   ///< of the reference point (model/model.hpp) at the start [m/s]
     Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
-    PrescribedMotion prescribed;      ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
-    PoseScript script;                ///< kinematic only; then `prescribed` is what follows it
-    Vector3 force = Vector3::Zero();  ///< constant, world, at the reference point [N]
-    Vector3 torque = Vector3::Zero(); ///< constant, world [N m]
+    PrescribedMotion prescribed;                 ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
+    PoseScript script;                           ///< kinematic only; then `prescribed` is what follows it
+    Vector3 force = Vector3::Zero();             ///< constant, world, at the reference point [N]
+    Vector3 torque = Vector3::Zero();            ///< constant, world [N m]
     std::optional<Vector3> reference_point;      ///< in the file's frame [m]; default see model/model.hpp
-    int group = -1;                   ///< bodies of one group (>= 0) never collide
+    int group = -1;                              ///< bodies of one group (>= 0) never collide
 };
 
 struct Scene {
-    std::string path;                 ///< of the file; empty when made in memory
-    double length_unit = 1;           ///< of the file [m]; for reports only, everything here is SI
+    std::string path;        ///< of the file; empty when made in memory
+    double length_unit = 1;  ///< of the file [m]; for reports only, everything here is SI
     std::vector<Body> bodies;
-    Vector3 gravity = Vector3::Zero();           ///< [m/s^2]
-    double timestep = 0.01;                      ///< h [s]
-    std::optional<double> end_time;              ///< [s]
-    std::optional<double> dhat;                  ///< activation distance [m]; default 1e-3 of the scene's diagonal
-    double dmin = 0;                             ///< minimum separation [m]
-    std::optional<double> kappa;                 ///< barrier stiffness [N/m]; default chosen by choose_kappa, and raised as steps need it
-    bool area_weighted = false;                  ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
+    Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
+    double timestep = 0.01;             ///< h [s]
+    std::optional<double> end_time;     ///< [s]
+    std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of the scene's diagonal
+    double dmin = 0;                    ///< minimum separation [m]
+    std::optional<double> kappa;        ///< barrier stiffness [N/m]; default chosen by choose_kappa, and raised as steps need it
+    bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
     Friction friction;
     Integrator integrator = Integrator::implicit_euler;
-    std::optional<double> velocity_tolerance;    ///< Newton stops below this speed of any point [m/s]; default 1e-2 diagonal / s
+    std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 diagonal / s
     int max_newton_iterations = 3000;
-    std::vector<std::string> warnings;           ///< what a lenient reader accepted
+    std::vector<std::string> warnings;  ///< what a lenient reader accepted
 };
 
 /// Diagonal of the bounding box of everything at the start [m]; 0 for an empty scene.

@@ -4,10 +4,12 @@
 #include <algorithm>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/scene/index_rows.hpp"
-#include "fettle/core/scene/mesh_reader.hpp"
-#include "fettle/core/scene/nearest_word.hpp"
-#include "fettle/core/scene/placement.hpp"
+#include "fettle/core/files/index_rows.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/mesh_transforms.hpp"
+#include "fettle/core/mesh_files/find_mesh_file.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/scene_motion.hpp"
 
 namespace fettle::core::scene {
@@ -44,7 +46,7 @@ const std::vector<std::string_view> body_keys{"name",
 
 }  // namespace
 
-std::optional<std::string> read_material_name(const JsonNode& node, const MaterialDensities& materials) {
+std::optional<std::string> read_material_name(const files::JsonNode& node, const MaterialDensities& materials) {
     std::vector<std::string_view> names;
     for (const auto& [name, density] : materials) names.push_back(name);
     if (!node.is_string() || !names.empty()) return node.choice(names);
@@ -52,7 +54,7 @@ std::optional<std::string> read_material_name(const JsonNode& node, const Materi
     return std::nullopt;
 }
 
-std::vector<Body> SceneBodies::read(const JsonNode& node) {
+std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
     Body body;
     body.where = node.where();
     node.allow_keys(body_keys);
@@ -69,7 +71,7 @@ std::vector<Body> SceneBodies::read(const JsonNode& node) {
     return components(node, std::move(body));
 }
 
-void SceneBodies::read_name(const JsonNode& node, Body& body) {
+void SceneBodies::read_name(const files::JsonNode& node, Body& body) {
     body.name = node.string().value_or("");
     if (!node.is_string()) return;
     if (body.name.empty() || body.name.find_first_of(":,") != std::string::npos) {
@@ -79,8 +81,8 @@ void SceneBodies::read_name(const JsonNode& node, Body& body) {
     }
 }
 
-void SceneBodies::read_geometry(const JsonNode& node, Body& body) {
-    const JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
+void SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
+    const files::JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
     const int sources = static_cast<int>(mesh.exists()) + static_cast<int>(shape.exists()) + static_cast<int>(vertices.exists());
     if (sources != 1) {
         node.fail(sources > 1 ? ErrorCode::inconsistent : ErrorCode::missing_key,
@@ -95,35 +97,35 @@ void SceneBodies::read_geometry(const JsonNode& node, Body& body) {
     if (mesh.exists()) read_mesh_file(node, body);
     if (shape.exists()) make_shape(shape, body);
     if (vertices.exists()) read_inline(node, body);
-    const JsonNode scale = node["scale"];
+    const files::JsonNode scale = node["scale"];
     if (!scale.exists()) return;
     Vector3 factors = Vector3::Ones();
     if (scale.is_array()) {
         factors = scale.vector3().value_or(factors);
         if (!(factors.minCoeff() > 0)) scale.fail(ErrorCode::out_of_range, "every scale factor must be greater than 0");
     } else {
-        factors *= scale.number(positive).value_or(1);
+        factors *= scale.number(files::positive).value_or(1);
     }
-    scale_mesh(body.mesh, factors);
+    geometry::scale_mesh(body.mesh, factors);
 }
 
-void SceneBodies::read_mesh_file(const JsonNode& node, Body& body) {
-    const JsonNode mesh = node["mesh"];
-    MeshReadOptions options;
+void SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
+    const files::JsonNode mesh = node["mesh"];
+    mesh_files::MeshReadOptions options;
     options.unit = unit_;
     options.weld = true;
     if (const auto name = node["mesh_unit"].choice({"um", "mm", "cm", "m", "in", "ft"}))
         options.unit = base::metres_per_unit(*name).value();
     const auto name = mesh.string();
     if (!name) return;
-    const auto file = find_mesh_file(*name, document_.path(), options_.mesh_dirs, mesh.where());
+    const auto file = mesh_files::find_mesh_file(*name, document_.path(), options_.mesh_dirs, mesh.where());
     if (!file) return report(file.errors(), mesh);
-    const auto found = read_mesh(*file, options);
+    const auto found = mesh_files::read_mesh(*file, options);
     if (!found) return report(found.errors(), mesh);
     body.mesh = *found;
 }
 
-void SceneBodies::make_shape(const JsonNode& node, Body& body) {
+void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
     node.allow_keys({"generator", "dimensions", "counts"});
     ShapeSpec spec;
     spec.generator = node.require("generator").string().value_or("");
@@ -140,7 +142,7 @@ void SceneBodies::make_shape(const JsonNode& node, Body& body) {
     body.mesh = std::move(made).value();
 }
 
-void SceneBodies::read_inline(const JsonNode& node, Body& body) {
+void SceneBodies::read_inline(const files::JsonNode& node, Body& body) {
     const std::size_t faults = document_.errors().size();
     geometry::Mesh mesh;
     mesh.name = body.name;
@@ -150,8 +152,8 @@ void SceneBodies::read_inline(const JsonNode& node, Body& body) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         mesh.vertices.col(static_cast<Eigen::Index>(i)) = rows[i].length3(unit_).value_or(Vector3::Zero());
     }
-    const auto edges = index_rows<2>(node["edges"], static_cast<int>(rows.size()));
-    mesh.triangles = index_rows<3>(node["triangles"], static_cast<int>(rows.size()));
+    const auto edges = files::index_rows<2>(node["edges"], static_cast<int>(rows.size()));
+    mesh.triangles = files::index_rows<3>(node["triangles"], static_cast<int>(rows.size()));
     for (std::size_t e = 0; e < edges.size() && document_.errors().size() == faults; ++e) {
         if (mesh.vertices.col(edges[e][0]) != mesh.vertices.col(edges[e][1])) continue;
         node["edges"].elements()[e].fail(ErrorCode::out_of_range, "an edge joins two different places");
@@ -161,14 +163,14 @@ void SceneBodies::read_inline(const JsonNode& node, Body& body) {
     body.mesh = geometry::weld_exactly(mesh);
 }
 
-void SceneBodies::read_mass(const JsonNode& node, Body& body) {
+void SceneBodies::read_mass(const files::JsonNode& node, Body& body) {
     const std::string per = node["mass_per"].choice({"volume", "area", "length", "vertex"}).value_or("volume");
     body.mass_kind = per == "area"     ? MassKind::area
                      : per == "length" ? MassKind::length
                      : per == "vertex" ? MassKind::vertex
                                        : MassKind::volume;
-    std::optional<double> density = node["density"].number(positive);
-    body.mu = node["mu"].number(not_negative);
+    std::optional<double> density = node["density"].number(files::positive);
+    body.mu = node["mu"].number(files::not_negative);
     body.material = read_material_name(node["material"], densities_).value_or("");
     const auto known = densities_.find(body.material);
     const bool given = node["density"].exists();
@@ -177,7 +179,7 @@ void SceneBodies::read_mass(const JsonNode& node, Body& body) {
     body.density = density.value_or(body.density);
 }
 
-void SceneBodies::read_group(const JsonNode& node, Body& body) {
+void SceneBodies::read_group(const files::JsonNode& node, Body& body) {
     if (!node.is_string()) {
         body.group = node.integer(0).value_or(-1);
         return;
@@ -196,14 +198,14 @@ void SceneBodies::number_groups(std::vector<Body>& bodies) const {
     }
 }
 
-std::vector<Body> SceneBodies::components(const JsonNode& node, Body body) {
-    const JsonNode key = node["split_components"];
+std::vector<Body> SceneBodies::components(const files::JsonNode& node, Body body) {
+    const files::JsonNode key = node["split_components"];
     if (!key.boolean().value_or(false) || body.mesh.vertices.cols() == 0) return {std::move(body)};
     if (body.shape) key.fail(ErrorCode::inconsistent, "a generated `shape` is one part");
     if (body.reference_point)
         key.fail(ErrorCode::inconsistent, "each component has its own centre of mass; a `reference_point` is of one body");
     Eigen::Index kept = 0;
-    std::vector<geometry::Mesh> parts = split_shells(body.mesh);
+    std::vector<geometry::Mesh> parts = geometry::split_shells(body.mesh);
     std::size_t edges = 0;
     for (const auto& part : parts) {
         kept += part.vertices.cols();
@@ -226,7 +228,7 @@ std::vector<Body> SceneBodies::components(const JsonNode& node, Body body) {
 }
 
 /// Errors of meshes and generators know nothing of the file: say which body asked.
-void SceneBodies::report(const base::Errors& errors, const JsonNode& node) {
+void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node) {
     for (const auto& error : errors) {
         const bool placed = error.where.empty() || error.where == node.where();
         node.fail(error.code, (placed ? "" : error.where + ": ") + error.message);

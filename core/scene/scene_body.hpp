@@ -8,39 +8,40 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/scene/read_options.hpp"
 
 namespace fettle::core::scene {
 
 using MaterialDensities = std::map<std::string, std::optional<double>>;  ///< of all materials of a file, where stated [kg/m^3]
 
 /// The name of a material that is listed; out_of_range with the nearest one otherwise.
-std::optional<std::string> read_material_name(const JsonNode& node, const MaterialDensities& materials);
+std::optional<std::string> read_material_name(const files::JsonNode& node, const MaterialDensities& materials);
 
 class SceneBodies {
 public:
     /// All outlive this object. @param unit  of lengths [m].
-    SceneBodies(JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities)
+    SceneBodies(files::JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities)
         : document_(document), options_(options), unit_(unit), densities_(densities) {}
 
     /// One body, or one per edge-connected component (`split_components`). Faults go to the document; values read after one are never used.
-    std::vector<Body> read(const JsonNode& node);
+    std::vector<Body> read(const files::JsonNode& node);
 
     /// Gives numbers to the groups that have names; after all bodies have been read.
     void number_groups(std::vector<Body>& bodies) const;
 
 private:
-    void read_name(const JsonNode& node, Body& body);
-    void read_geometry(const JsonNode& node, Body& body);
-    void read_mesh_file(const JsonNode& node, Body& body);
-    void make_shape(const JsonNode& node, Body& body);
-    void read_inline(const JsonNode& node, Body& body);
-    void read_mass(const JsonNode& node, Body& body);
-    void read_group(const JsonNode& node, Body& body);
-    std::vector<Body> components(const JsonNode& node, Body body);
-    void report(const base::Errors& errors, const JsonNode& node);
+    void read_name(const files::JsonNode& node, Body& body);
+    void read_geometry(const files::JsonNode& node, Body& body);
+    void read_mesh_file(const files::JsonNode& node, Body& body);
+    void make_shape(const files::JsonNode& node, Body& body);
+    void read_inline(const files::JsonNode& node, Body& body);
+    void read_mass(const files::JsonNode& node, Body& body);
+    void read_group(const files::JsonNode& node, Body& body);
+    std::vector<Body> components(const files::JsonNode& node, Body body);
+    void report(const base::Errors& errors, const files::JsonNode& node);
 
-    JsonDocument& document_;
+    files::JsonDocument& document_;
     const ReadOptions& options_;
     double unit_;
     const MaterialDensities& densities_;

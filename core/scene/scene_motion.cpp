@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/scene/placement.hpp"
+#include "fettle/core/scene/angles.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -18,15 +18,15 @@ std::size_t dof_index(const std::string& name) {
     return static_cast<std::size_t>(std::find(dof_names.begin(), dof_names.end(), name) - dof_names.begin());
 }
 
-MotionCurve read_curve(const JsonNode& node, double unit, bool angle) {
+MotionCurve read_curve(const files::JsonNode& node, double unit, bool angle) {
     MotionCurve curve;
-    const auto amount = [&](const JsonNode& n) { return angle ? radians(n.number().value_or(0)) : n.length(unit).value_or(0); };
+    const auto amount = [&](const files::JsonNode& n) { return angle ? radians(n.number().value_or(0)) : n.length(unit).value_or(0); };
     node.allow_keys({"rate", "times", "values", "stop_time"});
     if (!node.is_object()) return curve;
     curve.rate = amount(node["rate"]);
-    curve.stop_time = node["stop_time"].number(not_negative);
+    curve.stop_time = node["stop_time"].number(files::not_negative);
     curve.times = node["times"].numbers().value_or(std::vector<double>{});
-    for (const JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value));
+    for (const files::JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value));
     if (curve.times.size() != curve.values.size()) {
         node.fail(ErrorCode::inconsistent, std::to_string(curve.times.size()) + " `times` for " + std::to_string(curve.values.size()) +
                                                " `values`; one value for each time is wanted");
@@ -42,7 +42,7 @@ MotionCurve read_curve(const JsonNode& node, double unit, bool angle) {
     return curve;
 }
 
-void read_prescribed(const JsonNode& node, double unit, Body& body) {
+void read_prescribed(const files::JsonNode& node, double unit, Body& body) {
     if (node.exists() && body.type == BodyType::static_body) {
         node.fail(ErrorCode::inconsistent, "a static body does not move; make it kinematic");
         return;
@@ -62,14 +62,14 @@ bool turns_by_half(const kinematics::Pose& from, const kinematics::Pose& to) {
     return kinematics::rotation_vector(to.rotation * from.rotation.transpose()).norm() > std::numbers::pi - room;
 }
 
-void read_script(const JsonNode& node, double unit, Body& body) {
+void read_script(const files::JsonNode& node, double unit, Body& body) {
     if (node.exists() && body.type != BodyType::kinematic_body) {
         node.fail(ErrorCode::inconsistent, "only a kinematic body has a `script`");
         return;
     }
     kinematics::Pose before = body.pose;
     double time_before = 0;
-    for (const JsonNode& entry : node.elements()) {
+    for (const files::JsonNode& entry : node.elements()) {
         entry.allow_keys({"time", "position", "rotation", "rotation_vector"});
         if (!entry.is_object()) continue;
         const auto time = entry.require("time").number();
@@ -90,17 +90,17 @@ void read_script(const JsonNode& node, double unit, Body& body) {
 
 }  // namespace
 
-kinematics::Pose read_pose(const JsonNode& node, double unit, const kinematics::Pose& otherwise) {
+kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise) {
     kinematics::Pose pose = otherwise;
     pose.position = node["position"].length3(unit).value_or(pose.position);
-    const JsonNode angles = node["rotation"], vector = node["rotation_vector"];
+    const files::JsonNode angles = node["rotation"], vector = node["rotation_vector"];
     if (angles.exists() && vector.exists()) node.fail(ErrorCode::inconsistent, "either `rotation` or `rotation_vector`, not both");
     if (const auto found = angles.vector3()) pose.rotation = rotation_from_degrees(*found);
     if (const auto found = vector.vector3()) pose.rotation = kinematics::rotation(radians(1) * *found);
     return pose;
 }
 
-void read_motion(const JsonNode& node, double unit, Body& body) {
+void read_motion(const files::JsonNode& node, double unit, Body& body) {
     const bool dynamic = body.type == BodyType::dynamic_body;
     for (const char* key : {"linear_velocity", "angular_velocity", "force", "torque", "fixed"}) {
         if (dynamic || !node[key].exists()) continue;
@@ -112,7 +112,7 @@ void read_motion(const JsonNode& node, double unit, Body& body) {
     body.angular_velocity = radians(1) * node["angular_velocity"].vector3().value_or(Vector3::Zero());
     body.force = node["force"].vector3().value_or(Vector3::Zero());
     body.torque = node["torque"].vector3().value_or(Vector3::Zero());
-    for (const JsonNode& entry : node["fixed"].elements()) {
+    for (const files::JsonNode& entry : node["fixed"].elements()) {
         if (const auto name = entry.choice(dof_names)) body.prescribed[dof_index(*name)] = MotionCurve{};
     }
     read_prescribed(node["prescribed"], unit, body);

@@ -3,15 +3,15 @@
 /// Faults go to the document; values read after a fault are never used.
 #pragma once
 
-#include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
 
 namespace fettle::core::scene {
 
 /// `position`, `rotation` or `rotation_vector`, where absent those of `otherwise`. @param unit  of lengths [m].
-kinematics::Pose read_pose(const JsonNode& node, double unit, const kinematics::Pose& otherwise);
+kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise);
 
 /// Velocities, loads, `fixed`, `prescribed` and `script` of a body whose type and pose are known.
-void read_motion(const JsonNode& node, double unit, Body& body);
+void read_motion(const files::JsonNode& node, double unit, Body& body);
 
 }  // namespace fettle::core::scene

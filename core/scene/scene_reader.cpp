@@ -16,10 +16,10 @@ using base::ErrorCode;
 /// Reads one file of our own format. Faults go to the document; values read after a fault are never used.
 class SceneReader {
 public:
-    SceneReader(JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
+    SceneReader(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
     base::Result<Scene> read() {
-        const JsonNode root = document_.root();
+        const files::JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_scene", "description", "units", "gravity", "timestep", "end_time", "integrator", "contact",
                          "materials", "friction", "bodies"});
         root["$schema"].string();
@@ -30,8 +30,8 @@ public:
         scene_.path = document_.path();
         scene_.length_unit = unit_;
         scene_.gravity = root["gravity"].vector3().value_or(Vector3::Zero());
-        scene_.timestep = root["timestep"].number(positive).value_or(0.01);
-        scene_.end_time = root["end_time"].number(positive);
+        scene_.timestep = root["timestep"].number(files::positive).value_or(0.01);
+        scene_.end_time = root["end_time"].number(files::positive);
         read_integrator(root["integrator"]);
         read_contact(root["contact"]);
         read_materials(root["materials"]);
@@ -43,52 +43,52 @@ public:
     }
 
 private:
-    void read_integrator(const JsonNode& node) {
+    void read_integrator(const files::JsonNode& node) {
         const std::string name = node.choice({"implicit_euler", "bdf2", "newmark"}).value_or("implicit_euler");
         scene_.integrator = name == "bdf2" ? Integrator::bdf2 : name == "newmark" ? Integrator::newmark : Integrator::implicit_euler;
     }
 
-    void read_contact(const JsonNode& node) {
+    void read_contact(const files::JsonNode& node) {
         if (!node.exists()) return;
         node.allow_keys({"dhat", "dmin", "kappa", "area_weighted", "velocity_tolerance", "max_newton_iterations"});
-        scene_.dhat = node["dhat"].length(unit_, positive);
-        scene_.dmin = node["dmin"].length(unit_, not_negative).value_or(0);
-        scene_.kappa = node["kappa"].number(positive);
+        scene_.dhat = node["dhat"].length(unit_, files::positive);
+        scene_.dmin = node["dmin"].length(unit_, files::not_negative).value_or(0);
+        scene_.kappa = node["kappa"].number(files::positive);
         scene_.area_weighted = node["area_weighted"].boolean().value_or(false);
-        scene_.velocity_tolerance = node["velocity_tolerance"].length(unit_, positive);
+        scene_.velocity_tolerance = node["velocity_tolerance"].length(unit_, files::positive);
         scene_.max_newton_iterations = node["max_newton_iterations"].integer(1).value_or(scene_.max_newton_iterations);
     }
 
-    void read_materials(const JsonNode& node) {
+    void read_materials(const files::JsonNode& node) {
         for (const auto& [name, material] : node.members()) {
             material.allow_keys({"density", "mu"});
             if (name.empty()) material.fail(ErrorCode::out_of_range, "a material needs a name");
             if (!material.is_object()) continue;
-            densities_[name] = material["density"].number(positive);
-            if (const auto mu = material["mu"].number(not_negative)) scene_.friction.materials[name] = *mu;
+            densities_[name] = material["density"].number(files::positive);
+            if (const auto mu = material["mu"].number(files::not_negative)) scene_.friction.materials[name] = *mu;
         }
     }
 
-    void read_friction(const JsonNode& node) {
+    void read_friction(const files::JsonNode& node) {
         if (!node.exists()) return;
         node.allow_keys({"mu", "pairs", "eps_v", "rounds"});
         Friction& friction = scene_.friction;
-        friction.mu = node["mu"].number(not_negative).value_or(0);
-        friction.eps_v = node["eps_v"].length(unit_, positive).value_or(friction.eps_v);
-        const JsonNode rounds = node["rounds"];
+        friction.mu = node["mu"].number(files::not_negative).value_or(0);
+        friction.eps_v = node["eps_v"].length(unit_, files::positive).value_or(friction.eps_v);
+        const files::JsonNode rounds = node["rounds"];
         if (rounds.is_string()) {
             if (rounds.choice({"converged"})) friction.rounds = -1;
         } else {
             friction.rounds = rounds.integer(1).value_or(1);
         }
-        for (const JsonNode& pair : node["pairs"].elements()) read_friction_pair(pair);
+        for (const files::JsonNode& pair : node["pairs"].elements()) read_friction_pair(pair);
     }
 
-    void read_friction_pair(const JsonNode& node) {
+    void read_friction_pair(const files::JsonNode& node) {
         node.allow_keys({"a", "b", "mu"});
         if (!node.is_object()) return;
         const auto a = read_material_name(node.require("a"), densities_), b = read_material_name(node.require("b"), densities_);
-        const auto mu = node.require("mu").number(not_negative);
+        const auto mu = node.require("mu").number(files::not_negative);
         if (!a || !b || !mu) return;
         for (const auto& pair : scene_.friction.pairs) {
             if (std::minmax(pair.material_a, pair.material_b) != std::minmax(*a, *b)) continue;
@@ -97,24 +97,24 @@ private:
         scene_.friction.pairs.push_back({*a, *b, *mu});
     }
 
-    void read_bodies(const JsonNode& node) {
+    void read_bodies(const files::JsonNode& node) {
         SceneBodies bodies(document_, options_, unit_, densities_);
-        for (const JsonNode& entry : node.elements()) {
+        for (const files::JsonNode& entry : node.elements()) {
             for (Body& body : bodies.read(entry)) scene_.bodies.push_back(std::move(body));
         }
         if (node.is_array() && scene_.bodies.empty()) node.fail(ErrorCode::out_of_range, "a scene needs a body");
         bodies.number_groups(scene_.bodies);
     }
 
-    JsonDocument& document_;
+    files::JsonDocument& document_;
     const ReadOptions& options_;
     Scene scene_;
     double unit_ = 1;
     MaterialDensities densities_;
 };
 
-base::Result<Scene> read_document(JsonDocument& document, const ReadOptions& options) {
-    const JsonNode root = document.root();
+base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptions& options) {
+    const files::JsonNode root = document.root();
     if (is_fixture(root)) return read_fixture(document, options);
     if (!root.is_object() || !root["fettle_scene"].exists()) {
         const bool design = root.is_object() && root["fettle_design"].exists();
@@ -128,13 +128,13 @@ base::Result<Scene> read_document(JsonDocument& document, const ReadOptions& opt
 }  // namespace
 
 base::Result<Scene> read_scene(const std::string& path, const ReadOptions& options) {
-    auto document = JsonDocument::read(path);
+    auto document = files::JsonDocument::read(path);
     if (!document) return document.errors();
     return read_document(*document, options);
 }
 
 base::Result<Scene> parse_scene(const std::string& text, const std::string& path, const ReadOptions& options) {
-    auto document = JsonDocument::parse(text, path);
+    auto document = files::JsonDocument::parse(text, path);
     if (!document) return document.errors();
     return read_document(*document, options);
 }

@@ -4,23 +4,12 @@
 /// model/build_model.hpp.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "fettle/core/scene/read_options.hpp"
 
 namespace fettle::core::scene {
-
-/// Makes the mesh of a `shape` body [m]. Errors: their `where` is replaced by the body's place in the file.
-using ShapeGenerator = std::function<base::Result<geometry::Mesh>(const ShapeSpec&)>;
-
-struct ReadOptions {
-    std::vector<std::string> mesh_dirs;  ///< also looked in for meshes; see find_mesh_file in placement.hpp
-    ShapeGenerator shape_generator;      ///< empty: a body with `shape` is an error that says so
-};
 
 /// @return the scene, or every fault of the file (not of its meshes' geometry), each with file and JSON pointer.
 base::Result<Scene> read_scene(const std::string& path, const ReadOptions& options = {});

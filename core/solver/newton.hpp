@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Projected Newton for one time step, with curved CCD in its line search: every accepted point, and the path to it, is free of
-/// intersections. method.md section 6.
+/// intersections. docs/method.md section 6.
 ///
 /// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution. Each iteration moves them by what remains,
 /// and the free ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact
@@ -16,9 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/phase_clock.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/solver/newton_workspace.hpp"
 
 namespace fettle::core::solver {
 
@@ -41,27 +40,6 @@ struct NewtonResult {
     contact::ContactSet contacts;   ///< at the end of the path
     contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
     double residual = 0;            ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
-};
-
-/// What a solve spends its time on.
-enum class SolvePhase {
-    broad_phase,   ///< candidates
-    contacts,      ///< which candidates are in contact, and their distances
-    derivatives,   ///< gradient and Hessian
-    linear_solve,  ///< factorisation and solve
-    ccd,           ///< longest safe steps
-    potential,     ///< values for the line search
-    count
-};
-const char* to_string(SolvePhase phase);
-
-/// What is worth keeping from one solve to the next; the result does not depend on it.
-struct NewtonWorkspace {
-    FreeDofs dofs;
-    LinearSolver linear;             ///< its symbolic factor
-    contact::Candidates candidates;  ///< near where the last solve ended
-    base::PhaseClock<SolvePhase> clock;
-    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
 };
 
 /// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do

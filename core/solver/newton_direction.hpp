@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/newton.hpp"
+#include "fettle/core/solver/newton_workspace.hpp"
 
 namespace fettle::core::solver {
 

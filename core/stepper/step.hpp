@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fettle/core/solver/newton.hpp"
-#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/simulation.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::core::stepper {

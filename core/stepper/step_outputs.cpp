@@ -7,7 +7,6 @@
 
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/solver/newton.hpp"
-#include "fettle/core/stepper/simulate.hpp"
 
 namespace fettle::core::stepper {
 namespace {

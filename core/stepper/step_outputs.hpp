@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "fettle/core/energy/incremental_potential.hpp"
-
-namespace fettle::core::solver {
-struct NewtonResult;
-}
+#include "fettle/core/solver/newton.hpp"
+#include "fettle/core/stepper/step_state.hpp"
 
 namespace fettle::core::stepper {
-
-struct StepState;
 
 /// Between two bodies, at the end of a step.
 struct ContactForce {

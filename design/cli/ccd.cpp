@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/contact/ccd_queries.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/ccd_queries.hpp"
 #include "fettle/design/cli/session.hpp"
 
 namespace fettle::design::cli {
@@ -16,13 +16,10 @@ namespace fettle::design::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using core::contact::CcdQueries;
 using core::contact::CurvedCcdOptions;
 using core::contact::DeviationBound;
 using core::contact::LinearCcdMethod;
-using core::contact::LinearQuery;
 using core::contact::PairType;
-using core::contact::RigidQuery;
 
 struct Options {
     std::vector<std::string> paths;
@@ -180,7 +177,7 @@ Json misses_json(const std::vector<Miss>& misses) {
 int run_ccd(const Options& options, Console& console) {
     const Result<Settings> settings = settings_of(options);
     if (!settings) return console.input_errors(settings.errors());
-    const Result<std::vector<std::string>> files = core::contact::find_ccd_query_files(options.paths);
+    const Result<std::vector<std::string>> files = find_ccd_query_files(options.paths);
     if (!files) return console.input_errors(files.errors());
     Tally all;
     std::vector<Miss> misses;
@@ -190,7 +187,7 @@ int run_ccd(const Options& options, Console& console) {
     const double clock = clock_time();
     int done = 0;
     for (const std::string& path : *files) {
-        const Result<CcdQueries> queries = core::contact::read_ccd_queries(path, settings->type);
+        const Result<CcdQueries> queries = read_ccd_queries(path, settings->type);
         if (!queries) return console.input_errors(queries.errors());
         const Tally tally = run_file(*queries, *settings, clock, misses);
         rows.push_back({{"file", path}, {"kind", queries->rigid.empty() ? "linear" : "rigid"}});

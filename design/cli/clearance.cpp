@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
@@ -95,10 +95,10 @@ void look_closer(const Subject& subject, core::clearance::ClearanceOptions certi
 }
 
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
-Errors write_proof(const std::string& path, const core::clearance::Certificate& certificate, const Subject& subject) {
-    const Errors errors = core::clearance::write_certificate(path, certificate);
+Errors write_proof(const std::string& path, const core::certificate::Certificate& certificate, const Subject& subject) {
+    const Errors errors = core::certificate::write_certificate(path, certificate);
     if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
-    return core::stepper::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
+    return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
 }
 
 Json proof_json(const Options& options, const Subject& subject) {
@@ -123,7 +123,7 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     certify.witness_tolerance = options.explain > 0 ? certify.tolerance : 0;
     certify.on_pair = [&](int done, int of) { console.progress("certifying", done, of); };
     certify.should_stop = interrupted;
-    core::clearance::Certificate certificate;
+    core::certificate::Certificate certificate;
     if (!options.certificate.empty()) certify.certificate = &certificate;
     auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection), certify);
     if (options.certificate.empty()) look_closer(*subject, certify, results);  // a certificate is of what was certified at once
@@ -132,7 +132,7 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
     const std::string unit = unit_name(subject->model.length_unit);
     if (errors.empty() && !options.csv.empty())
-        errors = core::base::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
+        errors = core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
     if (errors.empty() && !options.certificate.empty()) errors = write_proof(options.certificate, certificate, *subject);
     if (!errors.empty()) return console.input_errors(errors);
     Json json = report_json(report, *subject);

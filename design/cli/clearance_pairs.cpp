@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/clearance_subject.hpp"
 #include "fettle/design/process_presets.hpp"
 
@@ -98,12 +98,7 @@ private:
         std::vector<std::string_view> known;
         for (const Unit& unit : among) known.push_back(unit.name);
         std::string message = (found.wildcard ? "no name matches \"" : "there is no body \"") + name + "\"";
-        const auto nearest = found.wildcard ? std::nullopt : core::scene::nearest_word(name, known);
-        if (nearest) {
-            message += "; did you mean \"" + *nearest + "\"?";
-        } else {
-            for (size_t i = 0; i < known.size(); ++i) message += (i ? ", " : "; there are ") + std::string(known[i]);
-        }
+        message += "; " + core::files::did_you_mean(found.wildcard ? "" : name, known);
         fail(option, ErrorCode::out_of_range, message);
         return found;
     }

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/files/json_document.hpp"
 #include "fettle/core/model/start_check.hpp"
-#include "fettle/core/scene/json_document.hpp"
 #include "fettle/design/cli/answers.hpp"
 
 namespace fettle::design::cli {
@@ -208,11 +208,11 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
 }
 
 Errors compare_with_baseline(const std::string& path, ClearanceReport& report) {
-    auto document = core::scene::JsonDocument::read(path);
+    auto document = core::files::JsonDocument::read(path);
     if (!document) return document.errors();
     report.baseline = path;
-    const core::scene::JsonNode list = document->root().require("pairs");
-    for (const core::scene::JsonNode& node : list.elements()) {
+    const core::files::JsonNode list = document->root().require("pairs");
+    for (const core::files::JsonNode& node : list.elements()) {
         const auto a = node.require("a").string(), b = node.require("b").string();
         const auto status = node.require("status").choice({"clear", "violated", "undecided", "contact"});
         const auto lower = node.require("lower").number(), upper = node.require("upper").number();

@@ -58,7 +58,7 @@ core::kinematics::Pose file_pose(const Subject& subject, const core::clearance::
 /// Marks findings as new, existing or resolved. Errors: the file is no report.
 Errors compare_with_baseline(const std::string& path, ClearanceReport& report);
 
-/// Keys: interface.md, and gap, sampled, finding, pose_a, pose_b, required_by ... SI.
+/// Keys: docs/interface.md, and gap, sampled, finding, pose_a, pose_b, required_by ... SI.
 nlohmann::ordered_json report_json(const ClearanceReport& report, const Subject& subject);
 
 /// Lengths in `unit`, lower bounds rounded down and upper ones up. Explains the `explain` worst pairs.

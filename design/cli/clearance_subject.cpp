@@ -7,10 +7,10 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/model/start_check.hpp"
-#include "fettle/core/stepper/poses_file.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 
@@ -42,7 +42,7 @@ Result<Subject> from_trajectory(const SubjectOptions& options) {
     if (!options.poses.empty() || options.kinematic)
         return Error{ErrorCode::inconsistent, options.path,
                      "a trajectory has its motion; --poses and --kinematic go with a scene or design"};
-    Result<core::stepper::StoredTrajectory> stored = core::stepper::read_trajectory(options.path);
+    Result<core::records::StoredTrajectory> stored = core::records::read_trajectory(options.path);
     if (!stored) return stored.errors();
     Subject subject;
     subject.model = std::move(stored->model);
@@ -59,7 +59,7 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
         if (!metres) return metres.errors();
         unit = *metres;
     }
-    auto read = core::stepper::read_poses(options.poses, subject.model, unit);
+    auto read = core::records::read_poses(options.poses, subject.model, unit);
     if (!read) return read.errors();
     subject.trajectory = std::move(read->trajectory);
     subject.source = SubjectSource::poses;

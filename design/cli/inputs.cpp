@@ -5,10 +5,10 @@
 #include <cctype>
 #include <filesystem>
 
-#include "fettle/core/clearance/certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/design_file.hpp"
 #include "fettle/design/design_problem.hpp"
@@ -22,8 +22,8 @@ FileKind file_kind(const std::string& path) {
     for (const char* mesh : {".stl", ".obj", ".off", ".ply", ".3mf"}) {
         if (extension == mesh) return FileKind::mesh;
     }
-    if (core::stepper::is_trajectory_file(path)) return FileKind::trajectory;
-    if (core::clearance::is_certificate_file(path)) return FileKind::certificate;
+    if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
+    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
     return is_design_file(path) ? FileKind::design : FileKind::scene;
 }
 

@@ -6,7 +6,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/version.hpp"
-#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/session.hpp"
 
 namespace {
@@ -32,11 +32,7 @@ std::string usage_message(const CLI::ParseError& error, const std::vector<Comman
     for (const Command& command : commands) names.push_back(command.app->get_name());
     known.insert(known.end(), names.begin(), names.end());
     if (std::find(known.begin(), known.end(), word) != known.end()) return otherwise;
-    std::string message = "there is no command \"" + word + "\"";
-    if (const auto nearest = core::scene::nearest_word(word, known)) return message + "; did you mean \"" + *nearest + "\"?";
-    message += "; there are";
-    for (size_t k = 0; k < names.size(); ++k) message += (k ? ", " : " ") + names[k];
-    return message;
+    return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
 }
 
 void add_common_options(CLI::App& program, CommonOptions& common) {

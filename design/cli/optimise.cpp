@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/atomic_file.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/design_file.hpp"
@@ -131,7 +131,7 @@ int run_optimise(const Options& options, const CommonOptions& common, Console& c
     if (!outcome->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + outcome->history_kept_as);
     const Json json = outcome_json(*problem, *outcome, optimise.directory);
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    const Errors errors = core::base::write_file_atomically(std::filesystem::path(optimise.directory) / "result.json", text);
+    const Errors errors = core::files::write_file_atomically(std::filesystem::path(optimise.directory) / "result.json", text);
     if (!errors.empty()) return console.input_errors(errors);
     console.result(json, outcome_text(problem->design(), *outcome, console, optimise.directory));
     return exit_code(outcome->report.status);

@@ -8,12 +8,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/atomic_file.hpp"
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/stepper/poses_file.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/records/step_tables.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/step_tables.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 
@@ -72,9 +72,9 @@ int exit_code(SimulationStatus status) { return status == SimulationStatus::ok ?
 // With the rows of the run that this one goes on with, if its tables are beside its trajectory.
 std::string whole_table(const std::string& name, const std::string& text, const Options& options, const Simulation& earlier) {
     if (options.earlier.empty()) return text;
-    const Result<std::string> before = core::base::read_file(std::filesystem::path(options.earlier).parent_path() / name);
+    const Result<std::string> before = core::files::read_file(std::filesystem::path(options.earlier).parent_path() / name);
     const double until = (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep;
-    return before ? core::stepper::joined_table(*before, text, until) : text;
+    return before ? core::records::joined_table(*before, text, until) : text;
 }
 
 Errors write_outputs(const Options& options, const core::model::Model& model, const Simulation& simulation, const Simulation& earlier,
@@ -83,18 +83,18 @@ Errors write_outputs(const Options& options, const core::model::Model& model, co
     // Read before anything is written: the earlier run's folder may be this one.
     std::vector<std::pair<std::string, std::string>> tables;
     const std::vector<std::string> names = body_names(model);
-    for (const auto& [name, text] : {std::pair{"steps.csv", core::stepper::steps_csv(simulation)},
-                                     {"contacts.csv", core::stepper::contacts_csv(simulation, names)},
-                                     {"drives.csv", core::stepper::drives_csv(simulation, names)}})
+    for (const auto& [name, text] : {std::pair{"steps.csv", core::records::steps_csv(simulation)},
+                                     {"contacts.csv", core::records::contacts_csv(simulation, names)},
+                                     {"drives.csv", core::records::drives_csv(simulation, names)}})
         tables.emplace_back(name, whole_table(name, text, options, earlier));
     Errors errors =
-        core::stepper::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
+        core::records::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
     if (!errors.empty()) return errors;
     for (const auto& [name, text] : tables) {
-        errors = core::base::write_file_atomically(folder / name, text);
+        errors = core::files::write_file_atomically(folder / name, text);
         if (!errors.empty()) return errors;
     }
-    return core::base::write_file_atomically(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return core::files::write_file_atomically(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 int run_simulate(const Options& options, const CommonOptions& common, Console& console) {
@@ -111,9 +111,9 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
     simulate_options.outputs = !options.out.empty();
     Simulation earlier;
     if (!options.earlier.empty()) {
-        const auto stored = core::stepper::read_trajectory(options.earlier);
+        const auto stored = core::records::read_trajectory(options.earlier);
         if (!stored) return console.input_errors(stored.errors());
-        Result<Simulation> resumed = core::stepper::resumable(*stored, model);
+        Result<Simulation> resumed = core::records::resumable(*stored, model);
         if (!resumed) return console.input_errors(resumed.errors());
         earlier = *std::move(resumed);
         simulate_options.resume = &earlier;
@@ -137,7 +137,7 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
         if (!errors.empty()) return console.input_errors(errors);
     }
     if (!options.poses.empty()) {
-        const Errors errors = core::stepper::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
+        const Errors errors = core::records::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
         if (!errors.empty()) return console.input_errors(errors);
     }
     const bool ok = report.status == SimulationStatus::ok;

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/certificate_checker.hpp"
+#include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
-#include "fettle/core/scene/mesh_reader.hpp"
-#include "fettle/core/stepper/poses_file.hpp"
-#include "fettle/core/stepper/trajectory_io.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -29,7 +29,7 @@ struct Verdict {
 
 Verdict validate_mesh_file(const std::string& path) {
     Verdict verdict;
-    const Result<core::geometry::Mesh> mesh = core::scene::read_mesh(path);
+    const Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path);
     if (!mesh) {
         verdict.errors = mesh.errors();
         return verdict;
@@ -43,7 +43,7 @@ Verdict validate_mesh_file(const std::string& path) {
 
 Verdict validate_trajectory(const std::string& path) {
     Verdict verdict;
-    const Result<core::stepper::StoredTrajectory> stored = core::stepper::read_trajectory(path);
+    const Result<core::records::StoredTrajectory> stored = core::records::read_trajectory(path);
     if (!stored) {
         verdict.errors = stored.errors();
         return verdict;
@@ -77,7 +77,7 @@ struct Options {
 };
 
 // What a certificate claims, by name.
-Json claims_json(const core::clearance::Certificate& certificate, const core::model::Model& model) {
+Json claims_json(const core::certificate::Certificate& certificate, const core::model::Model& model) {
     const auto name = [&](int body) {
         const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
         return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
@@ -102,15 +102,15 @@ std::string claims_text(const Json& claims, const core::model::Model& model) {
 // A checker of its own judges: accepted or rejected, with every fault.
 int run_check(const Options& options, Console& console) {
     const std::string trajectory = options.trajectory.empty() ? certificate_trajectory(options.path) : options.trajectory;
-    const auto stored = core::stepper::read_trajectory(trajectory);
+    const auto stored = core::records::read_trajectory(trajectory);
     if (!stored) return console.input_errors(stored.errors());
     Json json{{"status", "rejected"}, {"kind", "certificate"}, {"trajectory", trajectory}};
     Json faults = Json::array();
     std::string text;
-    const auto certificate = core::clearance::read_certificate(options.path);
+    const auto certificate = core::certificate::read_certificate(options.path);
     for (const Error& error : certificate.errors()) faults.push_back({{"where", error.where}, {"message", error.message}});
     if (certificate) {
-        const core::clearance::CertificateReport report = core::clearance::check_certificate(*certificate, *stored);
+        const core::certificate::CertificateReport report = core::certificate::check_certificate(*certificate, *stored);
         for (const auto& fault : report.faults) faults.push_back({{"where", fault.where}, {"message", fault.message}});
         if (report.accepted()) json["status"] = "accepted";
         json["leaves"] = report.leaves;
@@ -134,7 +134,7 @@ int run_validate(const Options& options, const CommonOptions& common, Console& c
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
     if (kind == FileKind::certificate) return run_check(options, console);
-    if (core::stepper::is_poses_file(path))
+    if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
     const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path)

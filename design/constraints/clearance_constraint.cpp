@@ -45,7 +45,7 @@ objectives::Quantity ClearanceConstraint::value(const objectives::Simulated& s) 
 
 void ClearanceConstraint::add_seeds(const objectives::Simulated& s, const objectives::Quantity& quantity, double scale,
                                     objectives::Seeds& seeds) const {
-    adjoint::clearance_adjoint(s.model, s.trajectory, *quantity.clearance, scale, seeds.trajectory_bar, seeds.model_bar);
+    adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *quantity.clearance, scale, seeds.trajectory_bar, seeds.model_bar);
 }
 
 }  // namespace fettle::design::constraints

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/objectives/objective_table.hpp"
 
-#include "fettle/core/scene/nearest_word.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/objectives/marker_path.hpp"
 #include "fettle/design/objectives/mass.hpp"
 #include "fettle/design/objectives/play.hpp"
@@ -11,7 +11,7 @@ namespace fettle::design::objectives {
 
 namespace {
 
-using core::scene::JsonNode;
+using core::files::JsonNode;
 
 // For default names only: a wrong type is reported by the reading proper.
 std::string text(const JsonNode& node) { return node.is_string() ? *node.string() : std::string("?"); }
@@ -19,7 +19,7 @@ std::string text(const JsonNode& node) { return node.is_string() ? *node.string(
 std::unique_ptr<Objective> read_stroke(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
-    const auto target = node["target"].length(context.length_unit, core::scene::not_negative);
+    const auto target = node["target"].length(context.length_unit, core::files::not_negative);
     if (!body || !axis) return nullptr;
     return std::make_unique<Stroke>(*body, *axis, target);
 }
@@ -117,14 +117,7 @@ std::optional<int> ReadContext::body(const JsonNode& node) const {
         if (scene.bodies[k].name == *name) return static_cast<int>(k);
         known.push_back(scene.bodies[k].name);
     }
-    std::string message = "the scene has no body " + node.shown();
-    if (const auto nearest = core::scene::nearest_word(*name, known)) {
-        message += "; did you mean \"" + *nearest + "\"?";
-    } else {
-        message += "; it has";
-        for (size_t k = 0; k < known.size(); ++k) message += (k ? ", " : " ") + std::string(known[k]);
-    }
-    node.fail(ErrorCode::out_of_range, message);
+    node.fail(ErrorCode::out_of_range, "the scene has no body " + node.shown() + "; " + core::files::did_you_mean(*name, known));
     return std::nullopt;
 }
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
 #include "fettle/design/objectives/objective.hpp"
 
@@ -21,9 +21,9 @@ struct ReadContext {
     double end_time = 0;     ///< of the simulation [s]
 
     /// Index of the body that a node names; unknown_key with the nearest name otherwise.
-    std::optional<int> body(const core::scene::JsonNode& node) const;
+    std::optional<int> body(const core::files::JsonNode& node) const;
     /// A direction, normalised. Errors: zero.
-    std::optional<Vector3> axis(const core::scene::JsonNode& node) const;
+    std::optional<Vector3> axis(const core::files::JsonNode& node) const;
 };
 
 /// Keys that an objective of this type has, besides those common to all terms.
@@ -31,8 +31,8 @@ struct ObjectiveType {
     std::string_view name;
     std::vector<std::string_view> keys;
     /// @return nothing if something was wrong; the faults are with the document.
-    std::unique_ptr<Objective> (*read)(const core::scene::JsonNode& node, const ReadContext& context);
-    std::string (*default_name)(const core::scene::JsonNode& node);  ///< "stroke piston"
+    std::unique_ptr<Objective> (*read)(const core::files::JsonNode& node, const ReadContext& context);
+    std::string (*default_name)(const core::files::JsonNode& node);  ///< "stroke piston"
 };
 const std::vector<ObjectiveType>& objective_table();
 const ObjectiveType* find_objective_type(std::string_view name);

@@ -14,7 +14,7 @@ Quantity Play::value(const Simulated& s) const {
 }
 
 void Play::add_seeds(const Simulated& s, const Quantity& quantity, double scale, Seeds& seeds) const {
-    adjoint::clearance_adjoint(s.model, s.trajectory, *quantity.clearance, scale, seeds.trajectory_bar, seeds.model_bar);
+    adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *quantity.clearance, scale, seeds.trajectory_bar, seeds.model_bar);
 }
 
 }  // namespace fettle::design::objectives

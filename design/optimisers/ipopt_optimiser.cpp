@@ -5,6 +5,7 @@
 #include <IpTNLP.hpp>
 #include <cmath>
 #include <mutex>
+#include "fettle/design/optimisers/optimality.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include "fettle/design/optimisers/optimality.hpp"
 
 namespace fettle::design::optimisers {
 

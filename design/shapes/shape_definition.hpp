@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fettle/design/shapes/dual.hpp"
+#include "fettle/design/shapes/generator_info.hpp"
 #include "fettle/design/shapes/mesh_builder.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
 
 namespace fettle::design::shapes {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <utility>
 
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/shapes/engine_parts.hpp"
 #include "fettle/design/shapes/simple_shapes.hpp"
 
@@ -18,25 +18,6 @@ std::vector<ShapeDefinition> definitions() {
             box_definition(),   pin_definition(), plate_with_hole_definition()};
 }
 
-int edit_distance(const std::string& a, const std::string& b) {
-    std::vector<int> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        int diagonal = std::exchange(row[0], static_cast<int>(i));
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const int substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row.back();
-}
-
-std::string nearest(const std::string& name, const std::vector<std::string>& known) {
-    return *std::min_element(known.begin(), known.end(),
-                             [&](const std::string& a, const std::string& b) { return edit_distance(name, a) < edit_distance(name, b); });
-}
-
 std::string in_millimetres(double metres) {
     char text[40];
     std::snprintf(text, sizeof text, "%.6g mm", metres * 1e3);
@@ -44,12 +25,12 @@ std::string in_millimetres(double metres) {
 }
 
 void check_names(const GeneratorInfo& info, const std::map<std::string, double>& given, Errors& errors) {
-    std::vector<std::string> known;
+    std::vector<std::string_view> known;
     for (const auto& dimension : info.dimensions) known.push_back(dimension.name);
     for (const auto& [name, value] : given) {
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
         errors.push_back({ErrorCode::unknown_key, info.name + "/" + name,
-                          "generator '" + info.name + "' has no dimension '" + name + "'; did you mean '" + nearest(name, known) + "'?"});
+                          "generator '" + info.name + "' has no dimension '" + name + "'; " + core::files::did_you_mean(name, known)});
     }
 }
 
@@ -100,13 +81,14 @@ GeneratedShape shape_of(const GeneratorInfo& info, const ShapeBuilder& builder) 
 }
 
 Result<ShapeDefinition> find_definition(const std::string& generator) {
-    std::vector<std::string> known;
-    for (const ShapeDefinition& definition : definitions()) {
+    const std::vector<ShapeDefinition> all = definitions();
+    std::vector<std::string_view> known;
+    for (const ShapeDefinition& definition : all) {
         if (definition.info.name == generator) return definition;
         known.push_back(definition.info.name);
     }
     return Error{ErrorCode::unknown_key, generator,
-                 "there is no generator '" + generator + "'; did you mean '" + nearest(generator, known) + "'?"};
+                 "there is no generator '" + generator + "'; " + core::files::did_you_mean(generator, known)};
 }
 
 }  // namespace

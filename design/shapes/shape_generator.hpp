@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Shapes from dimensions: solids with fixed connectivity and the exact derivative of every vertex with respect to every
-/// dimension (method.md section 11). Each is one closed, outward oriented mesh without self-intersection for every set of
+/// dimension (docs/method.md section 11). Each is one closed, outward oriented mesh without self-intersection for every set of
 /// dimensions that `generate` accepts; dimensions that would break that are refused with what is allowed.
 /// How circles become polygons: unit_circle.hpp. The parts: engine_parts.hpp says how they go together.
 #pragma once
@@ -12,26 +12,9 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/geometry/mesh.hpp"
+#include "fettle/design/shapes/generator_info.hpp"
 
 namespace fettle::design::shapes {
-
-enum class DimensionKind {
-    length,     ///< positive
-    coordinate  ///< any sign
-};
-
-struct DimensionInfo {
-    std::string name;
-    double default_value = 0;  ///< [m]
-    std::string meaning;
-    DimensionKind kind = DimensionKind::length;
-};
-
-struct GeneratorInfo {
-    std::string name;
-    std::string description;
-    std::vector<DimensionInfo> dimensions;
-};
 
 struct ShapeOptions {
     int segments = 24;  ///< of a full circle: a multiple of 4, from 8 to 720. Decides the connectivity, so it is no dimension.

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/contact/ccd_queries.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/design/cli/ccd_queries.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
 using namespace fettle;

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/certificate_checker.hpp"
+#include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/pair_search.hpp"
 #include "fettle/core/model/build_model.hpp"

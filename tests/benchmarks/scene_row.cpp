@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <limits>
 
-#include "fettle/core/base/atomic_file.hpp"
-#include "fettle/core/scene/json_document.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_document.hpp"
 
 namespace fettle::tests::benchmarks {
 namespace {
 
-using core::scene::JsonDocument;
-using core::scene::JsonNode;
+using core::files::JsonDocument;
+using core::files::JsonNode;
 
 std::string number(double x) {
     if (!std::isfinite(x)) return "null";
@@ -119,7 +119,7 @@ std::optional<std::vector<SceneRow>> read_baseline(const std::string& path) {
 bool write_baseline(const std::string& path, const std::vector<SceneRow>& rows) {
     std::string text = "{\"scenes_baseline\": 1, \"rows\": [";
     for (std::size_t i = 0; i < rows.size(); ++i) text += (i > 0 ? ",\n  " : "\n  ") + to_json(rows[i]);
-    return core::base::write_file_atomically(path, text + "\n]}\n").empty();
+    return core::files::write_file_atomically(path, text + "\n]}\n").empty();
 }
 
 const SceneRow* find_row(const std::vector<SceneRow>& rows, const std::string& scene) {

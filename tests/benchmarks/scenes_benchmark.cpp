@@ -16,7 +16,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fettle/core/base/atomic_file.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/tests/benchmarks/scene_row.hpp"
 #include "fettle/tests/benchmarks/scene_table.hpp"
 #include "fettle/tests/support/chain_net.hpp"
@@ -71,7 +71,7 @@ const TableScene* in_table(const std::string& name) {
 Job file_job(const std::string& given, int steps) {
     const fs::path under = fixtures() / (given + ".json");
     const fs::path path = fs::exists(under) ? under : fs::path(given);
-    const auto text = core::base::read_file(path);
+    const auto text = core::files::read_file(path);
     if (!text) {
         std::fprintf(stderr, "%s: %s\n", path.c_str(), text.errors().front().message.c_str());
         std::exit(3);

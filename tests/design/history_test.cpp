@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 namespace {
@@ -163,9 +163,4 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     const Result<History> broken = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
     REQUIRE_FALSE(broken);
     CHECK(broken.errors()[0].where.find("line 2") != std::string::npos);
-}
-
-TEST_CASE("hash: the published test vectors of FNV-1a") {
-    CHECK(hash_of("") == "cbf29ce484222325");
-    CHECK(hash_of("foobar") == "85944171f73967e8");
 }

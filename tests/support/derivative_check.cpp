@@ -67,8 +67,8 @@ DerivativeCheck check_jacobian(const VectorFunction& f, const VectorX& x, const 
     return sweep_differences(f, x, MatrixX::Identity(x.size(), x.size()), jacobian, sweep);
 }
 
-DerivativeCheck check_directional(const VectorFunction& f, const VectorX& x, const VectorX& direction, const VectorX& jacobian_times_direction,
-                                  const StepSweep& sweep) {
+DerivativeCheck check_directional(const VectorFunction& f, const VectorX& x, const VectorX& direction,
+                                  const VectorX& jacobian_times_direction, const StepSweep& sweep) {
     return sweep_differences(f, x, direction, jacobian_times_direction, sweep);
 }
 
@@ -86,7 +86,8 @@ double check_transpose(const VectorFunction& times, const VectorFunction& transp
     return largest;
 }
 
-TaylorCheck check_taylor(const ScalarFunction& f, const VectorX& x, const VectorX& gradient, const VectorX& direction, const StepSweep& sweep) {
+TaylorCheck check_taylor(const ScalarFunction& f, const VectorX& x, const VectorX& gradient, const VectorX& direction,
+                         const StepSweep& sweep) {
     const double f0 = f(x), slope = gradient.dot(direction);
     TaylorCheck check;
     std::vector<double> log_h, log_remainder;
@@ -97,7 +98,8 @@ TaylorCheck check_taylor(const ScalarFunction& f, const VectorX& x, const Vector
         const double remainder = std::abs((f1 - f0) - h * slope);
         finite = finite && std::isfinite(remainder);
         // What rounding in f and in x + h d may have put there, with room: an f of some thousand operations.
-        const double noise = 1e4 * std::numeric_limits<double>::epsilon() * (std::abs(f0) + std::abs(f1) + std::abs(h * slope) + std::abs(slope) * x.norm());
+        const double noise =
+            1e4 * std::numeric_limits<double>::epsilon() * (std::abs(f0) + std::abs(f1) + std::abs(h * slope) + std::abs(slope) * x.norm());
         if (!(remainder > noise)) continue;
         log_h.push_back(std::log(h));
         log_remainder.push_back(std::log(remainder));

@@ -67,10 +67,12 @@ TEST_CASE("a derivative that is not finite is rejected", "[support]") {
 TEST_CASE("the transpose identity tells J^T from what is not", "[support]") {
     const MatrixX j = MatrixX::NullaryExpr(4, 3, [](Eigen::Index r, Eigen::Index c) { return std::sin(double(3 * r + c)); });
     const auto times = [&](const VectorX& v) -> VectorX { return j * v; };
-    CHECK(check_transpose(times, [&](const VectorX& w) -> VectorX { return j.transpose() * w; }, 3, 4) < 1e-15);
+    CHECK(check_transpose(
+              times, [&](const VectorX& w) -> VectorX { return j.transpose() * w; }, 3, 4) < 1e-15);
     MatrixX wrong = j;
     wrong(2, 1) += 1e-6;
-    CHECK(check_transpose(times, [&](const VectorX& w) -> VectorX { return wrong.transpose() * w; }, 3, 4) > 1e-8);
+    CHECK(check_transpose(
+              times, [&](const VectorX& w) -> VectorX { return wrong.transpose() * w; }, 3, 4) > 1e-8);
 }
 
 TEST_CASE("the Taylor remainder of a right gradient has slope 2, of a wrong one slope 1", "[support]") {

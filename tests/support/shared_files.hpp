@@ -30,10 +30,10 @@ inline std::string shared_file(const std::string& path) {
 }  // namespace fettle::tests::support
 
 /// First line of a test case (catch2/catch.hpp included) that reads shared files.
-#define FETTLE_NEEDS_SHARED()                                                                                  \
-    do {                                                                                                       \
-        if (!::fettle::tests::support::has_shared_files()) {                                                   \
+#define FETTLE_NEEDS_SHARED()                                                                                   \
+    do {                                                                                                        \
+        if (!::fettle::tests::support::has_shared_files()) {                                                    \
             WARN("skipped: no folder " << ::fettle::tests::support::shared_folder() << " (set FETTLE_SHARED)"); \
-            return;                                                                                            \
-        }                                                                                                      \
+            return;                                                                                             \
+        }                                                                                                       \
     } while (false)

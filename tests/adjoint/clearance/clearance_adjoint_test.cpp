@@ -87,7 +87,8 @@ Case bent_case(std::mt19937& random, int nodes) {
     for (std::size_t k = 0; k < c.bends.size(); ++k)
         for (std::size_t i = 0; i < 2; ++i) {
             const auto& nodes_of = step.nodes;
-            const double sigma = adjoint::node_fraction(step, static_cast<int>(k) + 1, static_cast<int>(i), c.model.bodies[i].radius);
+            const double sigma =
+                adjoint::clearance::node_fraction(step, static_cast<int>(k) + 1, static_cast<int>(i), c.model.bodies[i].radius);
             const Matrix3 back = c.poses[0][i].rotation.transpose();
             c.bends[k][i] = {
                 sigma,
@@ -161,7 +162,7 @@ TEST_CASE("The stored path's own derivative: nodes and base, whatever moves them
         };
         VectorX gradient = VectorX::Zero(6 + 12 * nodes);
         for (int b = 0; b < 2; ++b) {
-            const auto part = adjoint::segment_gradient(c.model, stored, 0, 1, pair.witness, b);
+            const auto part = adjoint::clearance::segment_gradient(c.model, stored, 0, 1, pair.witness, b);
             REQUIRE(part);
             gradient.segment<3>(3 * b) = part->base_bar;
             for (int k = 0; k < 2; ++k)
@@ -180,15 +181,15 @@ TEST_CASE("The stored path's own derivative: nodes and base, whatever moves them
 TEST_CASE("A node's fraction of the straight path", "[clearance][adjoint]") {
     core::stepper::TrajectoryStep step;
     step.nodes = {{{Vector3(0, 0, 0), Vector3::Zero()}}, {{Vector3(1, 5, 0), Vector3::Zero()}}, {{Vector3(4, 0, 0), Vector3::Zero()}}};
-    CHECK(adjoint::node_fraction(step, 1, 0, 1) == 0.25);
+    CHECK(adjoint::clearance::node_fraction(step, 1, 0, 1) == 0.25);
     step.nodes[2][0].rotation_vector = Vector3(0, 0, 2);
     step.nodes[1][0].rotation_vector = Vector3(0, 0, 2);
-    CHECK(adjoint::node_fraction(step, 1, 0, 0) == 0.25);
-    CHECK(adjoint::node_fraction(step, 1, 0, 2) == Approx((4.0 + 16) / 32));
+    CHECK(adjoint::clearance::node_fraction(step, 1, 0, 0) == 0.25);
+    CHECK(adjoint::clearance::node_fraction(step, 1, 0, 2) == Approx((4.0 + 16) / 32));
     step.nodes[1][0].position = Vector3(-9, 0, 0);
-    CHECK(adjoint::node_fraction(step, 1, 0, 0) == 0);
+    CHECK(adjoint::clearance::node_fraction(step, 1, 0, 0) == 0);
     step.nodes[2][0] = step.nodes[0][0];
-    CHECK(adjoint::node_fraction(step, 1, 0, 1) == 0.5);
+    CHECK(adjoint::clearance::node_fraction(step, 1, 0, 1) == 0.5);
 }
 
 TEST_CASE("Two boxes as assembled: the gap's derivative is known", "[clearance][adjoint]") {

@@ -95,7 +95,7 @@ inline Case moved(const Case& start, const VectorX& d) {
         }
     for (core::model::Body& body : result.model.bodies) {
         for (Eigen::Index v = 0; v < body.mesh.vertices.cols(); ++v, at += 3) body.mesh.vertices.col(v) += d.segment<3>(at);
-        body.hierarchy = std::make_shared<core::contact::BodyHierarchy>(body.mesh);
+        body.hierarchy = std::make_shared<core::geometry::BodyHierarchy>(body.mesh);
     }
     return result;
 }
@@ -110,7 +110,7 @@ inline VectorX gradient_of(const Case& c, const PairClearance& pair, double scal
     const auto trajectory = c.trajectory();
     auto trajectory_bar = zero_like(trajectory);
     auto model_bar = zero_like(c.model);
-    adjoint::clearance_adjoint(c.model, trajectory, pair, scale, trajectory_bar, model_bar);
+    adjoint::clearance::clearance_adjoint(c.model, trajectory, pair, scale, trajectory_bar, model_bar);
     VectorX g = VectorX::Zero(coordinate_count(c));
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < c.poses.size(); ++t)

@@ -15,8 +15,8 @@ double one_sided(const Case& c, const VectorX& v, double h) {
     return 2 * (d2 - d0) / (0.5 * h) - (d1 - d0) / h;
 }
 
-adjoint::ClearanceDirection direction_of(const Case& c, const VectorX& v) {
-    adjoint::ClearanceDirection d;
+adjoint::clearance::ClearanceDirection direction_of(const Case& c, const VectorX& v) {
+    adjoint::clearance::ClearanceDirection d;
     Eigen::Index at = 0;
     for (const auto& poses : c.poses) {
         d.pose_dot.emplace_back();
@@ -39,11 +39,12 @@ void check_one_sided(const Case& c, int directions, int least_witnesses, double 
     for (int i = 0; i < directions; ++i) {
         VectorX v(coordinate_count(c));
         for (double& x : v) x = normal(random);
-        const double derivative = adjoint::clearance_derivative(c.model, c.trajectory(), pair, direction_of(c, v), 1e-9);
+        const double derivative = adjoint::clearance::clearance_derivative(c.model, c.trajectory(), pair, direction_of(c, v), 1e-9);
         const double difference = one_sided(c, v, 1e-6);
         CAPTURE(i, derivative, difference);
         CHECK(std::abs(derivative - difference) < tolerance * std::abs(difference) + tolerance);
-        differ += std::abs(derivative + adjoint::clearance_derivative(c.model, c.trajectory(), pair, direction_of(c, -v), 1e-9)) > 1e-3;
+        differ += std::abs(derivative +
+                           adjoint::clearance::clearance_derivative(c.model, c.trajectory(), pair, direction_of(c, -v), 1e-9)) > 1e-3;
     }
     CHECK(differ >= directions / 2);  // the two sides are not each other's negative: it is a tie
 }

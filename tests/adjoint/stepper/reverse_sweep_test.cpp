@@ -13,8 +13,8 @@
 namespace fettle::tests::adjoint {
 namespace {
 
-using fettle::adjoint::reverse_sweep;
-using fettle::adjoint::tangent_sweep;
+using fettle::adjoint::stepper::reverse_sweep;
+using fettle::adjoint::stepper::tangent_sweep;
 
 core::stepper::Trajectory trajectory_of(const SweepScene& scene) {
     core::stepper::SimulationOptions options;

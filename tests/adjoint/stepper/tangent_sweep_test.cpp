@@ -41,7 +41,7 @@ void check_scene(const SweepScene& scene) {
     std::mt19937_64 random(23);
     std::vector<TrajectoryGradient> seeds;
     for (int s = 0; s < seed_count; ++s) seeds.push_back(random_seed(scene, random));
-    const auto gradients = fettle::adjoint::reverse_sweep(scene.model, simulation.trajectory, seeds);
+    const auto gradients = fettle::adjoint::stepper::reverse_sweep(scene.model, simulation.trajectory, seeds);
     REQUIRE(gradients);
     const auto derivative = [&](const ModelTangent& direction) {
         VectorX out(seed_count);

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::tests::clearance {
@@ -26,7 +26,7 @@ using Real33 = Eigen::Matrix<Real, 3, 3>;
 
 struct Solid {
     core::geometry::Mesh mesh;
-    std::shared_ptr<core::contact::BodyHierarchy> hierarchy;
+    std::shared_ptr<core::geometry::BodyHierarchy> hierarchy;
     core::clearance::PieceTree search() const { return core::clearance::make_piece_tree(mesh, *hierarchy); }
     double radius() const { return hierarchy->nodes()[0].radius; }
 };
@@ -34,7 +34,7 @@ struct Solid {
 inline Solid make_solid(const Matrix3X& vertices, const std::vector<core::geometry::Triangle>& triangles) {
     Solid solid;
     solid.mesh = core::geometry::make_mesh("solid", vertices, triangles);
-    solid.hierarchy = std::make_shared<core::contact::BodyHierarchy>(solid.mesh);
+    solid.hierarchy = std::make_shared<core::geometry::BodyHierarchy>(solid.mesh);
     return solid;
 }
 

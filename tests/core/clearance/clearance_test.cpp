@@ -264,7 +264,7 @@ TEST_CASE("Wires and points have clearances too", "[clearance]") {
         solid.mesh.vertices.resize(3, static_cast<long>(points.size()));
         for (std::size_t i = 0; i < points.size(); ++i) solid.mesh.vertices.col(static_cast<long>(i)) = points[i];
         core::geometry::build_connectivity(solid.mesh, edges);
-        solid.hierarchy = std::make_shared<core::contact::BodyHierarchy>(solid.mesh);
+        solid.hierarchy = std::make_shared<core::geometry::BodyHierarchy>(solid.mesh);
         return solid;
     };
     const Solid wire = loose({{-1, 0, 0}, {1, 0, 0}}, {{0, 1}}), point = loose({{0, 0, 0}}, {}), solid = box({1, 1, 1});

@@ -88,7 +88,7 @@ inline Solid codimensional(std::mt19937& random, double size) {
     std::vector<core::geometry::Edge> edges;
     for (int i = 0; i + 1 < n && random() % 8; ++i) edges.push_back({i, i + 1});
     core::geometry::build_connectivity(solid.mesh, edges);
-    solid.hierarchy = std::make_shared<core::contact::BodyHierarchy>(solid.mesh);
+    solid.hierarchy = std::make_shared<core::geometry::BodyHierarchy>(solid.mesh);
     return solid;
 }
 

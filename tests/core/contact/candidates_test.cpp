@@ -9,8 +9,8 @@
 #include <set>
 #include <tuple>
 
-#include "fettle/core/contact/body_hierarchy.hpp"
 #include "fettle/core/contact/contact_set.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 using namespace fettle;
@@ -41,7 +41,7 @@ model::Model two_bodies(std::mt19937& random, double dhat) {
         body.name = name;
         body.mesh = random_blob(random, 14, 0.3);
         for (int i = 0; i < body.mesh.vertices.cols(); ++i) body.radius = std::max(body.radius, body.mesh.vertices.col(i).norm());
-        body.hierarchy = std::make_shared<BodyHierarchy>(body.mesh);
+        body.hierarchy = std::make_shared<geometry::BodyHierarchy>(body.mesh);
         model.bodies.push_back(body);
     }
     return model;

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "fettle/core/contact/body_hierarchy.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 

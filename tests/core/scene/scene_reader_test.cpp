@@ -310,7 +310,7 @@ std::vector<std::string> accepted_keys(const Workshop& shop, json scene, const s
     const base::Errors errors = shop.read(scene).errors();
     for (const auto& error : errors) {
         if (!contains(error.where, stranger)) continue;
-        std::string list = error.message.substr(error.message.find("known: ") + 7);
+        std::string list = error.message.substr(error.message.find("there are ") + 10);
         std::replace(list.begin(), list.end(), ',', ' ');
         std::istringstream words(list);
         std::vector<std::string> keys{std::istream_iterator<std::string>(words), {}};

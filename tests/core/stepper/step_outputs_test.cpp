@@ -6,7 +6,8 @@
 #include <sstream>
 
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/stepper/step_tables.hpp"
+#include "fettle/core/records/step_tables.hpp"
+#include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 using namespace fettle;
@@ -98,7 +99,8 @@ TEST_CASE("friction is part of the contact force", "[step_outputs]") {
 
 TEST_CASE("a motor supplies weight, inertia and torque", "[step_outputs]") {
     // Turned about z off its centre and held otherwise, from rest to a constant rate in one step.
-    model::Body body = make_body("arm", box_mesh(Vector3(0, -0.1, -0.05), Vector3(0.4, 0.1, 0.05)), make_pose(Vector3::Zero(), Vector3::Zero()));
+    model::Body body =
+        make_body("arm", box_mesh(Vector3(0, -0.1, -0.05), Vector3(0.4, 0.1, 0.05)), make_pose(Vector3::Zero(), Vector3::Zero()));
     for (int k = 0; k < 6; ++k) prescribe(body, k, k == 5 ? 0.7 : 0.0);
     const model::Model model = model_of({body});
     const Simulation simulation = run(model, 3);
@@ -118,15 +120,17 @@ TEST_CASE("tables have a header and a row per step", "[step_outputs]") {
     const model::Model model = model_of({ground_plate(), box_at("box, \"big\"", Vector3(0, 0, 0.0508))});
     const Simulation simulation = run(model, 4);
     const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
-    const auto columns = [](const std::string& text) { return std::count(text.begin(), text.begin() + static_cast<long>(text.find('\n')), ','); };
-    const std::string steps = steps_csv(simulation);
+    const auto columns = [](const std::string& text) {
+        return std::count(text.begin(), text.begin() + static_cast<long>(text.find('\n')), ',');
+    };
+    const std::string steps = records::steps_csv(simulation);
     CHECK(lines(steps) == 5);
     CHECK(columns(steps) == 15);
     const std::vector<std::string> names{"ground", "box, \"big\""};
-    const std::string contacts = contacts_csv(simulation, names);
+    const std::string contacts = records::contacts_csv(simulation, names);
     CHECK(lines(contacts) == 5);
     CHECK(contacts.find("ground,\"box, \"\"big\"\"\",") != std::string::npos);
-    CHECK(columns(drives_csv(simulation, names)) == 7);
+    CHECK(columns(records::drives_csv(simulation, names)) == 7);
 }
 
 TEST_CASE("tables of a run that was taken up again are those of one that was never cut", "[step_outputs]") {
@@ -139,8 +143,9 @@ TEST_CASE("tables of a run that was taken up again are those of one that was nev
     earlier.report.steps.resize(5);
     later.outputs.erase(later.outputs.begin(), later.outputs.begin() + 3);
     const double until = 3.5 * model.timestep;
-    CHECK(joined_table(steps_csv(earlier), steps_csv(later), until) == steps_csv(whole));
-    CHECK(joined_table(contacts_csv(earlier, names), contacts_csv(later, names), until) == contacts_csv(whole, names));
-    CHECK(joined_table("time,other\n0.01,2\n", steps_csv(later), until) == steps_csv(later));
-    CHECK(joined_table("", steps_csv(later), until) == steps_csv(later));
+    CHECK(records::joined_table(records::steps_csv(earlier), records::steps_csv(later), until) == records::steps_csv(whole));
+    CHECK(records::joined_table(records::contacts_csv(earlier, names), records::contacts_csv(later, names), until) ==
+          records::contacts_csv(whole, names));
+    CHECK(records::joined_table("time,other\n0.01,2\n", records::steps_csv(later), until) == records::steps_csv(later));
+    CHECK(records::joined_table("", records::steps_csv(later), until) == records::steps_csv(later));
 }

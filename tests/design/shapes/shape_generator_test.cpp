@@ -211,12 +211,12 @@ TEST_CASE("shapes: wrong input is refused with its place and what is allowed") {
     };
     Error error = single(generate("crnak", {}));
     CHECK(error.code == ErrorCode::unknown_key);
-    CHECK(error.message.find("'crank'") != std::string::npos);
+    CHECK(error.message.find("\"crank\"") != std::string::npos);
 
     error = single(generate("rod", {{"rod_lenght", 0.05}}));
     CHECK(error.code == ErrorCode::unknown_key);
     CHECK(error.where == "rod/rod_lenght");
-    CHECK(error.message.find("'rod_length'") != std::string::npos);
+    CHECK(error.message.find("\"rod_length\"") != std::string::npos);
 
     error = single(generate("box", {{"size_x", -0.002}}));
     CHECK(error.code == ErrorCode::out_of_range);

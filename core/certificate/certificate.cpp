@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/certificate/certificate.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/files/json_writer.hpp"
+
+namespace fettle::core::certificate {
+namespace {
+
+using base::ErrorCode;
+using files::JsonNode;
+using files::JsonWriter;
+
+const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};  // in the order of Primitive
+
+void write_point(JsonWriter& out, const char* name, const CertifiedPoint& point) {
+    out.key(name);
+    out.text += '{';
+    out.key("kind");
+    out.string(kind_names[static_cast<std::size_t>(point.kind)]);
+    out.key("index");
+    out.number(point.index);
+    out.key("weight");
+    out.numbers(point.weight);
+    out.text += '}';
+}
+
+void write_segment(JsonWriter& out, const SegmentProof& proof) {
+    std::string splits = proof.splits;
+    std::vector<double> numbers;
+    std::size_t leaf = 0;
+    for (char& kind : splits) {
+        if (kind != '.' || leaf >= proof.planes.size()) continue;
+        const LeafPlane& plane = proof.planes[leaf++];
+        numbers.insert(numbers.end(), plane.n0.begin(), plane.n0.end());
+        if (plane.n0 == plane.n1) continue;
+        kind = ':';
+        numbers.insert(numbers.end(), plane.n1.begin(), plane.n1.end());
+    }
+    out.text += "{\"splits\": \"" + splits + '"';
+    out.key("planes");
+    out.numbers(numbers);
+    out.text += '}';
+}
+
+void write_pair(JsonWriter& out, const PairCertificate& pair) {
+    out.text += "{\"a\": " + std::to_string(pair.a) + ", \"b\": " + std::to_string(pair.b);
+    for (const auto& [name, value] : {std::pair<const char*, double>{"lower", pair.lower},
+                                      {"upper", pair.upper},
+                                      {"step", pair.step},
+                                      {"segment", pair.segment},
+                                      {"s", pair.s}}) {
+        out.key(name);
+        out.number(value);
+    }
+    write_point(out, "point_a", pair.point_a);
+    write_point(out, "point_b", pair.point_b);
+    out.key("segments");
+    out.list(pair.segments.size(), ",\n  ", [&](std::size_t i) { write_segment(out, pair.segments[i]); });
+    out.text += '}';
+}
+
+std::vector<int> whole_numbers(const JsonNode& node) {
+    std::vector<int> out;
+    for (const double x : node.numbers().value_or(std::vector<double>{})) {
+        if (x != std::floor(x) || std::abs(x) > 1e9) {
+            node.fail(ErrorCode::out_of_range, "whole numbers are wanted");
+            return {};
+        }
+        out.push_back(static_cast<int>(x));
+    }
+    return out;
+}
+
+CertifiedPoint read_point(const JsonNode& node) {
+    CertifiedPoint point;
+    const std::string kind = node.require("kind").choice(kind_names).value_or("vertex");
+    point.kind = kind == "vertex" ? Primitive::vertex : kind == "edge" ? Primitive::edge : Primitive::triangle;
+    point.index = node.require("index").integer(0).value_or(0);
+    const Vector3 weight = node.require("weight").vector3().value_or(Vector3::UnitX());
+    point.weight = {weight[0], weight[1], weight[2]};
+    return point;
+}
+
+SegmentProof read_segment(const JsonNode& node) {
+    SegmentProof proof;
+    proof.splits = node.require("splits").string().value_or("");
+    const JsonNode planes = node.require("planes");
+    const auto numbers = planes.numbers().value_or(std::vector<double>{});
+    std::size_t taken = 0;
+    for (char& kind : proof.splits) {
+        if (kind != '.' && kind != ':') continue;
+        const std::size_t first = taken, second = kind == ':' ? taken + 3 : taken;
+        kind = '.';
+        taken = second + 3;
+        if (taken > numbers.size()) break;
+        proof.planes.push_back(
+            {{numbers[first], numbers[first + 1], numbers[first + 2]}, {numbers[second], numbers[second + 1], numbers[second + 2]}});
+    }
+    if (taken != numbers.size()) planes.fail(ErrorCode::inconsistent, "three numbers per `.` and six per `:` are wanted");
+    return proof;
+}
+
+PairCertificate read_pair(const JsonNode& node) {
+    PairCertificate pair;
+    pair.a = node.require("a").integer(0).value_or(0);
+    pair.b = node.require("b").integer(0).value_or(0);
+    pair.lower = node.require("lower").number(files::not_negative).value_or(0);
+    pair.upper = node.require("upper").number(files::not_negative).value_or(0);
+    pair.step = node.require("step").integer(-1).value_or(-1);
+    pair.segment = node.require("segment").integer(0).value_or(0);
+    pair.s = node.require("s").number({0, 1}).value_or(0);
+    pair.point_a = read_point(node.require("point_a"));
+    pair.point_b = read_point(node.require("point_b"));
+    for (const JsonNode& segment : node.require("segments").elements()) pair.segments.push_back(read_segment(segment));
+    return pair;
+}
+
+std::uint64_t read_hash(const JsonNode& node) {
+    const std::string text = node.string().value_or("0");
+    std::uint64_t hash = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+    if (code != std::errc() || end != text.data() + text.size()) node.fail(ErrorCode::out_of_range, "a hexadecimal number is wanted");
+    return hash;
+}
+
+}  // namespace
+
+base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
+    JsonWriter out;
+    out.text = "{";
+    out.key("fettle_certificate");
+    out.number(certificate.version);
+    char hash[17] = {};
+    std::to_chars(hash, hash + 16, certificate.geometry_hash, 16);
+    out.key("geometry_hash");
+    out.text += '"' + std::string(hash) + '"';
+    out.key("motion");
+    out.text += certificate.motion ? "true" : "false";
+    out.key("bodies");
+    out.list(certificate.bodies.size(), ",\n ", [&](std::size_t i) {
+        out.text += '{';
+        out.key("elements");
+        out.numbers(certificate.bodies[i].elements);
+        out.key("cuts");
+        out.numbers(certificate.bodies[i].cuts);
+        out.text += '}';
+    });
+    out.key("pairs");
+    out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
+    out.text += "}\n";
+    return files::write_file_atomically(path, out.text);
+}
+
+base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
+    auto document = files::JsonDocument::read(path.string());
+    if (!document) return document.errors();
+    const JsonNode root = document->root();
+    root.allow_keys({"fettle_certificate", "geometry_hash", "motion", "bodies", "pairs"});
+    root.require("fettle_certificate").integer(1, 1);
+    if (!document->errors().empty()) return document->errors();
+    Certificate certificate;
+    certificate.geometry_hash = read_hash(root.require("geometry_hash"));
+    certificate.motion = root.require("motion").boolean().value_or(false);
+    for (const JsonNode& body : root.require("bodies").elements())
+        certificate.bodies.push_back({whole_numbers(body.require("elements")), whole_numbers(body.require("cuts"))});
+    for (const JsonNode& pair : root.require("pairs").elements()) certificate.pairs.push_back(read_pair(pair));
+    if (!document->errors().empty()) return document->errors();
+    return certificate;
+}
+
+bool is_certificate_file(const std::filesystem::path& path) { return files::has_top_level_key(path, "fettle_certificate"); }
+
+}  // namespace fettle::core::certificate

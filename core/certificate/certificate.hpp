@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+/// A certificate of clearance as data, so that someone else can check it: clearance/certificate_checker.hpp does, with nothing in common
+/// with the search that made it. It claims, for each pair of bodies and over all the time asked for,
+///   lower <= min dist(A(t), B(t)) <= upper,
+/// about the meshes and the path of a trajectory (stepper/trajectory_io.hpp), both of which must be at hand to check it.
+///
+/// How it proves `lower`. For every path segment there is a tree of cells. A cell is an interval of the segment's parameter s, a piece of
+/// A and a piece of B; the root is [0, 1] and both whole bodies. `splits` lists the cells in preorder, one character each:
+///   t  halved in time: first [s0, m], then [m, s1], m = (s0 + s1)/2
+///   a  piece of A split into its two parts, in their order;   b  the same of B
+///   .  a leaf: `planes` has its proof, in the order of the leaves.
+/// So the leaves cover all time and all pairs of elements by construction, and every s is a dyadic number.
+/// A leaf's proof is two vectors n0, n1 in world axes: with n(u) = (1 - u) n0 + u n1, u = (s - s0)/(s1 - s0),
+///   n(u).(x_a(s) - x_b(s)) >= lower max(|n0|, |n1|) > 0   for all s of the interval and all points x_a, x_b of the two pieces,
+/// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
+/// room of at least 4 times the search's own bound of its rounding (PairSegment::slack), and 1/16 of the tolerance, for a checker's
+/// rounding and for its own way of bounding curves. Leaves are merged and vectors rounded as far as this room and this checker allow
+/// (certificate_thinning.hpp).
+/// `upper` is the distance of two points of the bodies at one instant.
+///
+/// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered
+///   triangle i: i;   mesh.edges[i]: T + i;   vertex i: T + E + i;   T = number of triangles, E = number of all edges of the mesh.
+/// `elements` is a list of them; a piece is a range of this list. The root is all of it; `cuts` has for each piece of more than one
+/// element, in preorder, how many elements the first part takes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::core::certificate {
+
+struct LeafPlane {
+    Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();  ///< about as long as 1
+};
+
+/// Of one path segment: see the top of the file.
+struct SegmentProof {
+    std::string splits;
+    std::vector<LeafPlane> planes;
+};
+
+using PairProof = std::vector<SegmentProof>;
+
+enum class Primitive { vertex, edge, triangle };
+
+/// A point of a body: sum of weight[i] x_i over the corners of a primitive, over the sum of the weights.
+struct CertifiedPoint {
+    Primitive kind = Primitive::vertex;
+    int index = -1;                         ///< into vertices, mesh.edges or mesh.triangles
+    std::array<double, 3> weight{1, 0, 0};  ///< not negative; of the corners in the mesh's order
+};
+
+struct PairCertificate {
+    int a = 0, b = 0;
+    double lower = 0, upper = 0;  ///< [m]
+    int step = -1, segment = 0;   ///< when `upper` is attained; step -1: at the start pose
+    double s = 0;
+    CertifiedPoint point_a, point_b;
+    PairProof segments;  ///< in the order of the path; one for the start pose as assembled; none at all if lower is 0
+};
+
+struct BodyPieces {
+    std::vector<int> elements;
+    std::vector<int> cuts;
+};
+
+struct Certificate {
+    int version = 1;
+    std::uint64_t geometry_hash = 0;  ///< of the bodies (stepper/trajectory_io.hpp)
+    bool motion = false;              ///< over the trajectory; false: at its first poses
+    std::vector<BodyPieces> bodies;   ///< one per body of the model; empty lists for those of no pair
+    std::vector<PairCertificate> pairs;
+};
+
+/// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
+///   fettle_certificate 1, geometry_hash (hexadecimal), motion, bodies [{elements, cuts}],
+///   pairs [{a, b, lower, upper, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
+/// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
+/// others, which it writes `:`. Written whole or not at all.
+[[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
+base::Result<Certificate> read_certificate(const std::filesystem::path& path);
+
+/// Is this file a certificate, as far as its keys tell? False for anything that cannot be read.
+bool is_certificate_file(const std::filesystem::path& path);
+
+}  // namespace fettle::core::certificate

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/certificate/certificate_thinning.hpp"
+
+#include <cmath>
+#include <initializer_list>
+
+#include "fettle/core/certificate/interval_motion.hpp"
+
+namespace fettle::core::certificate {
+namespace {
+
+struct Cell {
+    Span span;
+    int a = 0, b = 0;
+};
+
+Vector3 rounded(const Vector3& n, double scale) { return (n * scale).array().round() / scale; }
+
+class Thinner {
+public:
+    Thinner(const CertifiedBody& a, const CertifiedBody& b, const BodyPath& path_a, const BodyPath& path_b, double claim)
+        : a_(a), b_(b), prover_(path_a, path_b), claim_(claim) {}
+
+    // Both passes read one proof and write another.
+    SegmentProof merged(const SegmentProof& proof) { return pass(proof, &Thinner::keep, &Thinner::merge); }
+    SegmentProof shortened(const SegmentProof& proof) { return pass(proof, &Thinner::shorten, nullptr); }
+
+private:
+    using OnLeaf = LeafPlane (Thinner::*)(const Cell&, const LeafPlane&);
+    using OnTwoLeaves = bool (Thinner::*)(const Cell&, char, LeafPlane&, const LeafPlane&);
+
+    SegmentProof pass(const SegmentProof& proof, OnLeaf on_leaf, OnTwoLeaves on_two_leaves) {
+        from_ = &proof;
+        to_ = {};
+        next_split_ = next_plane_ = 0;
+        visit({{0, 1}, 0, 0}, on_leaf, on_two_leaves);
+        return std::move(to_);
+    }
+
+    // The cell whose turn it is in `from_`, and all below it. As deep as the search went: 48 halvings and both hierarchies.
+    void visit(const Cell& cell, OnLeaf on_leaf, OnTwoLeaves on_two_leaves) {
+        const char kind = from_->splits[next_split_++];
+        const std::size_t start = to_.splits.size();
+        to_.splits += kind;
+        if (kind == '.') {
+            to_.planes.push_back((this->*on_leaf)(cell, from_->planes[next_plane_++]));
+            return;
+        }
+        Cell first = cell, second = cell;
+        if (kind == 't') first.span.end = second.span.start = 0.5 * (cell.span.start + cell.span.end);
+        if (kind == 'a') first.a = a_.parts()[cell.a].left, second.a = a_.parts()[cell.a].right;
+        if (kind == 'b') first.b = b_.parts()[cell.b].left, second.b = b_.parts()[cell.b].right;
+        visit(first, on_leaf, on_two_leaves);
+        visit(second, on_leaf, on_two_leaves);
+        if (on_two_leaves == nullptr || to_.splits.size() - start != 3) return;
+        const std::size_t count = to_.planes.size();
+        if (!(this->*on_two_leaves)(cell, kind, to_.planes[count - 2], to_.planes[count - 1])) return;
+        to_.planes.pop_back();
+        to_.splits.resize(start);
+        to_.splits += '.';
+    }
+
+    bool is_proven(const Cell& cell, const LeafPlane& plane) {
+        return prover_.prove(a_.parts()[cell.a].region, b_.parts()[cell.b].region, cell.span, plane, claim_, 0) > 0;
+    }
+
+    LeafPlane keep(const Cell&, const LeafPlane& plane) { return plane; }
+
+    // The plane that proves both goes to the place of the first.
+    bool merge(const Cell& cell, char kind, LeafPlane& first, const LeafPlane& second) {
+        const LeafPlane both{first.n0, second.n1};
+        if (kind == 't' && is_proven(cell, both)) return first = both, true;
+        if (is_proven(cell, first)) return true;
+        if (is_proven(cell, second)) return first = second, true;
+        const LeafPlane mean{0.5 * (first.n0 + second.n0), 0.5 * (first.n1 + second.n1)};
+        return kind != 't' && is_proven(cell, mean) ? (first = mean, true) : false;
+    }
+
+    LeafPlane shorten(const Cell& cell, const LeafPlane& plane) {
+        for (const double scale : {1e2, 1e4, 1e6, 1e9}) {
+            const LeafPlane shorter{rounded(plane.n0, scale), rounded(plane.n1, scale)};
+            if (is_proven(cell, shorter)) return shorter;
+        }
+        return plane;
+    }
+
+    const CertifiedBody &a_, &b_;
+    LeafProver prover_;
+    double claim_;
+    const SegmentProof* from_ = nullptr;
+    SegmentProof to_;
+    std::size_t next_split_ = 0, next_plane_ = 0;
+};
+
+}  // namespace
+
+SegmentProof thinned(const SegmentProof& proof, const PairCertificate& pair, const CertifiedBody& a, const CertifiedBody& b,
+                     const stepper::Trajectory& trajectory, int step, int segment, double room) {
+    Thinner thinner(a, b, body_path(trajectory, step, segment, pair.a), body_path(trajectory, step, segment, pair.b), pair.lower + room);
+    return thinner.shortened(thinner.merged(proof));
+}
+
+}  // namespace fettle::core::certificate

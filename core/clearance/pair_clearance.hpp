@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+/// What a certification of clearance is asked and answers: clearance.hpp.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/certificate/certificate.hpp"
+
+namespace fettle::core::clearance {
+
+using certificate::Primitive;
+
+enum class PairStatus {
+    clear,      ///< lower >= minimum
+    violated,   ///< upper < minimum, or the bodies pass through each other (`intersecting`)
+    undecided,  ///< the minimum lies between the bounds, closer than the tolerance (or the budget ran out, or the search was stopped)
+    contact     ///< minimum is 0 and the bodies come within the activation distance: reported, not judged
+};
+const char* to_string(PairStatus status);
+
+/// Which two primitives are closest, when, and where. Edge against edge or vertex against triangle; of codimensional parts also vertex
+/// against edge and vertex against vertex.
+struct Witness {
+    int step = -1;            ///< of the trajectory; -1: as assembled (the start pose)
+    int segment = 0;          ///< of the step's path
+    double s = 0;             ///< in [0, 1] along that segment
+    double time = 0;          ///< [s]
+    bool edge_edge = false;   ///< both kinds are `edge`
+    bool vertex_on_a = true;  ///< kind_a is `vertex`
+    int primitive_a = -1;     ///< index into a's mesh: vertex, triangle or edge
+    int primitive_b = -1;
+    Vector3 point_a = Vector3::Zero();  ///< world [m]
+    Vector3 point_b = Vector3::Zero();
+    Primitive kind_a = Primitive::vertex, kind_b = Primitive::triangle;
+    double distance = 0;  ///< of the two points, as evaluated [m]
+};
+
+/// Certified bounds of the distance during one path segment.
+struct MarginInterval {
+    int step = -1;                        ///< of the trajectory; -1: as assembled
+    int segment = 0;                      ///< of the step's path
+    double time_start = 0, time_end = 0;  ///< [s]
+    double lower = 0, upper = 0;          ///< [m] upper - lower <= max(tolerance, upper/1000), unless rounding or the budget prevents it
+};
+
+struct PairRequest {
+    int a = 0, b = 0;    ///< bodies
+    double minimum = 0;  ///< required clearance [m]
+};
+
+struct ClearanceOptions {
+    double tolerance = 1e-6;                        ///< wanted upper - lower [m]
+    bool motion = false;                            ///< over the whole trajectory; false: at poses[0]
+    long max_evaluations = 50'000'000;              ///< box pairs per pair of bodies; beyond it: undecided with true bounds
+    std::function<void(int done, int of)> on_pair;  ///< optional progress
+    bool margin_curve = false;                      ///< fill PairClearance::margin: costs a search per path segment
+    double witness_tolerance = 0;                   ///< greater than 0: fill PairClearance::witnesses with all within it of the least [m]
+    int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
+    bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
+    double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
+    certificate::Certificate* certificate = nullptr;          ///< optional: the proofs are recorded here; `lower` is what they claim
+    std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
+};
+
+struct PairClearance {
+    int a = 0, b = 0;
+    double minimum = 0;
+    double lower = 0, upper = 0;  ///< [m]
+    PairStatus status = PairStatus::undecided;
+    Witness witness;            ///< attains `upper`
+    bool complete = true;       ///< false: budget or should_stop ended the search before the tolerance was reached
+    bool intersecting = false;  ///< an edge of one was found passing through a triangle of the other: a clash, not a contact
+    double sampled = 0;  ///< least distance at the nodes of the path: what a tool that samples would say [m]; infinite if not asked for
+    std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
+    std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
+};
+
+}  // namespace fettle::core::clearance

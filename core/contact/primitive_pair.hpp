@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+/// Pairs of primitives of two bodies: by their vertices in space, and by index into the bodies' meshes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::core::contact {
+
+enum class PairType { point_triangle, edge_edge };
+
+/// Vertices of a pair: point_triangle p t0 t1 t2, edge_edge ea0 ea1 eb0 eb1.
+using PairVertices = std::array<Vector3, 4>;
+
+/// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
+/// those by less, the pair needs no second look.
+struct PrimitivePair {
+    int a = 0, b = 0;
+    double distance = 0;  ///< [m]
+};
+
+/// Primitives of two bodies, by kind. Each list is sorted by distance.
+struct PrimitivePairs {
+    std::vector<PrimitivePair> vertex_triangle;  ///< vertex of a, face of b (BodyHierarchy::faces: triangles first)
+    std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
+    std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
+    bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
+};
+
+}  // namespace fettle::core::contact

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/files/json_document.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/files/warning_groups.hpp"
+
+namespace fettle::core::files {
+
+using base::Error;
+using base::ErrorCode;
+using nlohmann::json;
+
+struct JsonNode::Context {
+    std::string path;
+    json tree;
+    base::Errors errors;
+    std::vector<Warning> warnings;
+};
+
+namespace {
+
+const json& value_of(const void* value) { return *static_cast<const json*>(value); }
+
+/// A `/` or `~` inside a key, written as RFC 6901 wants it.
+std::string escaped(const std::string& key) {
+    std::string out;
+    for (const char c : key) {
+        if (c == '~')
+            out += "~0";
+        else if (c == '/')
+            out += "~1";
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::string shortest(double number) { return json(number).dump(); }
+
+std::string joined(const std::vector<std::string_view>& words) {
+    std::string out;
+    for (const auto& word : words) out += (out.empty() ? "" : ", ") + std::string(word);
+    return out;
+}
+
+struct Place {
+    std::size_t line = 1, column = 1;
+};
+
+Place place_of(const std::string& text, std::size_t offset) {
+    Place place;
+    for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+        if (text[i] == '\n') {
+            ++place.line;
+            place.column = 1;
+        } else {
+            ++place.column;
+        }
+    }
+    return place;
+}
+
+std::string at(const std::string& name, const Place& place) {
+    return name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+}
+
+/// The run of letters, digits and signs around an offset: what a person would call the word at fault.
+std::string word_around(const std::string& text, std::size_t offset, std::size_t& start) {
+    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '+' || c == '.'; };
+    start = std::min(offset, text.size());
+    while (start > 0 && is_part(text[start - 1])) --start;
+    std::size_t end = start;
+    while (end < text.size() && is_part(text[end])) ++end;
+    return text.substr(start, std::min<std::size_t>(end - start, 40));
+}
+
+bool spells_not_finite(std::string word) {
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.erase(0, 1);
+    return word == "nan" || word == "inf" || word == "infinity";
+}
+
+Error not_finite_error(const std::string& where, const std::string& found) {
+    return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is wanted"};
+}
+
+Error parse_fault(const std::string& text, const std::string& name, const json::parse_error& fault) {
+    // The library's offset is one past the last character that it read.
+    const std::size_t offset = fault.byte > 0 ? fault.byte - 1 : 0;
+    std::size_t start = offset;
+    const std::string word = word_around(text, offset, start);
+    if (spells_not_finite(word)) return not_finite_error(at(name, place_of(text, start)), word);
+    std::string message = fault.what();
+    const auto colon = message.find(": ");
+    if (colon != std::string::npos) message = message.substr(colon + 2);
+    return {ErrorCode::parse, at(name, place_of(text, offset)), "not valid JSON: " + message};
+}
+
+Error overflow_fault(const std::string& text, const std::string& name, const std::string& what) {
+    const auto quote = what.find('\'');
+    const std::string number = quote == std::string::npos ? "" : what.substr(quote + 1, what.rfind('\'') - quote - 1);
+    const auto offset = number.empty() ? std::string::npos : text.find(number);
+    return not_finite_error(offset == std::string::npos ? name : at(name, place_of(text, offset)), number + " is beyond double precision");
+}
+
+/// Sees every key as it is parsed: the tree would keep only the last of two equal ones.
+class DuplicateKeys {
+public:
+    explicit DuplicateKeys(const std::string& name) : name_(name) {}
+
+    bool operator()(json::parse_event_t event, json& parsed) {
+        if (event == json::parse_event_t::object_start) {
+            open_.emplace_back();
+        } else if (event == json::parse_event_t::object_end) {
+            open_.pop_back();
+        } else if (event == json::parse_event_t::key) {
+            const auto key = parsed.get<std::string>();
+            if (!open_.back().insert(key).second) {
+                errors.push_back({ErrorCode::inconsistent, name_, "the key `" + key + "` stands twice in one object; keep one of them"});
+            }
+        }
+        return true;
+    }
+
+    base::Errors errors;
+
+private:
+    std::string name_;
+    std::vector<std::set<std::string>> open_;
+};
+
+}  // namespace
+
+double in_metres(double number, double unit) {
+    const double per_metre = std::round(1 / unit);
+    return per_metre >= 2 && 1 / per_metre == unit ? number / per_metre : number * unit;
+}
+
+bool JsonNode::is_null() const { return value_ && value_of(value_).is_null(); }
+bool JsonNode::is_bool() const { return value_ && value_of(value_).is_boolean(); }
+bool JsonNode::is_number() const { return value_ && value_of(value_).is_number(); }
+bool JsonNode::is_string() const { return value_ && value_of(value_).is_string(); }
+bool JsonNode::is_array() const { return value_ && value_of(value_).is_array(); }
+bool JsonNode::is_object() const { return value_ && value_of(value_).is_object(); }
+
+std::string JsonNode::where() const { return context_->path + "#" + pointer_; }
+
+std::string JsonNode::shown() const {
+    if (!exists()) return "nothing";
+    const json& value = value_of(value_);
+    if (value.is_object()) return "an object";
+    if (value.is_array()) return "a list of " + std::to_string(value.size());
+    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+void JsonNode::fail(ErrorCode code, std::string message) const { context_->errors.push_back({code, where(), std::move(message)}); }
+
+void JsonNode::warn(const std::string& message) const { context_->warnings.push_back({pointer_, message}); }
+
+JsonNode JsonNode::child(const void* value, const std::string& key) const { return {context_, value, pointer_ + "/" + escaped(key)}; }
+
+JsonNode JsonNode::operator[](std::string_view key) const {
+    const std::string name(key);
+    if (!exists()) return child(nullptr, name);
+    if (!is_object()) {
+        fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+        return child(nullptr, name);
+    }
+    const json& object = value_of(value_);
+    const auto found = object.find(name);
+    return child(found == object.end() ? nullptr : &*found, name);
+}
+
+JsonNode JsonNode::require(std::string_view key) const {
+    const JsonNode found = (*this)[key];
+    if (is_object() && !found.exists()) fail(ErrorCode::missing_key, "the key `" + std::string(key) + "` is required here");
+    return found;
+}
+
+JsonNode JsonNode::unless_null() const { return {context_, is_null() ? nullptr : value_, pointer_}; }
+
+std::vector<JsonNode> JsonNode::elements() const {
+    std::vector<JsonNode> out;
+    if (!exists()) return out;
+    if (!is_array()) {
+        fail(ErrorCode::wrong_type, "a list is wanted, found " + shown());
+        return out;
+    }
+    const json& array = value_of(value_);
+    for (std::size_t i = 0; i < array.size(); ++i) out.push_back(child(&array[i], std::to_string(i)));
+    return out;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+    std::vector<std::pair<std::string, JsonNode>> out;
+    if (!exists()) return out;
+    if (!is_object()) {
+        fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+        return out;
+    }
+    for (const auto& [key, value] : value_of(value_).items()) out.emplace_back(key, child(&value, key));
+    return out;
+}
+
+void JsonNode::allow_keys(const std::vector<std::string_view>& known) const {
+    for (const auto& [key, node] : members()) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        node.fail(ErrorCode::unknown_key, "unknown key `" + key + "`; " + did_you_mean(key, known, '`'));
+    }
+}
+
+void JsonNode::warn_of_other_keys(const std::vector<std::string_view>& known) const {
+    if (!is_object()) return;
+    for (const auto& [key, node] : members()) {
+        if (key.starts_with('#') || std::find(known.begin(), known.end(), key) != known.end()) continue;
+        const auto nearest = nearest_word(key, known);
+        node.warn("unknown key `" + key + "` is ignored" + (nearest ? "; did you mean `" + *nearest + "`?" : ""));
+    }
+}
+
+bool JsonNode::check_range(double number, const NumberRange& range, std::string_view unit) const {
+    if (!std::isfinite(number)) {
+        context_->errors.push_back(not_finite_error(where(), shown()));
+        return false;
+    }
+    const bool low_fails = range.low_open ? !(number > range.low) : !(number >= range.low);
+    if (!low_fails && number <= range.high) return true;
+    std::string allowed;
+    if (std::isfinite(range.low)) allowed = (range.low_open ? "greater than " : "at least ") + shortest(range.low);
+    if (std::isfinite(range.high)) allowed += (allowed.empty() ? "" : " and ") + ("at most " + shortest(range.high));
+    fail(ErrorCode::out_of_range, shown() + " is out of range: it must be " + allowed + std::string(unit));
+    return false;
+}
+
+std::optional<double> JsonNode::number(const NumberRange& range) const {
+    if (!exists()) return std::nullopt;
+    if (!is_number()) {
+        if (is_string() && spells_not_finite(value_of(value_).get<std::string>())) {
+            context_->errors.push_back(not_finite_error(where(), shown()));
+        } else {
+            fail(ErrorCode::wrong_type, "a number is wanted, found " + shown());
+        }
+        return std::nullopt;
+    }
+    const auto found = value_of(value_).get<double>();
+    if (!check_range(found, range, "")) return std::nullopt;
+    return found;
+}
+
+std::optional<int> JsonNode::integer(int low, int high) const {
+    const auto found = number();
+    if (!found) return std::nullopt;
+    if (*found != std::floor(*found)) {
+        fail(ErrorCode::wrong_type, "a whole number is wanted, found " + shown());
+        return std::nullopt;
+    }
+    if (!check_range(*found, {static_cast<double>(low), static_cast<double>(high)}, "")) return std::nullopt;
+    return static_cast<int>(*found);
+}
+
+std::optional<bool> JsonNode::boolean() const {
+    if (!exists()) return std::nullopt;
+    if (is_bool()) return value_of(value_).get<bool>();
+    fail(ErrorCode::wrong_type, "true or false is wanted, found " + shown());
+    return std::nullopt;
+}
+
+std::optional<std::string> JsonNode::string() const {
+    if (!exists()) return std::nullopt;
+    if (is_string()) return value_of(value_).get<std::string>();
+    fail(ErrorCode::wrong_type, "a string is wanted, found " + shown());
+    return std::nullopt;
+}
+
+std::optional<std::string> JsonNode::choice(const std::vector<std::string_view>& allowed) const {
+    const auto found = string();
+    if (!found || std::find(allowed.begin(), allowed.end(), *found) != allowed.end()) return found;
+    const auto nearest = nearest_word(*found, allowed);
+    fail(ErrorCode::out_of_range, shown() + " is not one of: " + joined(allowed) + (nearest ? "; did you mean `" + *nearest + "`?" : ""));
+    return std::nullopt;
+}
+
+std::optional<double> JsonNode::length(double unit, const NumberRange& range) const {
+    if (!exists()) return std::nullopt;
+    if (is_string() && !spells_not_finite(value_of(value_).get<std::string>())) {
+        const auto parsed = base::parse_length(value_of(value_).get<std::string>(), where());
+        if (!parsed) {
+            context_->errors.insert(context_->errors.end(), parsed.errors().begin(), parsed.errors().end());
+            return std::nullopt;
+        }
+        if (!check_range(*parsed, range, " m")) return std::nullopt;
+        return *parsed;
+    }
+    const auto found = number();
+    if (!found || !check_range(in_metres(*found, unit), range, " m")) return std::nullopt;
+    return in_metres(*found, unit);
+}
+
+template <class Read>
+std::optional<Vector3> JsonNode::three(const Read& read, std::string_view what) const {
+    if (!exists()) return std::nullopt;
+    if (!is_array() || value_of(value_).size() != 3) {
+        fail(ErrorCode::wrong_type, "a list of three " + std::string(what) + " is wanted, found " + shown());
+        return std::nullopt;
+    }
+    Vector3 out;
+    bool good = true;
+    const auto entries = elements();
+    for (int i = 0; i < 3; ++i) {
+        const std::optional<double> entry = read(entries[i]);
+        good = good && entry.has_value();
+        out[i] = entry.value_or(0);
+    }
+    if (!good) return std::nullopt;
+    return out;
+}
+
+std::optional<Vector3> JsonNode::vector3() const {
+    return three([](const JsonNode& node) { return node.number(); }, "numbers");
+}
+
+std::optional<Vector3> JsonNode::length3(double unit) const {
+    return three([unit](const JsonNode& node) { return node.length(unit); }, "lengths");
+}
+
+std::optional<std::vector<double>> JsonNode::numbers() const {
+    if (!exists()) return std::nullopt;
+    if (!is_array()) {
+        fail(ErrorCode::wrong_type, "a list of numbers is wanted, found " + shown());
+        return std::nullopt;
+    }
+    std::vector<double> out;
+    bool good = true;
+    const json& array = value_of(value_);
+    out.reserve(array.size());
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        // Long lists of numbers are common: a node, with its pointer, is made only to report a fault.
+        const bool plain = array[i].is_number();
+        const std::optional<double> found = plain ? array[i].get<double>() : child(&array[i], std::to_string(i)).number();
+        good = good && found.has_value();
+        out.push_back(found.value_or(0));
+    }
+    if (!good) return std::nullopt;
+    return out;
+}
+
+JsonDocument::JsonDocument() : context_(std::make_unique<JsonNode::Context>()) {}
+JsonDocument::~JsonDocument() = default;
+JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;
+JsonDocument& JsonDocument::operator=(JsonDocument&&) noexcept = default;
+
+base::Result<JsonDocument> JsonDocument::read(const std::string& path) {
+    const auto text = read_file(path);
+    if (!text) return text.errors();
+    return parse(*text, path);
+}
+
+base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const std::string& name) {
+    JsonDocument document;
+    document.context_->path = name;
+    DuplicateKeys duplicates(name);
+    try {
+        document.context_->tree =
+            json::parse(text, [&](int, json::parse_event_t event, json& parsed) { return duplicates(event, parsed); });
+    } catch (const json::parse_error& fault) {
+        return parse_fault(text, name, fault);
+    } catch (const json::out_of_range& fault) {
+        return overflow_fault(text, name, fault.what());
+    }
+    if (!duplicates.errors.empty()) return duplicates.errors;
+    return document;
+}
+
+const std::string& JsonDocument::path() const { return context_->path; }
+JsonNode JsonDocument::root() { return {context_.get(), &context_->tree, ""}; }
+const base::Errors& JsonDocument::errors() const { return context_->errors; }
+std::vector<std::string> JsonDocument::warnings() const { return grouped_warnings(context_->path, context_->warnings); }
+
+}  // namespace fettle::core::files

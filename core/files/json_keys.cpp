@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/files/json_keys.hpp"
+
+#include <array>
+#include <fstream>
+#include <string>
+
+namespace fettle::core::files {
+namespace {
+
+// Takes a file's characters one by one.
+class KeyFinder {
+public:
+    explicit KeyFinder(std::string_view key) : key_(key) {}
+
+    bool found() const { return found_; }
+    /// False: there is nothing more to look for.
+    bool take(char c) {
+        if (in_string_) {
+            take_in_string(c);
+        } else if (c == '"') {
+            in_string_ = true;
+            text_.clear();
+        } else if (c == '{' || c == '[') {
+            ++depth_;
+        } else if (c == '}' || c == ']') {
+            --depth_;
+        } else if (c == ':') {
+            found_ = depth_ == 1 && text_ == key_;
+        }
+        if (depth_ > 0) return !found_;
+        // Before the object only white space and a byte order mark may stand, after it nothing is of interest.
+        return !in_string_ && (c == ' ' || c == '\t' || c == '\n' || c == '\r' || static_cast<unsigned char>(c) >= 0x80);
+    }
+
+private:
+    void take_in_string(char c) {
+        if (!escaped_ && c == '"') {
+            in_string_ = false;
+            return;
+        }
+        escaped_ = !escaped_ && c == '\\';
+        if (depth_ == 1 && text_.size() <= key_.size()) text_ += c;
+    }
+
+    std::string_view key_;
+    std::string text_;  // of the last string, if at the top; cut off behind the key's length
+    long depth_ = 0;
+    bool in_string_ = false, escaped_ = false, found_ = false;
+};
+
+}  // namespace
+
+bool has_top_level_key(const std::filesystem::path& path, std::string_view key) {
+    std::ifstream file(path, std::ios::binary);
+    KeyFinder finder(key);
+    std::array<char, 65536> block;
+    while (file) {
+        file.read(block.data(), static_cast<std::streamsize>(block.size()));
+        for (std::streamsize i = 0; i < file.gcount(); ++i)
+            if (!finder.take(block[static_cast<std::size_t>(i)])) return finder.found();
+    }
+    return false;
+}
+
+}  // namespace fettle::core::files

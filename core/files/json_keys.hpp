@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+/// Which kind of JSON file is this? By a key of its outermost object, in whatever order its keys stand, without reading it as a document:
+/// trajectories and certificates may be large.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace fettle::core::files {
+
+/// Has the file's outermost object this key? Reads up to where it stands. False for what cannot be read or is no object; of a file that is
+/// not JSON the answer may be either, for its reader to say what is wrong. Contract: a key without characters that JSON escapes.
+bool has_top_level_key(const std::filesystem::path& path, std::string_view key);
+
+}  // namespace fettle::core::files

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/files/text_lines.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+namespace fettle::core::files {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+void split(std::string_view line, std::vector<std::string_view>& words) {
+    while (true) {
+        const std::size_t first = line.find_first_not_of(blanks);
+        if (first == std::string_view::npos) return;
+        const std::size_t last = std::min(line.find_first_of(blanks, first), line.size());
+        words.push_back(line.substr(first, last - first));
+        line.remove_prefix(last);
+    }
+}
+
+std::string_view without_plus(std::string_view word) {
+    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
+    return plus ? word.substr(1) : word;
+}
+
+}  // namespace
+
+bool TextLines::next(std::vector<std::string_view>& words) {
+    words.clear();
+    bool continued = false;
+    while (!rest_.empty() && (words.empty() || continued)) {
+        const std::size_t length = std::min(rest_.find('\n'), rest_.size());
+        std::string_view line = rest_.substr(0, length);
+        rest_.remove_prefix(std::min(length + 1, rest_.size()));
+        ++lines_read_;
+        if (!continued) line_number_ = lines_read_;
+        line = line.substr(0, line.find('#'));
+        while (!line.empty() && blanks.find(line.back()) != std::string_view::npos) line.remove_suffix(1);
+        continued = !line.empty() && line.back() == '\\';
+        if (continued) line.remove_suffix(1);
+        split(line, words);
+    }
+    return !words.empty();
+}
+
+std::optional<double> parsed_number(std::string_view word) {
+    word = without_plus(word);
+    double value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, code] = std::from_chars(word.data(), end, value);
+    if (stop != end || code == std::errc::invalid_argument) return std::nullopt;
+    // Too large or too small for a double: strtod says infinity or the nearest subnormal, from_chars says nothing.
+    if (code == std::errc::result_out_of_range) return std::strtod(std::string(word).c_str(), nullptr);
+    return value;
+}
+
+std::optional<int> parsed_integer(std::string_view word) {
+    word = without_plus(word);
+    int value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, code] = std::from_chars(word.data(), end, value);
+    if (stop != end || code != std::errc()) return std::nullopt;
+    return value;
+}
+
+}  // namespace fettle::core::files

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/mesh_files/raw_mesh.hpp"
+
+namespace fettle::core::mesh_files {
+namespace {
+
+using geometry::Mesh;
+using geometry::Triangle;
+
+constexpr std::size_t max_listed = 5;
+
+std::string lower_case_extension(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+Errors checked_file(const std::string& path) {
+    std::error_code code;
+    const std::string full = std::filesystem::absolute(path, code).string();
+    if (!std::filesystem::exists(path, code)) {
+        return {{ErrorCode::file_not_found, path, "no such file; looked for it at " + (full.empty() ? path : full)}};
+    }
+    if (!std::filesystem::is_regular_file(path, code)) return {{ErrorCode::file_unreadable, path, "is not a file"}};
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return {{ErrorCode::file_unreadable, path, "cannot be opened for reading"}};
+    return {};
+}
+
+Result<RawMesh> read_raw(const std::string& path) {
+    const std::string extension = lower_case_extension(path);
+    const bool own = extension == ".obj" || extension == ".off",
+               foreign = extension == ".stl" || extension == ".ply" || extension == ".3mf";
+    if (!own && !foreign) {
+        return Error{ErrorCode::unsupported, path, "extension `" + extension + "` is not a mesh format; allowed: .stl .obj .off .ply .3mf"};
+    }
+    if (Errors errors = checked_file(path); !errors.empty()) return errors;
+    if (foreign) return read_by_assimp(path);
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return extension == ".obj" ? parse_obj(text.str(), path) : parse_off(text.str(), path);
+}
+
+Errors check_finite(const RawMesh& raw, const std::string& path) {
+    Errors errors;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < raw.vertices.size(); ++i) {
+        const Vector3& x = raw.vertices[i];
+        if (x.allFinite() || ++count > max_listed) continue;
+        std::ostringstream text;
+        text << "vertex " << i << " (counted from 0) is not finite: " << x.transpose() << "; export the mesh again";
+        errors.push_back({ErrorCode::not_finite, path, text.str()});
+    }
+    if (count > max_listed) errors.push_back({ErrorCode::not_finite, path, "and " + std::to_string(count - max_listed) + " more vertices"});
+    return errors;
+}
+
+/// Triangles and, for each, the object that it comes from.
+struct GroupedTriangles {
+    std::vector<Triangle> triangles;
+    std::vector<int> group;
+};
+
+/// Polygons cut into triangles; with `weld` without those that have two equal corners.
+Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const std::string& path) {
+    GroupedTriangles result;
+    int first = 0;
+    for (std::size_t p = 0; p < raw.polygon_ends.size(); ++p) {
+        const std::vector<Triangle> pieces = triangulated(raw.vertices, raw.corners.data() + first, raw.polygon_ends[p] - first);
+        if (pieces.empty()) {
+            std::ostringstream text;
+            text << "face " << p << " (counted from 0), a polygon of " << raw.polygon_ends[p] - first << " vertices near ("
+                 << raw.vertices[static_cast<std::size_t>(raw.corners[static_cast<std::size_t>(first)])].transpose()
+                 << "), has no area or an outline that crosses itself; export the mesh as triangles";
+            return Error{ErrorCode::mesh_invalid, path, text.str()};
+        }
+        for (const Triangle& t : pieces) {
+            const Vector3 &a = raw.vertices[t[0]], &b = raw.vertices[t[1]], &c = raw.vertices[t[2]];
+            if (weld && (a == b || b == c || c == a)) continue;
+            result.triangles.push_back(t);
+            result.group.push_back(raw.polygon_group[p]);
+        }
+        first = raw.polygon_ends[p];
+    }
+    return result;
+}
+
+/// A shell has the name of the object of its first triangle, numbered where the object has several shells; unnamed ones keep "file/3".
+void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::vector<std::string>& groups) {
+    FETTLE_ASSERT(mesh.triangles.size() == triangle_group.size(), "one object per triangle");
+    std::vector<std::string> object(mesh.shell_names.size());
+    for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+        const int group = triangle_group[t];
+        object[static_cast<std::size_t>(mesh.triangle_shell[t])] = group < 0 ? "" : groups[static_cast<std::size_t>(group)];
+    }
+    std::map<std::string, int> total, used;
+    for (const std::string& name : object) ++total[name];
+    for (std::size_t s = 0; s < object.size(); ++s) {
+        if (object[s].empty()) continue;
+        mesh.shell_names[s] = total[object[s]] == 1 ? object[s] : object[s] + "/" + std::to_string(used[object[s]]++);
+    }
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
+    FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
+    Result<RawMesh> found = read_raw(path);
+    if (!found) return found.errors();
+    RawMesh& raw = *found;
+    if (raw.vertices.empty()) return Error{ErrorCode::mesh_invalid, path, "has no vertices, so no triangles; is it the right file?"};
+    // Scaled before anything is compared: rounding can make equal what was not in the file.
+    const double unit = raw.metres_per_unit > 0 ? raw.metres_per_unit : options.unit;
+    for (Vector3& x : raw.vertices) x *= unit;
+    if (Errors errors = check_finite(raw, path); !errors.empty()) return errors;
+    auto faces = grouped_triangles(raw, options.weld, path);
+    if (!faces) return faces.errors();
+
+    Mesh mesh;
+    mesh.name = std::filesystem::path(path).filename().string();
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(raw.vertices.size()));
+    for (std::size_t i = 0; i < raw.vertices.size(); ++i) mesh.vertices.col(static_cast<Eigen::Index>(i)) = raw.vertices[i];
+    mesh.triangles = std::move(faces->triangles);
+    geometry::build_connectivity(mesh, raw.edges);
+    if (options.weld) {
+        mesh.shell_names.clear();  // of the unwelded shells
+        mesh = geometry::weld_exactly(mesh);
+    }
+    name_shells(mesh, faces->group, raw.groups);
+    return mesh;
+}
+
+}  // namespace fettle::core::mesh_files

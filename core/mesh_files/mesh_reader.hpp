@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// Reads a mesh file into a geometry::Mesh in metres: STL, OBJ, OFF, PLY, 3MF.
+///
+/// Precision. OBJ and OFF are read by own readers in full double precision: another program's design may have parts that touch, and
+/// rounding to float could make them intersect. STL (binary: float by definition), PLY and 3MF come through assimp, which keeps
+/// coordinates in float32: 100.123456789 becomes 100.123459. Where more is needed, export OBJ.
+///
+/// What is kept: positions, faces (polygons are cut into triangles), OBJ polylines and two-vertex faces as codimensional edges, vertices
+/// that nothing uses as codimensional points. What is dropped: normals, colours, texture coordinates, materials, STL attributes. All
+/// objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ, `solid` in
+/// STL, "Object_<id>" in 3MF, whose names assimp passes over): "name", or "name/0",
+/// "name/1", ... where one object has several shells.
+///
+/// Validity as a solid is geometry/mesh_validity.hpp; which part of a scene the mesh is for, scene_reader.hpp.
+#pragma once
+
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::core::mesh_files {
+
+struct MeshReadOptions {
+    /// Metres per unit of the file. Formats without a unit only: 3MF states its own (micron, millimeter, centimeter, inch, foot, meter;
+    /// default millimeter), which is used instead.
+    double unit = 1;
+    /// Merge vertices with exactly equal coordinates, and drop the triangles that become degenerate by it (geometry::weld_exactly). STL
+    /// needs it.
+    bool weld = true;
+};
+
+/// @param path  The extension decides the format, in any case: .stl .obj .off .ply .3mf.
+/// @return      The mesh in metres, named after the file ("gear.obj"), connectivity built. Errors, with `where` the path (and line, for OBJ
+///              and OFF): file_not_found (with the full path looked for), file_unreadable, unsupported (extension, free-form OBJ, binary
+///              OFF), parse, out_of_range (vertex index), not_finite (which vertices), mesh_invalid (nothing in it, or a polygon that
+///              crosses itself).
+/// Contract: options.unit > 0.
+Result<geometry::Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+}  // namespace fettle::core::mesh_files

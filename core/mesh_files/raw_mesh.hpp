@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// What a mesh file says, before mesh_reader.cpp makes a geometry::Mesh of it, and the readers of single formats.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::core::mesh_files {
+
+struct RawMesh {
+    std::vector<Vector3> vertices;      ///< in the file's unit; may be NaN or infinite
+    std::vector<int> corners;           ///< vertex indices of all polygons, one after the other, 0-based
+    std::vector<int> polygon_ends;      ///< per polygon: one past its last corner; at least 3 corners each
+    std::vector<int> polygon_group;     ///< per polygon: index into `groups`, -1 for none
+    std::vector<std::string> groups;    ///< objects of the file, as it names them
+    std::vector<geometry::Edge> edges;  ///< polylines
+    double metres_per_unit = 0;         ///< 0: the file does not say
+};
+
+/// `where` is the path, for messages; lines are counted from 1. All vertex indices of the result are in range.
+Result<RawMesh> parse_obj(std::string_view text, const std::string& where);
+Result<RawMesh> parse_off(std::string_view text, const std::string& where);
+
+/// STL, PLY and 3MF through assimp; for 3MF with the unit that the file states.
+Result<RawMesh> read_by_assimp(const std::string& path);
+
+/// Cuts a simple polygon into triangles with the same orientation (ear clipping, exact decisions in the projection along the largest
+/// component of its normal). A convex polygon becomes the fan round its first corner. Empty if the outline crosses itself in that
+/// projection.
+std::vector<geometry::Triangle> triangulated(const std::vector<Vector3>& vertices, const int* corners, int count);
+
+}  // namespace fettle::core::mesh_files

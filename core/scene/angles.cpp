@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/angles.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace fettle::core::scene {
+namespace {
+
+struct SineCosine {
+    double sine, cosine;
+};
+
+SineCosine sine_cosine(double degrees) {
+    const double turned = std::remainder(degrees, 360.0);  // exact
+    if (turned == 0) return {0, 1};
+    if (turned == 90) return {1, 0};
+    if (turned == -90) return {-1, 0};
+    if (std::abs(turned) == 180) return {0, -1};
+    return {std::sin(radians(turned)), std::cos(radians(turned))};
+}
+
+}  // namespace
+
+double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
+
+Matrix3 rotation_from_degrees(const Vector3& angles) {
+    const auto [sa, ca] = sine_cosine(angles.x());
+    const auto [sb, cb] = sine_cosine(angles.y());
+    const auto [sc, cc] = sine_cosine(angles.z());
+    Matrix3 rx, ry, rz;
+    rx << 1, 0, 0, 0, ca, -sa, 0, sa, ca;
+    ry << cb, 0, sb, 0, 1, 0, -sb, 0, cb;
+    rz << cc, -sc, 0, sc, cc, 0, 0, 0, 1;
+    return rz * ry * rx;
+}
+
+}  // namespace fettle::core::scene

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+/// Scratch memory of the solver (newton.hpp), and the clock of its phases.
+#pragma once
+
+#include "fettle/core/base/phase_clock.hpp"
+#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/solver/linear_solver.hpp"
+
+namespace fettle::core::solver {
+
+/// What a solve spends its time on.
+enum class SolvePhase {
+    broad_phase,   ///< candidates
+    contacts,      ///< which candidates are in contact, and their distances
+    derivatives,   ///< gradient and Hessian
+    linear_solve,  ///< factorisation and solve
+    ccd,           ///< longest safe steps
+    potential,     ///< values for the line search
+    count
+};
+const char* to_string(SolvePhase phase);
+
+/// What is worth keeping from one solve to the next; the result does not depend on it.
+struct NewtonWorkspace {
+    FreeDofs dofs;
+    LinearSolver linear;             ///< its symbolic factor
+    contact::Candidates candidates;  ///< near where the last solve ended
+    base::PhaseClock<SolvePhase> clock;
+    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
+};
+
+}  // namespace fettle::core::solver

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+/// What a generator of shapes says of itself: its name, its dimensions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace fettle::design::shapes {
+
+enum class DimensionKind {
+    length,     ///< positive
+    coordinate  ///< any sign
+};
+
+struct DimensionInfo {
+    std::string name;
+    double default_value = 0;  ///< [m]
+    std::string meaning;
+    DimensionKind kind = DimensionKind::length;
+};
+
+struct GeneratorInfo {
+    std::string name;
+    std::string description;
+    std::vector<DimensionInfo> dimensions;
+};
+
+}  // namespace fettle::design::shapes

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Certificates: every one of ours is accepted, also after a round through a file. Damaged ones: certificate_damage_test.cpp.
+#include "fettle/core/certificate/certificate.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/certificate/certificate_thinning.hpp"
+#include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/tests/core/certificate/certificate_case.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+using namespace fettle;
+using namespace fettle::tests::certificate;
+using namespace fettle::tests::clearance;
+using namespace fettle::core::certificate;
+using namespace fettle::core::clearance;
+namespace kinematics = fettle::core::kinematics;
+
+namespace {
+
+Case proven_case(std::mt19937& random) {
+    Case c = random_case(random, 0.1, 2, 1e-5);
+    while (!(c.results[0].lower > 0)) c = random_case(random, 0.1, 2, 1e-5);
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
+    std::mt19937 random(3);
+    Case c = proven_case(random);
+    for (SegmentProof& segment : c.certificate.pairs[0].segments)  // some leaves whose plane turns, and others
+        for (std::size_t k = 0; k < segment.planes.size(); k += 2) segment.planes[k].n1 *= 1 - 1e-15;
+    const tests::support::TemporaryFolder folder;
+    const std::string path = folder.file("a.certificate.json");
+    REQUIRE(write_certificate(path, c.certificate).empty());
+    CHECK(is_certificate_file(path));
+    const auto read = read_certificate(path);
+    REQUIRE(read);
+    CHECK(read->geometry_hash == c.certificate.geometry_hash);
+    CHECK(read->motion == c.certificate.motion);
+    const PairCertificate &x = read->pairs.at(0), &y = c.certificate.pairs.at(0);
+    CHECK((x.lower == y.lower && x.upper == y.upper && x.s == y.s && x.point_a.weight == y.point_a.weight &&
+           x.point_b.index == y.point_b.index));
+    REQUIRE(x.segments.size() == y.segments.size());
+    for (std::size_t i = 0; i < x.segments.size(); ++i) {
+        CHECK(x.segments[i].splits == y.segments[i].splits);
+        REQUIRE(x.segments[i].planes.size() == y.segments[i].planes.size());
+        for (std::size_t k = 0; k < x.segments[i].planes.size(); ++k)
+            CHECK((x.segments[i].planes[k].n0 == y.segments[i].planes[k].n0 && x.segments[i].planes[k].n1 == y.segments[i].planes[k].n1));
+    }
+    CHECK(check_certificate(*read, c.model, c.trajectory).accepted());
+}
+
+TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove", "[clearance]") {
+    std::mt19937 random(6);
+    std::size_t before = 0, after = 0;
+    for (int i = 0; i < 10; ++i) {
+        Case c = proven_case(random);
+        PairCertificate& pair = c.certificate.pairs[0];
+        const auto a = certified_body(c.certificate.bodies[0], c.model.bodies[0].mesh);
+        const auto b = certified_body(c.certificate.bodies[1], c.model.bodies[1].mesh);
+        REQUIRE((a && b));
+        std::size_t index = 0;
+        for (int t = 0; t < static_cast<int>(c.trajectory.steps.size()); ++t) {
+            for (int k = 0; k < core::stepper::segment_count(c.trajectory, t); ++k) {
+                SegmentProof& proof = pair.segments[index++];
+                SegmentProof wasteful;
+                std::size_t leaf = 0;
+                for (const char kind : proof.splits) {
+                    wasteful.splits += kind == '.' ? "tt..t.." : std::string(1, kind);
+                    if (kind != '.') continue;
+                    const LeafPlane plane = proof.planes[leaf++];
+                    const Vector3 turn = 0.25 * (plane.n1 - plane.n0);
+                    for (int part = 0; part < 4; ++part) wasteful.planes.push_back({plane.n0 + part * turn, plane.n0 + (part + 1) * turn});
+                }
+                CAPTURE(i, t, k);
+                const SegmentProof same = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 100);
+                CHECK((same.splits == wasteful.splits && same.planes[0].n0 == wasteful.planes[0].n0));
+                const SegmentProof thin = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 0);
+                before += wasteful.planes.size();
+                after += thin.planes.size();
+                proof = thin;
+            }
+        }
+        CHECK(check_certificate(c.certificate, c.model, c.trajectory).accepted());
+    }
+    CAPTURE(before, after);
+    CHECK(2 * after < before);  // four to one, but where the checker itself has to halve a leaf
+}
+
+TEST_CASE("Certificates of small, large, far and fast pairs are accepted", "[clearance]") {
+    std::mt19937 random(4);
+    int proven = 0;
+    for (int i = 0; i < 30; ++i) {
+        const double size = std::pow(10, uniform(random, -3, 1));
+        const double relative = std::pow(10, uniform(random, -7, -3));
+        Case c = random_case(random, size, 2, size * relative);
+        CAPTURE(i, size, c.results[0].lower, c.results[0].upper);
+        const auto report = check_certificate(c.certificate, c.model, c.trajectory);
+        CAPTURE(report.leaves, report.accepted() ? "" : report.faults[0].where + ": " + report.faults[0].message);
+        CHECK(report.accepted());
+        proven += c.results[0].lower > 0;
+    }
+    CHECK(proven > 12);
+}
+
+TEST_CASE("What the checker proves of a leaf is what sampling in extended precision finds", "[clearance]") {
+    std::mt19937 random(5);
+    for (int trial = 0; trial < 200; ++trial) {
+        const double size = std::pow(10, uniform(random, -3, 1)), turn = std::pow(10, uniform(random, -3, 0.5));
+        core::stepper::Trajectory trajectory;
+        trajectory.poses.resize(1);
+        core::stepper::TrajectoryStep step;
+        step.nodes.resize(2);
+        for (int b = 0; b < 2; ++b) {
+            trajectory.poses[0].push_back({kinematics::rotation(random_vector(random, 2)), Vector3(b * 5 * size, 0, 0)});
+            const Vector3 t0 = trial % 3 == 0 ? Vector3(0, 0, 0) : random_vector(random, turn);
+            step.nodes[0].push_back({Vector3(-b * 5 * size, 0, 0), t0});
+            step.nodes[1].push_back({Vector3(-b * 5 * size, 0, 0) + random_vector(random, size), t0 + random_vector(random, turn)});
+        }
+        trajectory.steps.push_back(step);
+        const auto path_a = body_path(trajectory, 0, 0, 0), path_b = body_path(trajectory, 0, 0, 1);
+        const auto cloud = [&](std::size_t count) {
+            std::vector<Vector3> points(count);
+            for (Vector3& x : points) x = random_vector(random, size * uniform(random, 0.3, 1));
+            return points;
+        };
+        const auto points_a = cloud(trial % 2 ? 3 : 200), points_b = cloud(trial % 4 < 2 ? 3 : 250);
+        const auto region = [&](const std::vector<Vector3>& points) {
+            Region r{points, points[0], points[0], 1.001 * size};
+            for (const Vector3& x : points) {
+                r.low = r.low.cwiseMin(x);
+                r.high = r.high.cwiseMax(x);
+            }
+            return r;
+        };
+        const auto a = region(points_a), b = region(points_b);
+        const double h = std::ldexp(1.0, -static_cast<int>(random() % 5)), s0 = h * std::floor(uniform(random, 0, 1) / h);
+        LeafPlane plane{Vector3(1, 0, 0) + random_vector(random, 0.3), Vector3(1, 0, 0) + random_vector(random, 0.3)};
+        if (trial % 5 == 0) plane.n1 = plane.n0;
+        const auto along = [&](Real u) {  // n.(x_a - x_b) of the nearest points, and |n|
+            const Real s = s0 + u * h;
+            const Real3 n = (1 - u) * plane.n0.cast<Real>() + u * plane.n1.cast<Real>();
+            const auto values = [&](int body, const std::vector<Vector3>& X) {
+                RealVertices x(3, static_cast<long>(X.size()));
+                for (std::size_t k = 0; k < X.size(); ++k) x.col(static_cast<long>(k)) = X[k].cast<Real>();
+                const auto p = core::stepper::path_segment(trajectory, 0, 0, body);
+                const Real3 t = p.rotation_vector_t0.cast<Real>() + s * p.rotation_vector_step.cast<Real>();
+                const Real3 q = p.position_t0.cast<Real>() + s * p.position_step.cast<Real>();
+                return (n.transpose() * ((oracle_rotation(t) * p.base.cast<Real>() * x).colwise() + q)).eval();
+            };
+            return std::pair{values(0, points_a).minCoeff() - values(1, points_b).maxCoeff(), n.norm()};
+        };
+        Real least = 1e300L, least_unscaled = 1e300L, at = 0;
+        const auto sample = [&](Real u) {
+            if (u < 0 || u > 1) return;
+            const auto [value, norm] = along(u);
+            least = std::min(least, value / norm);
+            if (value < least_unscaled) {
+                least_unscaled = value;
+                at = u;
+            }
+        };
+        for (int i = 0; i <= 60; ++i) sample(Real(i) / 60);
+        for (Real step = Real(1) / 60; step > 1e-7L; step /= 4)
+            for (const Real middle = at; const int i : {-6, -5, -4, -3, -2, -1, 1, 2, 3, 4, 5, 6}) sample(middle + i * step / 6);
+        const double bound = static_cast<double>(least), n_max = std::max(plane.n0.norm(), plane.n1.norm());
+        CAPTURE(trial, size, turn, h, bound);
+        LeafProver prover(path_a, path_b);
+        CHECK(prover.prove(a, b, {s0, s0 + h}, plane, bound + 1e-12 * size, 6) == 0);
+        const double claim = static_cast<double>(least_unscaled) / n_max;
+        CHECK(prover.prove(a, b, {s0, s0 + h}, plane, claim - 1e-11 * size, 24) > 0);  // what is true with a little room is proven
+    }
+}

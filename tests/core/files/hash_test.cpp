@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/files/hash.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace fettle::core::files;
+
+TEST_CASE("the published test vectors of FNV-1a") {
+    CHECK(hash_of("") == "cbf29ce484222325");
+    CHECK(hash_of("foobar") == "85944171f73967e8");
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/files/json_document.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "fettle/core/files/nearest_word.hpp"
+
+namespace fettle::core::files {
+namespace {
+
+using base::ErrorCode;
+
+JsonDocument parsed(const std::string& text) {
+    auto document = JsonDocument::parse(text, "a.json");
+    REQUIRE(document);
+    return std::move(document).value();
+}
+
+base::Error only_error(const base::Errors& errors) {
+    REQUIRE(errors.size() == 1);
+    return errors.front();
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_CASE("Faults of syntax have a line and a column", "[scene]") {
+    const auto missing_comma = JsonDocument::parse("{\n  \"a\": 1\n  \"b\": 2\n}", "a.json");
+    const auto error = only_error(missing_comma.errors());
+    CHECK(error.code == ErrorCode::parse);
+    CHECK(contains(error.where, "a.json:3:"));
+    CHECK(only_error(JsonDocument::parse("", "a.json").errors()).code == ErrorCode::parse);
+    CHECK(only_error(JsonDocument::read("/nonexistent/a.json").errors()).code == ErrorCode::file_not_found);
+}
+
+TEST_CASE("Numbers that are not finite are called so", "[scene]") {
+    for (const std::string text : {"{\"a\": 1,\n \"b\": NaN}", "{\"a\": 1,\n \"b\": -Infinity}", "{\"a\": 1,\n \"b\": nan}",
+                                   "{\"a\": 1,\n \"b\": 1e999}", "{\"a\": 1,\n \"b\": -1e999}"}) {
+        CAPTURE(text);
+        const auto error = only_error(JsonDocument::parse(text, "a.json").errors());
+        CHECK(error.code == ErrorCode::not_finite);
+        CHECK(contains(error.where, "a.json:2:7"));
+    }
+    for (const std::string text : {"{\"b\": \"NaN\"}", "{\"b\": \"-inf\"}"}) {
+        JsonDocument document = parsed(text);
+        CHECK_FALSE(document.root()["b"].number());
+        CHECK_FALSE(document.root()["b"].length(1));
+        REQUIRE(document.errors().size() == 2);
+        CHECK(document.errors()[0].code == ErrorCode::not_finite);
+        CHECK(document.errors()[1].code == ErrorCode::not_finite);
+        CHECK(document.errors()[0].where == "a.json#/b");
+    }
+}
+
+TEST_CASE("Two equal keys in one object are refused", "[scene]") {
+    const auto error = only_error(JsonDocument::parse(R"({"a": {"mass": 1, "mass": 2}, "mass": 3})", "a.json").errors());
+    CHECK(error.code == ErrorCode::inconsistent);
+    CHECK(contains(error.message, "mass"));
+}
+
+TEST_CASE("Every fault is collected, each with its place", "[scene]") {
+    JsonDocument document = parsed(R"({"bodies": [{"mass": -1, "densty": 2, "a/b": "x", "n": 1.5}], "flag": 1})");
+    const JsonNode root = document.root();
+    const JsonNode body = root["bodies"].elements().at(0);
+    CHECK_FALSE(body["mass"].number(positive));
+    body.allow_keys({"mass", "density", "a/b", "n"});
+    CHECK_FALSE(body["a/b"].number());
+    CHECK_FALSE(body["n"].integer(0));
+    CHECK_FALSE(root["flag"].boolean());
+    CHECK_FALSE(root.require("units").exists());
+    CHECK_FALSE(root["absent"]["deeper"].number());
+    const auto& errors = document.errors();
+    REQUIRE(errors.size() == 6);
+    CHECK(errors[0].code == ErrorCode::out_of_range);
+    CHECK(errors[0].where == "a.json#/bodies/0/mass");
+    CHECK(contains(errors[0].message, "-1"));
+    CHECK(contains(errors[0].message, "greater than 0"));
+    CHECK(errors[1].code == ErrorCode::unknown_key);
+    CHECK(contains(errors[1].message, "did you mean `density`?"));
+    CHECK(errors[2].where == "a.json#/bodies/0/a~1b");
+    CHECK(errors[3].code == ErrorCode::wrong_type);
+    CHECK(errors[4].where == "a.json#/flag");
+    CHECK(errors[5].code == ErrorCode::missing_key);
+}
+
+TEST_CASE("Lengths take the file's unit or their own", "[scene]") {
+    JsonDocument document = parsed(R"({"a": 30, "b": "0.3mm", "c": "1 in", "d": "3 parsec", "e": [1, "2mm", 3], "f": -2})");
+    const JsonNode root = document.root();
+    CHECK(root["a"].length(0.001) == 0.03);  // bit for bit
+    CHECK(root["b"].length(0.001) == 0.0003);
+    CHECK(root["c"].length(1) == 0.0254);
+    CHECK(root["e"].length3(1)->isApprox(Vector3(1, 0.002, 3)));
+    CHECK(document.errors().empty());
+    CHECK_FALSE(root["d"].length(1));
+    CHECK_FALSE(root["f"].length(1, positive));
+    REQUIRE(document.errors().size() == 2);
+    CHECK(document.errors()[0].where == "a.json#/d");
+    CHECK(document.errors()[1].code == ErrorCode::out_of_range);
+}
+
+TEST_CASE("The nearest word is a slip of the pen, not a guess", "[scene]") {
+    const std::vector<std::string_view> known{"density", "position", "rotation", "dhat", "dmin"};
+    CHECK(nearest_word("densty", known) == "density");
+    CHECK(nearest_word("postiion", known) == "position");
+    CHECK(nearest_word("Rotation", known) == "rotation");
+    CHECK(nearest_word("DHAT", known) == "dhat");
+    CHECK(nearest_word("dmim", known) == "dmin");
+    CHECK_FALSE(nearest_word("colour", known));
+    CHECK_FALSE(nearest_word("", known));
+}
+
+TEST_CASE("Other keys of a lenient file are warned of, comments are not", "[scene]") {
+    JsonDocument document = parsed(R"({"#note": 1, "timstep": 0.1, "timestep": 0.2})");
+    document.root().warn_of_other_keys({"timestep"});
+    REQUIRE(document.warnings().size() == 1);
+    CHECK(contains(document.warnings()[0], "did you mean `timestep`?"));
+    CHECK(document.errors().empty());
+}
+
+TEST_CASE("What is said of several elements of a list is said once", "[scene]") {
+    JsonDocument document = parsed(R"({"list": [{"a": 1}, {"a": 2}, {"b": 3}, {"a": 4}, {"a": 5}, {"a": 6}], "other": [{"a": 7}]})");
+    const JsonNode root = document.root();
+    root["other"].warn("odd");
+    for (const JsonNode& element : root["list"].elements()) element.warn_of_other_keys({});
+    root["other"].warn("odd");
+    for (const JsonNode& element : root["other"].elements()) element.warn_of_other_keys({});
+    const std::string path = document.path();
+    CHECK(document.warnings() == std::vector<std::string>{path + "#/other: odd", path + "#/list/[0, 1, 3-5]/a: unknown key `a` is ignored",
+                                                          path + "#/list/2/b: unknown key `b` is ignored",
+                                                          path + "#/other/0/a: unknown key `a` is ignored"});
+}
+
+}  // namespace
+}  // namespace fettle::core::files

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// A simulation that is cut and taken up again ends with the same bits as one that was not, with every integrator, with friction and with a
+// kappa that moves, in memory and through a file; what does not belong to the scene is refused.
+#include <catch2/catch.hpp>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+using namespace fettle;
+using namespace fettle::core;
+using namespace fettle::core::records;
+using namespace fettle::core::stepper;
+using namespace fettle::tests::support;
+
+namespace {
+
+// A box that falls tilted on a plate, bounces and slides.
+model::Model tumbling_box(scene::Integrator integrator) {
+    model::Model model;
+    model.bodies = {ground_plate(), make_body("box", box_mesh(Vector3(-0.2, -0.1, -0.05), Vector3(0.2, 0.1, 0.05)),
+                                              make_pose(Vector3(0.4, 0.3, 0), Vector3(0, 0, 0.25)))};
+    set_velocity(model.bodies[1], Vector3(1, 0.2, -1), Vector3(0, 3, 1));
+    model.gravity = Vector3(0, 0, -9.81);
+    model.dhat = 1e-3;
+    model.diagonal = 4;
+    model.velocity_tolerance = 1e-3;
+    model.kappa = model::choose_kappa(model);
+    model.adaptive_kappa = true;
+    model.friction.mu = MatrixX::Constant(1, 1, 0.3);
+    model.integrator = integrator;
+    return model;
+}
+
+void check_same(const Simulation& a, const Simulation& b) {
+    REQUIRE(a.trajectory.poses.size() == b.trajectory.poses.size());
+    for (std::size_t t = 0; t < a.trajectory.poses.size(); ++t)
+        for (std::size_t i = 0; i < a.trajectory.poses[t].size(); ++i) {
+            REQUIRE(a.trajectory.poses[t][i].rotation == b.trajectory.poses[t][i].rotation);
+            REQUIRE(a.trajectory.poses[t][i].position == b.trajectory.poses[t][i].position);
+        }
+    REQUIRE(a.trajectory.steps.size() == b.trajectory.steps.size());
+    for (std::size_t t = 0; t < a.trajectory.steps.size(); ++t)
+        REQUIRE(a.trajectory.steps[t].nodes.size() == b.trajectory.steps[t].nodes.size());
+    CHECK(a.checkpoint.step == b.checkpoint.step);
+    CHECK(a.checkpoint.state.kappa == b.checkpoint.state.kappa);
+}
+
+}  // namespace
+
+TEST_CASE("a simulation taken up again ends as one run would", "[continuation]") {
+    for (const scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2, scene::Integrator::newmark}) {
+        const model::Model model = tumbling_box(integrator);
+        SimulationOptions options;
+        options.steps = 80;
+        options.outputs = true;
+        const Simulation whole = simulate(model, options);
+        INFO(whole.report.message);
+        REQUIRE(whole.report.status == SimulationStatus::ok);
+        options.steps = 50;
+        const Simulation part = simulate(model, options);
+        REQUIRE(part.checkpoint.step == checkpoint_interval);
+        options.steps = 80;
+        options.resume = &part;
+        const Simulation joined = simulate(model, options);
+        check_same(whole, joined);
+        CHECK(joined.report.newton_iterations == whole.report.newton_iterations);
+        REQUIRE(joined.outputs.size() == 80);
+        CHECK(joined.outputs.back().kinetic_energy == whole.outputs.back().kinetic_energy);
+
+        const std::string path = "/tmp/fettle_continuation_test.trajectory.json";
+        REQUIRE(write_trajectory(path, part.trajectory, model, "", &part.checkpoint).empty());
+        const auto stored = read_trajectory(path);
+        REQUIRE(stored.has_value());
+        const auto resumed = resumable(*stored, model);
+        REQUIRE(resumed.has_value());
+        options.resume = &*resumed;
+        check_same(whole, simulate(model, options));
+        std::remove(path.c_str());
+    }
+}
+
+TEST_CASE("a run is not taken up by another scene", "[continuation]") {
+    const model::Model model = tumbling_box(scene::Integrator::implicit_euler);
+    SimulationOptions options;
+    options.steps = 40;
+    const Simulation run = simulate(model, options);
+    StoredTrajectory stored{run.trajectory, model, "", "file", run.checkpoint};
+    REQUIRE(resumable(stored, model).has_value());
+    model::Model other = model;
+    other.timestep = 0.02;
+    CHECK(resumable(stored, other).errors().at(0).message.find("time step") != std::string::npos);
+    other = tumbling_box(scene::Integrator::newmark);
+    CHECK(resumable(stored, other).errors().at(0).message.find("integrator") != std::string::npos);
+    other = tumbling_box(scene::Integrator::bdf2);
+    CHECK(resumable(stored, other).errors().at(0).message.find("integrator") != std::string::npos);
+    other = model;
+    other.bodies[1].mesh.vertices *= 1.01;
+    CHECK(resumable(stored, other).errors().at(0).message.find("meshes") != std::string::npos);
+    stored.checkpoint.reset();
+    CHECK(resumable(stored, model).errors().at(0).message.find("checkpoint") != std::string::npos);
+}
+
+TEST_CASE("kappa rises in a hard impact and falls again, and stays when it must", "[continuation]") {
+    model::Model model = tumbling_box(scene::Integrator::implicit_euler);
+    model.kappa *= 1e-4;  // so soft that the box comes close
+    SimulationOptions options;
+    options.steps = 120;
+    options.outputs = true;
+    const auto kappas = [&] {
+        std::vector<double> out;
+        for (const StepOutputs& o : simulate(model, options).outputs) out.push_back(o.kappa);
+        return out;
+    };
+    const std::vector<double> adapted = kappas();
+    REQUIRE(adapted.size() == 120);
+    const double most = *std::max_element(adapted.begin(), adapted.end());
+    CHECK(adapted.front() >= model.kappa);
+    CHECK(most >= 4 * adapted.front());
+    CHECK(adapted.back() < most);
+    model.adaptive_kappa = false;
+    for (const double kappa : kappas()) REQUIRE(kappa == model.kappa);
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/records/trajectory_io.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/kinematics/rotation.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace fettle::core::records {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace stepper;
+using base::ErrorCode;
+
+using Folder = tests::support::TemporaryFolder;
+
+model::Model two_boxes() {
+    scene::Scene scene;
+    scene.length_unit = 0.001;
+    scene.dmin = 1.0 / 3e5;
+    for (const char* name : {"left \"quoted\"", "right\\\n"}) {
+        scene::Body body;
+        body.name = name;
+        body.mesh = tests::box_mesh({0, 0, 0}, {0.1, 0.2, 1.0 / 3});
+        body.mesh.vertices(0, 3) += 1e-17;
+        body.pose.position.x() = static_cast<double>(scene.bodies.size());
+        scene.bodies.push_back(body);
+    }
+    scene.bodies[1].type = scene::BodyType::static_body;
+    scene.bodies[1].group = 4;
+    geometry::build_connectivity(scene.bodies[1].mesh, {{0, 7}});  // a codimensional edge
+    return model::build_model(scene).value();
+}
+
+Trajectory random_path(const model::Model& model, int steps) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Trajectory out;
+    out.timestep = model.timestep;
+    for (const auto& body : model.bodies) out.body_names.push_back(body.name);
+    out.poses.emplace_back();
+    for (const auto& body : model.bodies) out.poses[0].push_back(body.pose_start);
+    for (int t = 0; t < steps; ++t) {
+        TrajectoryStep step;
+        for (int node = 0; node < 2 + t % 2; ++node) {
+            step.nodes.emplace_back();
+            for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+                kinematics::ChartPoint point{out.poses.back()[b].position, Vector3::Zero()};
+                for (int k = 0; k < 3 && node > 0; ++k) {
+                    point.position[k] += uniform(random);
+                    point.rotation_vector[k] = uniform(random);
+                }
+                step.nodes.back().push_back(point);
+            }
+        }
+        std::vector<kinematics::Pose> next;
+        for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+            const auto& last = step.nodes.back()[b];
+            next.push_back(
+                {kinematics::orthonormalised(kinematics::rotation(last.rotation_vector) * out.poses.back()[b].rotation), last.position});
+        }
+        out.poses.push_back(next);
+        out.steps.push_back(step);
+    }
+    return out;
+}
+
+bool same_bits(const auto& a, const auto& b) {
+    if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+    for (Eigen::Index j = 0; j < a.cols(); ++j) {
+        for (Eigen::Index i = 0; i < a.rows(); ++i) {
+            if (a(i, j) != b(i, j) || std::signbit(a(i, j)) != std::signbit(b(i, j))) return false;
+        }
+    }
+    return true;
+}
+
+TEST_CASE("A trajectory reads back bit for bit, with all that certifying needs", "[stepper]") {
+    const Folder folder;
+    const model::Model model = two_boxes();
+    Trajectory trajectory = random_path(model, 20);
+    trajectory.time_start = 0.1;
+    trajectory.steps[3].nodes[1][0].rotation_vector.x() = -0.0;
+    trajectory.steps[3].nodes[1][0].rotation_vector.y() = 5e-324;
+    trajectory.steps[3].nodes[1][0].position.x() = 1.7976931348623157e308;
+    trajectory.steps[3].nodes[1][0].position.y() = 9007199254740993.0 * 1024;
+    const fs::path path = folder.path / "new" / "run.trajectory.json";
+    REQUIRE(write_trajectory(path, trajectory, model, "some/a.scene.json").empty());
+    CHECK(is_trajectory_file(path));
+    const auto stored = read_trajectory(path);
+    REQUIRE(stored);
+    const Trajectory& read = stored->trajectory;
+    CHECK(stored->scene_path == "some/a.scene.json");
+    CHECK(read.time_start == trajectory.time_start);
+    CHECK(read.timestep == trajectory.timestep);
+    CHECK(read.body_names == trajectory.body_names);
+    REQUIRE(read.poses.size() == trajectory.poses.size());
+    REQUIRE(read.steps.size() == trajectory.steps.size());
+    for (std::size_t t = 0; t < read.poses.size(); ++t) {
+        for (std::size_t b = 0; b < 2; ++b) {
+            CHECK(same_bits(read.poses[t][b].rotation, trajectory.poses[t][b].rotation));
+            CHECK(same_bits(read.poses[t][b].position, trajectory.poses[t][b].position));
+        }
+    }
+    for (std::size_t t = 0; t < read.steps.size(); ++t) {
+        REQUIRE(read.steps[t].nodes.size() == trajectory.steps[t].nodes.size());
+        for (std::size_t k = 0; k < read.steps[t].nodes.size(); ++k) {
+            for (std::size_t b = 0; b < 2; ++b) {
+                CHECK(same_bits(read.steps[t].nodes[k][b].position, trajectory.steps[t].nodes[k][b].position));
+                CHECK(same_bits(read.steps[t].nodes[k][b].rotation_vector, trajectory.steps[t].nodes[k][b].rotation_vector));
+            }
+        }
+    }
+    CHECK(geometry_hash(stored->model) == geometry_hash(model));
+    CHECK(stored->model.dhat == model.dhat);
+    CHECK(stored->model.dmin == model.dmin);
+    CHECK(stored->model.length_unit == model.length_unit);
+    for (std::size_t b = 0; b < 2; ++b) {
+        const model::Body &was = model.bodies[b], &is = stored->model.bodies[b];
+        CHECK(same_bits(is.mesh.vertices, was.mesh.vertices));
+        CHECK(is.mesh.triangles == was.mesh.triangles);
+        CHECK(is.mesh.edges == was.mesh.edges);
+        CHECK(is.type == was.type);
+        CHECK(is.group == was.group);
+        CHECK(is.radius == was.radius);
+        CHECK(same_bits(is.reference_point, was.reference_point));
+        CHECK(is.hierarchy != nullptr);
+    }
+}
+
+TEST_CASE("A trajectory without steps is the assembly", "[stepper]") {
+    const Folder folder;
+    const model::Model model = two_boxes();
+    REQUIRE(write_trajectory(folder.path / "a.json", random_path(model, 0), model).empty());
+    const auto stored = read_trajectory(folder.path / "a.json");
+    REQUIRE(stored);
+    CHECK(stored->trajectory.steps.empty());
+    CHECK(stored->trajectory.poses.size() == 1);
+}
+
+TEST_CASE("A trajectory file that was changed or cut is refused", "[stepper]") {
+    const Folder folder;
+    const model::Model model = two_boxes();
+    const fs::path path = folder.path / "a.json";
+    REQUIRE(write_trajectory(path, random_path(model, 3), model).empty());
+    const std::string text = files::read_file(path).value();
+    const auto errors_after = [&](const std::string& from, const std::string& to) {
+        const auto place = text.find(from);
+        REQUIRE(place != std::string::npos);
+        std::ofstream(path) << text.substr(0, place) << to << text.substr(place + from.size());
+        return read_trajectory(path).errors();
+    };
+    const auto code_after = [&](const std::string& from, const std::string& to) {
+        const auto errors = errors_after(from, to);
+        REQUIRE_FALSE(errors.empty());
+        return errors.front().code;
+    };
+    CHECK(code_after("\"fettle_trajectory\": 1", "\"fettle_trajectory\": 2") == ErrorCode::out_of_range);
+    CHECK(code_after("\"fettle_trajectory\": 1,", "") == ErrorCode::missing_key);
+    CHECK(code_after("\"timestep\": 0.01", "\"timestep\": 0") == ErrorCode::out_of_range);
+    CHECK(code_after("\"timestep\": 0.01", "\"timestep\": 1e999") == ErrorCode::not_finite);
+    CHECK(code_after("\"timestep\"", "\"timesteps\"") == ErrorCode::unknown_key);
+    CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2,8") == ErrorCode::out_of_range);
+    CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2,4") == ErrorCode::inconsistent);  // the hash
+    CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2") == ErrorCode::inconsistent);
+    CHECK(code_after("\"poses\": [[[1,0,0", "\"poses\": [[[1,0,1e-4") == ErrorCode::out_of_range);  // not a rotation
+    CHECK(code_after("\"poses\": [[[1,0,0,", "\"poses\": [[[1,0,") == ErrorCode::inconsistent);
+    CHECK(code_after("\"steps\": [[[[0.05", "\"steps\": [[[[0.06") == ErrorCode::inconsistent);  // a jump
+    CHECK(code_after("\"steps\": [", "\"steps\": [[],") == ErrorCode::inconsistent);
+    std::ofstream(path) << text.substr(0, text.size() / 2);
+    CHECK(read_trajectory(path).errors().front().code == ErrorCode::parse);
+    CHECK(read_trajectory(folder.path / "absent.json").errors().front().code == ErrorCode::file_not_found);
+    CHECK_FALSE(is_trajectory_file(folder.path / "absent.json"));
+}
+
+}  // namespace
+}  // namespace fettle::core::records

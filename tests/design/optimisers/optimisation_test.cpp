@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/optimisers/optimisation.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "fettle/design/optimisers/nonnegative_least_squares.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design::optimisers;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double violation_of(const Problem& problem, const VectorX& c) {
+    double v = 0;
+    for (int i = 0; i < c.size(); ++i) {
+        v = std::max({v, problem.constraint_lower[i] - c[i] - 1e-6, c[i] - problem.constraint_upper[i] - 1e-6});
+    }
+    return v;
+}
+
+// Hock and Schittkowski 71: f = 17.0140173 at (1, 4.7429994, 3.8211503, 1.3794082). |x|^2 = 40 holds there as <= 40 too: the minimum
+// over >= 40 lies lower, at the start.
+Problem hock_schittkowski_71(bool equality) {
+    Problem p;
+    p.start = VectorX(4);
+    p.start << 1, 5, 5, 1;
+    p.lower = VectorX::Constant(4, 1);
+    p.upper = VectorX::Constant(4, 5);
+    p.constraint_lower = VectorX(2);
+    p.constraint_lower << 25, equality ? 40 : -infinity;
+    p.constraint_upper = VectorX(2);
+    p.constraint_upper << infinity, 40;
+    p.evaluate = [lower = p.constraint_lower, upper = p.constraint_upper](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2];
+        e.gradient = VectorX(4);
+        e.gradient << x[3] * (2 * x[0] + x[1] + x[2]), x[0] * x[3], x[0] * x[3] + 1, x[0] * (x[0] + x[1] + x[2]);
+        e.constraints = VectorX(2);
+        e.constraints << x.prod(), x.squaredNorm();
+        e.jacobian = MatrixX(2, 4);
+        for (int i = 0; i < 4; ++i) e.jacobian(0, i) = x.prod() / x[i];
+        e.jacobian.row(1) = 2 * x.transpose();
+        Problem bounds;
+        bounds.constraint_lower = lower;
+        bounds.constraint_upper = upper;
+        e.violation = violation_of(bounds, e.constraints);
+        return e;
+    };
+    return p;
+}
+
+// min -x - y over x^2 + y^2 <= 1 in [-2, 2]^2: (1/sqrt 2, 1/sqrt 2). Points with x + y > `cliff` cannot be evaluated.
+Problem disc_with_cliff(double cliff) {
+    Problem p;
+    p.start = VectorX::Constant(2, -0.5);
+    p.lower = VectorX::Constant(2, -2);
+    p.upper = VectorX::Constant(2, 2);
+    p.constraint_lower = VectorX::Constant(1, -infinity);
+    p.constraint_upper = VectorX::Constant(1, 1);
+    p.evaluate = [cliff](const VectorX& x) {
+        Evaluation e;
+        if (x.sum() > cliff) {
+            e.reason = "beyond the cliff";
+            return e;
+        }
+        e.usable = true;
+        e.objective = -x.sum();
+        e.gradient = VectorX::Constant(2, -1);
+        e.constraints = VectorX::Constant(1, x.squaredNorm());
+        e.jacobian = 2 * x.transpose();
+        e.violation = std::max(0.0, x.squaredNorm() - 1 - 1e-6);
+        return e;
+    };
+    return p;
+}
+
+OptimiserReport run(const Problem& problem, const std::string& name, OptimiserOptions options = {}) {
+    auto optimiser = make_optimiser(name);
+    REQUIRE(optimiser);
+    return optimise(problem, **optimiser, options);
+}
+
+OptimiserOptions tight(int evaluations) {
+    OptimiserOptions options;
+    options.tolerance = 1e-7;
+    options.max_evaluations = evaluations;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("each optimiser reaches Hock and Schittkowski 71's published optimum") {
+    for (const std::string& name : optimiser_names()) {
+        const bool derivative_free = name == "cobyla";
+        const bool equality = name == "ipopt" || name == "slsqp";
+        const OptimiserReport report = run(hock_schittkowski_71(equality), name, tight(derivative_free ? 2000 : 300));
+        INFO(name << ": " << to_string(report.status) << ", " << report.message << ", " << report.evaluations << " evaluations, optimality "
+                  << report.optimality);
+        CHECK(report.status == OptimiserStatus::converged);
+        CHECK(report.best.objective == Approx(17.0140173).epsilon(1e-5));
+        CHECK(report.best.violation <= 0);
+        CHECK(report.optimality < 1e-2);
+    }
+}
+
+TEST_CASE("a failing evaluation is overcome, not believed") {
+    for (const std::string& name : optimiser_names()) {
+        // The optimum has x + y = 1.4142; the first steps of every optimiser go beyond 1.6.
+        const OptimiserReport report = run(disc_with_cliff(1.6), name, tight(name == "cobyla" ? 2000 : 300));
+        INFO(name << ": " << to_string(report.status) << ", " << report.message << ", " << report.evaluations << " evaluations, "
+                  << report.failures << " failures");
+        CHECK(report.feasible);
+        CHECK(report.best.objective == Approx(-std::sqrt(2.0)).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a start that cannot be evaluated ends the run with its reason") {
+    const OptimiserReport report = run(disc_with_cliff(-5), "ipopt");
+    CHECK(report.status == OptimiserStatus::start_failed);
+    CHECK(report.message.find("beyond the cliff") != std::string::npos);
+    CHECK(report.evaluations == 1);
+}
+
+TEST_CASE("an unreachable requirement ends as infeasible, with the design that violates it least") {
+    for (const std::string& name : optimiser_names()) {
+        Problem p = disc_with_cliff(infinity);
+        p.constraint_upper[0] = -0.5;  // x^2 + y^2 <= -0.5: the best violation is at 0
+        const auto inner = p.evaluate;
+        p.evaluate = [inner](const VectorX& x) {
+            Evaluation e = inner(x);
+            e.violation = x.squaredNorm() + 0.5;
+            return e;
+        };
+        const OptimiserReport report = run(p, name);
+        INFO(name << ": " << to_string(report.status) << ", " << report.message << ", violation " << report.best.violation);
+        CHECK_FALSE(report.feasible);
+        const bool said_so = report.status == OptimiserStatus::infeasible || report.status == OptimiserStatus::infeasible_budget;
+        CHECK(said_so);
+        CHECK(report.best.violation < 0.75);  // the start has 1
+    }
+}
+
+TEST_CASE("budget, interruption and exceptions end a run, with the best design kept") {
+    for (const std::string& name : optimiser_names()) {
+        OptimiserOptions options = tight(5);
+        int seen = 0;
+        options.on_evaluation = [&](int number, const VectorX&, const Evaluation&, bool) { CHECK(number == ++seen); };
+        const OptimiserReport budget = run(hock_schittkowski_71(false), name, options);
+        INFO(name);
+        CHECK(budget.evaluations == 5);
+        CHECK(seen == 5);
+        const bool said_so = budget.status == OptimiserStatus::budget_spent || budget.status == OptimiserStatus::infeasible_budget;
+        CHECK(said_so);
+
+        int asked = 0;
+        OptimiserOptions interrupted = tight(100);
+        interrupted.should_stop = [&] { return ++asked > 4; };
+        const OptimiserReport stopped = run(hock_schittkowski_71(false), name, interrupted);
+        CHECK(stopped.status == OptimiserStatus::interrupted);
+        CHECK(stopped.evaluations == 4);
+
+        Problem throwing = hock_schittkowski_71(false);
+        int calls = 0;
+        throwing.evaluate = [&calls, inner = throwing.evaluate](const VectorX& x) {
+            if (++calls == 4) throw std::runtime_error("the evaluation broke");
+            return inner(x);
+        };
+        CHECK_THROWS_WITH(run(throwing, name, tight(100)), "the evaluation broke");
+    }
+}
+
+TEST_CASE("each point is evaluated once, and a run repeated has the same bits") {
+    for (const std::string& name : optimiser_names()) {
+        const auto sequence = [&] {
+            std::vector<VectorX> points;
+            OptimiserOptions options = tight(60);
+            options.on_evaluation = [&](int, const VectorX& x, const Evaluation&, bool) { points.push_back(x); };
+            const OptimiserReport report = run(hock_schittkowski_71(false), name, options);
+            CHECK(report.evaluations == static_cast<int>(points.size()));
+            return points;
+        };
+        const auto first = sequence(), second = sequence();
+        REQUIRE(first.size() == second.size());
+        for (size_t k = 0; k < first.size(); ++k) {
+            CHECK(first[k] == second[k]);
+            for (size_t j = 0; j < k; ++j) CHECK(first[j] != first[k]);
+        }
+    }
+}
+
+TEST_CASE("the first point evaluated is the start, exactly") {
+    Problem p = hock_schittkowski_71(false);
+    p.lower.setConstant(0.1);
+    p.upper.setConstant(7.7);
+    p.start << 1.1, 3.3, 4.7, 1.3;
+    VectorX first;
+    OptimiserOptions options = tight(1);
+    options.on_evaluation = [&](int, const VectorX& x, const Evaluation&, bool) { first = x; };
+    run(p, "ipopt", options);
+    CHECK(first == p.start);
+}
+
+TEST_CASE("nonnegative least squares: known answers") {
+    const MatrixX eye = MatrixX::Identity(3, 3);
+    CHECK((nonnegative_least_squares(eye, Vector3(1, -2, 3)) - Vector3(1, 0, 3)).norm() < 1e-14);
+    MatrixX a(2, 3);
+    a << 1, 0, 1, 0, 1, 1;
+    const VectorX x = nonnegative_least_squares(a, Vector2(2, 1));
+    CHECK((a * x - Vector2(2, 1)).norm() < 1e-12);
+    CHECK(x.minCoeff() >= 0);
+    CHECK(nonnegative_least_squares(a, Vector2(-1, -1)).norm() == 0);
+}
+
+TEST_CASE("unknown optimisers are refused by name") {
+    const auto made = make_optimiser("newton", "a.design.json#/optimiser/name");
+    REQUIRE_FALSE(made);
+    CHECK(made.errors()[0].code == ErrorCode::out_of_range);
+    CHECK(made.errors()[0].message.find("slsqp") != std::string::npos);
+}
