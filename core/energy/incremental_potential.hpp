@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The function that one time step minimises: inertia + loads + barrier + friction, over all bodies' poses. docs/method.md sections 3 and 6.
+/// The function that one time step minimises: inertia + loads + barrier + friction, over all bodies' poses. docs/method.md sections 3
+/// and 6.
 ///   E(y) = sum E_d(P) - weight sum (f . (q - q_t0) + tau . theta) + barrier + friction, potentials times the integrator's weight.
 /// Coordinates: each body's (q, theta) in the chart of the step, R = exp([theta]) R_t0.
 #pragma once
