@@ -12,8 +12,8 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/design_file.hpp"
-#include "fettle/design/design_problem.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::cli {
 
@@ -63,11 +63,11 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
     verdict.warnings = loaded->warnings;
     verdict.facts["bodies"] = body_names(loaded->model);
     if (kind != FileKind::design) return verdict;
-    const Result<Design> design = read_design(path, {common.mesh_dirs});
-    if (!design) return verdict;
-    verdict.facts["parameters"] = parameters_json(*design, values_of(design->parameters));
+    const Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+    if (!file) return verdict;
+    verdict.facts["parameters"] = parameters_json(file->design, description::values_of(file->design.parameters));
     Json names = Json::array();
-    for (const auto& constraint : design->constraints) names.push_back(constraint->name());
+    for (const auto& constraint : file->design.constraints) names.push_back(constraint.name);
     verdict.facts["constraints"] = names;
     return verdict;
 }
