@@ -5,7 +5,6 @@
 
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/design/quantities/containment.hpp"
 
 namespace fettle::design::quantities {
 
@@ -25,6 +24,9 @@ core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int fi
     return part;
 }
 
+// Surfaces apart, solids not.
+bool one_lies_inside(const PairClearance& pair) { return pair.solids == core::certificate::Solids::overlap && !pair.intersecting; }
+
 }  // namespace
 
 std::pair<int, int> window_steps(int steps, int window, int windows) {
@@ -36,6 +38,7 @@ PairClearance Clearance::certify(const Simulated& s) const {
     core::clearance::ClearanceOptions options;
     options.tolerance = s.clearance_tolerance;
     options.sample_nodes = false;
+    options.measure_overlap = false;
     options.motion = range_.motion;
     const std::vector<core::clearance::PairRequest> request{{range_.a, range_.b, minimum_}};
     if (!range_.motion || range_.windows <= 1) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
@@ -46,18 +49,22 @@ PairClearance Clearance::certify(const Simulated& s) const {
 }
 
 Measurement Clearance::value(const Simulated& s) const {
-    PairClearance pair = certify(s);
-    // Surfaces that never meet cannot change which solid is inside which: once is enough, and where they meet the bound is 0 anyway.
-    const std::string inside = pair.lower > 0 ? containment(s.model, s.trajectory.poses.front(), range_.a, range_.b) : std::string();
-    if (inside.empty()) return {pair.upper, pair.lower, pair.upper, pair, {}};
-    const double lower = -pair.upper, upper = -pair.lower;
-    pair.lower = pair.upper = 0;  // the distance of solids that overlap
-    pair.status = core::clearance::PairStatus::violated;
-    return {lower, lower, upper, pair, inside};
+    const PairClearance pair = certify(s);
+    const std::string names =
+        "`" + s.model.bodies[static_cast<size_t>(range_.a)].name + "` and `" + s.model.bodies[static_cast<size_t>(range_.b)].name + "`";
+    if (one_lies_inside(pair)) {
+        const double inside = -pair.witness.distance;
+        return {inside, inside, inside, pair, "of " + names + " one lies inside the other's material"};
+    }
+    Measurement measured{pair.upper, pair.lower, pair.upper, pair, {}};
+    if (pair.intersecting) measured.fault = names + " pass through each other";
+    if (pair.lower > 0 && pair.solids == core::certificate::Solids::unproven)
+        measured.fault = "of " + names + " one may lie inside the other's material: " + pair.reason;
+    return measured;
 }
 
 void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
-    const double sign = measured.fault.empty() ? 1 : -1;
+    const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
     adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *measured.clearance, sign * scale, seeds.trajectory_bar, seeds.model_bar);
 }
 

@@ -3,7 +3,9 @@
 /// between times that are far apart, and is not smooth there; as one quantity per window each follows its own). As assembled, of a pin in
 /// a bore drawn concentric, it is the play of the fit (half the diametral one), as long as the fit is where the two are closest.
 ///
-/// Of solids: where one body lies wholly inside the other (containment.hpp) it is minus the distance of the surfaces, and a fault.
+/// Of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the other's material
+/// (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. Of bodies that are not closed, which have
+/// no inside, it is the distance of the surfaces.
 #pragma once
 
 #include <utility>
