@@ -19,6 +19,25 @@ ModelGradient zero_model_gradient(const core::model::Model& model, int steps) {
     return g;
 }
 
+void add(ModelGradient& sum, const ModelGradient& part) {
+    for (std::size_t i = 0; i < sum.bodies.size(); ++i) {
+        BodyGradient& to = sum.bodies[i];
+        const BodyGradient& from = part.bodies[i];
+        if (from.vertices_bar.cols() > 0) to.vertices_bar += from.vertices_bar;
+        to.pose_start_bar += from.pose_start_bar;
+        to.velocity_start_bar += from.velocity_start_bar;
+        to.density_bar += from.density_bar;
+        to.force_bar += from.force_bar;
+        for (std::size_t t = 0; t < to.increment_bar.size() && t < from.increment_bar.size(); ++t)
+            to.increment_bar[t] += from.increment_bar[t];
+    }
+    sum.gravity_bar += part.gravity_bar;
+}
+
+Seeds zero_seeds(const core::model::Model& model, int steps) {
+    return {zero_trajectory_gradient(steps, static_cast<int>(model.bodies.size())), zero_model_gradient(model, steps)};
+}
+
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps) {
     ModelTangent d;
     d.bodies.resize(model.bodies.size());

@@ -35,6 +35,17 @@ struct ModelGradient {
 };
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
 
+/// sum += part. Contract: of one model and number of steps; members of `part` that nothing was written to may be empty.
+void add(ModelGradient& sum, const ModelGradient& part);
+
+/// What a quantity of a simulated motion hands in: dJ/d(configurations) and its explicit dependence on the model, to be swept backwards
+/// together (stepper/seeded_sweep.hpp).
+struct Seeds {
+    TrajectoryGradient trajectory_bar;
+    ModelGradient model_bar;
+};
+Seeds zero_seeds(const core::model::Model& model, int steps);
+
 /// The same quantities as a direction to differentiate along (forward mode).
 struct BodyTangent {
     Matrix3X vertices_dot;

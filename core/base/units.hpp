@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Lengths with units, at the border of the program: everything inside is in metres. Units: um mm cm m in ft.
+/// Quantities with units, at the border of the program: everything inside is SI (m, kg, s, rad, N). One table; a unit has a dimension, and
+/// a length where a mass is wanted is an error, not a number.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -9,15 +11,61 @@
 
 namespace fettle::core::base {
 
-/// Metres in one `unit`, correctly rounded: "mm" -> 0.001.
-/// Errors: an unknown unit (out_of_range), the message lists those allowed; `where` is copied into it.
-Result<double> metres_per_unit(std::string_view unit, const std::string& where = {});
+enum class Dimension {
+    number,  ///< without a unit; `1` may be written
+    length,
+    area,
+    volume,
+    angle,
+    time,
+    mass,
+    force,
+    torque,
+    energy,
+    speed,
+    angular_speed,
+    acceleration,
+    density,
+    stiffness
+};
 
-/// "0.3mm", "0.3 mm", "-1e-2 in" -> metres; the decimal point is '.' in every locale.
-/// Errors: no number (parse), a missing or unknown unit (out_of_range), infinity or NaN (not_finite).
+/// One unit is numerator/denominator in SI, both whole where that is possible: such a quantity is rounded once only.
+struct Unit {
+    std::string_view name;
+    Dimension dimension = Dimension::number;
+    double numerator = 1, denominator = 1;
+};
+
+/// Every unit; no name stands twice.
+std::span<const Unit> units();
+const Unit* find_unit(std::string_view name);  ///< null: none
+
+/// "length"; for messages.
+std::string_view dimension_name(Dimension dimension);
+/// "um, mm, cm, m, in, ft"; for messages.
+std::string unit_names(Dimension dimension);
+/// "m", "kg", "1": what a number of this dimension is in inside the program.
+std::string_view si_unit(Dimension dimension);
+
+/// number * numerator / denominator.
+inline double to_si(double number, const Unit& unit) { return number * unit.numerator / unit.denominator; }
+
+/// SI value of one `unit`, correctly rounded where the table is whole: "mm" -> 0.001.
+/// Errors: an unknown unit (out_of_range), one of another dimension (wrong_type); the message lists those allowed; `where` is copied.
+Result<double> si_per_unit(std::string_view unit, Dimension dimension, const std::string& where = {});
+
+/// "0.3mm", "0.3 mm", "-1e-2 in", "12 g/cm^3" -> SI; the decimal point is '.' in every locale. Of Dimension::number the unit may be left
+/// out. Errors: no number (parse), a missing or unknown unit, or a value beyond base::largest_magnitude (out_of_range), a unit of another
+/// dimension (wrong_type), infinity or NaN (not_finite).
+Result<double> parse_quantity(std::string_view text, Dimension dimension, const std::string& where = {});
+
+/// The same of lengths.
+Result<double> metres_per_unit(std::string_view unit, const std::string& where = {});
 Result<double> parse_length(std::string_view text, const std::string& where = {});
 
 /// 0.0003, "mm" -> "0.3 mm", with up to `digits` significant digits. Contract: a known unit, digits >= 1.
+std::string format_quantity(double si, std::string_view unit, int digits = 6);
+/// The same of lengths [m].
 std::string format_length(double metres, std::string_view unit, int digits = 6);
 
 }  // namespace fettle::core::base

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/certificate/certificate.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/json_writer.hpp"
@@ -16,7 +19,8 @@ using base::ErrorCode;
 using files::JsonNode;
 using files::JsonWriter;
 
-const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};  // in the order of Primitive
+const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};                       // in the order of Primitive
+const std::vector<std::string_view> solids_names{"unproven", "disjoint", "overlap", "not closed"};  // of Solids
 
 void write_point(JsonWriter& out, const char* name, const CertifiedPoint& point) {
     out.key(name);
@@ -58,6 +62,8 @@ void write_pair(JsonWriter& out, const PairCertificate& pair) {
         out.key(name);
         out.number(value);
     }
+    out.key("solids");
+    out.string(to_string(pair.solids));
     write_point(out, "point_a", pair.point_a);
     write_point(out, "point_b", pair.point_b);
     out.key("segments");
@@ -112,6 +118,8 @@ PairCertificate read_pair(const JsonNode& node) {
     pair.b = node.require("b").integer(0).value_or(0);
     pair.lower = node.require("lower").number(files::not_negative).value_or(0);
     pair.upper = node.require("upper").number(files::not_negative).value_or(0);
+    const std::string solids = node.require("solids").choice(solids_names).value_or("unproven");
+    pair.solids = static_cast<Solids>(std::find(solids_names.begin(), solids_names.end(), solids) - solids_names.begin());
     pair.step = node.require("step").integer(-1).value_or(-1);
     pair.segment = node.require("segment").integer(0).value_or(0);
     pair.s = node.require("s").number({0, 1}).value_or(0);
@@ -131,15 +139,31 @@ std::uint64_t read_hash(const JsonNode& node) {
 
 }  // namespace
 
+const char* to_string(Solids solids) { return solids_names[static_cast<std::size_t>(solids)].data(); }
+
+std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies) {
+    std::set<std::array<int, 2>> covered;
+    for (const PairCertificate& pair : certificate.pairs) covered.insert({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});
+    std::vector<std::array<int, 2>> uncovered;
+    for (int a = 0; a < bodies; ++a)
+        for (int b = a + 1; b < bodies; ++b)
+            if (covered.count({a, b}) == 0) uncovered.push_back({a, b});
+    return uncovered;
+}
+
 base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
     JsonWriter out;
     out.text = "{";
     out.key("fettle_certificate");
     out.number(certificate.version);
-    char hash[17] = {};
-    std::to_chars(hash, hash + 16, certificate.geometry_hash, 16);
     out.key("geometry_hash");
-    out.text += '"' + std::string(hash) + '"';
+    out.string(files::hexadecimal(certificate.geometry_hash));
+    out.key("path_hash");
+    out.string(files::hexadecimal(certificate.path_hash));
+    out.key("length_unit");
+    out.number(certificate.length_unit);
+    out.key("source");
+    out.string(certificate.source);
     out.key("motion");
     out.text += certificate.motion ? "true" : "false";
     out.key("bodies");
@@ -161,11 +185,14 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     auto document = files::JsonDocument::read(path.string());
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    root.allow_keys({"fettle_certificate", "geometry_hash", "motion", "bodies", "pairs"});
-    root.require("fettle_certificate").integer(1, 1);
+    root.allow_keys({"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "pairs"});
+    root.require("fettle_certificate").integer(2, 2);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate;
     certificate.geometry_hash = read_hash(root.require("geometry_hash"));
+    certificate.path_hash = read_hash(root.require("path_hash"));
+    certificate.length_unit = root.require("length_unit").number(files::positive).value_or(1);
+    certificate.source = root["source"].string().value_or("");
     certificate.motion = root.require("motion").boolean().value_or(false);
     for (const JsonNode& body : root.require("bodies").elements())
         certificate.bodies.push_back({whole_numbers(body.require("elements")), whole_numbers(body.require("cuts"))});

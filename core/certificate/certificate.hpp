@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// A certificate of clearance as data, so that someone else can check it: clearance/certificate_checker.hpp does, with nothing in common
-/// with the search that made it. It claims, for each pair of bodies and over all the time asked for,
-///   lower <= min dist(A(t), B(t)) <= upper,
-/// about the meshes and the path of a trajectory (stepper/trajectory_io.hpp), both of which must be at hand to check it.
+/// A certificate of clearance as data, so that someone else can check it: certificate_checker.hpp does, with nothing in common with the
+/// search that made it. It claims, for each pair of bodies and over all the time asked for,
+///   lower <= min dist(A(t), B(t)) <= upper   of their surfaces, and what is known of their solids: `Solids`,
+/// about the meshes and the path of a trajectory (records/trajectory_io.hpp), both of which must be at hand to check it: hashes name them.
+/// Pairs that it does not list it says nothing of: uncovered_pairs.
 ///
 /// How it proves `lower`. For every path segment there is a tree of cells. A cell is an interval of the segment's parameter s, a piece of
 /// A and a piece of B; the root is [0, 1] and both whole bodies. `splits` lists the cells in preorder, one character each:
@@ -56,10 +57,20 @@ struct CertifiedPoint {
     std::array<double, 3> weight{1, 0, 0};  ///< not negative; of the corners in the mesh's order
 };
 
+/// Beside the distance of the surfaces: how the solids lie that they bound (disjoint_solids.hpp).
+enum class Solids {
+    unproven,    ///< nothing is claimed: the surfaces are not proven to stay apart
+    disjoint,    ///< no point is in both, over all the time
+    overlap,     ///< one lies inside the other's material
+    not_closed,  ///< cannot be verified: a body is not closed, so that it has no inside
+};
+const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed"
+
 struct PairCertificate {
     int a = 0, b = 0;
     double lower = 0, upper = 0;  ///< [m]
-    int step = -1, segment = 0;   ///< when `upper` is attained; step -1: at the start pose
+    Solids solids = Solids::unproven;
+    int step = -1, segment = 0;  ///< when `upper` is attained; step -1: at the start pose
     double s = 0;
     CertifiedPoint point_a, point_b;
     PairProof segments;  ///< in the order of the path; one for the start pose as assembled; none at all if lower is 0
@@ -71,16 +82,22 @@ struct BodyPieces {
 };
 
 struct Certificate {
-    int version = 1;
-    std::uint64_t geometry_hash = 0;  ///< of the bodies (stepper/trajectory_io.hpp)
+    int version = 2;
+    std::uint64_t geometry_hash = 0;  ///< of the bodies (records/trajectory_io.hpp)
+    std::uint64_t path_hash = 0;      ///< of the trajectory (same)
+    double length_unit = 1;           ///< of the scene [m]: what its lengths are shown in
+    std::string source;               ///< the file whose bodies these are, as it was named; empty: none
     bool motion = false;              ///< over the trajectory; false: at its first poses
     std::vector<BodyPieces> bodies;   ///< one per body of the model; empty lists for those of no pair
     std::vector<PairCertificate> pairs;
 };
 
+/// Pairs of `bodies` bodies that the certificate says nothing of, a < b.
+std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies);
+
 /// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
-///   fettle_certificate 1, geometry_hash (hexadecimal), motion, bodies [{elements, cuts}],
-///   pairs [{a, b, lower, upper, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
+///   fettle_certificate 2, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
+///   pairs [{a, b, lower, upper, solids, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
 /// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
 /// others, which it writes `:`. Written whole or not at all.
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);

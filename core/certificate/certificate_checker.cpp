@@ -8,6 +8,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/certified_body.hpp"
+#include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
 
 namespace fettle::core::certificate {
@@ -26,16 +27,19 @@ public:
         : certificate_(certificate), model_(model), trajectory_(trajectory) {}
 
     CertificateReport run() {
-        if (certificate_.version != 1) fault("/fettle_certificate", "version 1 is what this program checks");
-        if (certificate_.geometry_hash != records::geometry_hash(model_)) fault("/geometry_hash", "the certificate is about other meshes");
+        if (certificate_.version != 2) fault("/fettle_certificate", "version 2 is what this program checks");
+        check_hashes();
+        if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
         if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
         if (!report_.accepted()) return report_;
         find_places();
         bodies_.resize(model_.bodies.size());
+        solids_.resize(model_.bodies.size());
         for (std::size_t i = 0; i < certificate_.pairs.size(); ++i) {
             const std::size_t before = report_.faults.size();
             check_pair(certificate_.pairs[i], "/pairs/" + std::to_string(i));
             if (report_.faults.size() == before) check_segments(i);
+            if (report_.faults.size() == before) check_solids(certificate_.pairs[i], "/pairs/" + std::to_string(i) + "/solids");
         }
         return report_;
     }
@@ -45,6 +49,34 @@ private:
 
     static void add(CertificateReport& report, CertificateFault fault) {
         if (report.faults.size() < most_faults) report.faults.push_back(std::move(fault));
+    }
+
+    void check_hashes() {
+        if (certificate_.geometry_hash != records::geometry_hash(model_)) {
+            fault("/geometry_hash", "stale: the certificate is about other meshes");
+            report_.stale = true;
+        }
+        if (certificate_.path_hash != records::path_hash(trajectory_)) {
+            fault("/path_hash", "stale: the certificate is about another path");
+            report_.stale = true;
+        }
+    }
+
+    const SolidMesh& solid(int body) {
+        std::optional<SolidMesh>& known = solids_[static_cast<std::size_t>(body)];
+        if (!known) known = solid_mesh(model_.bodies[static_cast<std::size_t>(body)].mesh);
+        return *known;
+    }
+
+    // Decided here, then compared: the lower bound is proven by now.
+    void check_solids(const PairCertificate& pair, const std::string& where) {
+        if (pair.solids == Solids::overlap) return fault(where, "the solids overlap: there is no clearance to certify");
+        const Solids found = solids_of(solid(pair.a), solid(pair.b), path(0, pair.a), path(0, pair.b), pair.lower);
+        if (found == Solids::overlap) return fault(where, "one body lies inside the other's material");
+        if (pair.solids == Solids::unproven || pair.solids == found) return;
+        fault(where, std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
+                         (found == Solids::not_closed ? "which cannot be verified: a body is not closed"
+                                                      : std::string("but it is ") + to_string(found)));
     }
 
     void find_places() {
@@ -193,6 +225,7 @@ private:
     const stepper::Trajectory& trajectory_;
     std::vector<Place> places_;
     std::vector<std::optional<CertifiedBody>> bodies_;
+    std::vector<std::optional<SolidMesh>> solids_;
     CertificateReport report_;
 };
 

@@ -4,10 +4,14 @@
 /// bound of a leaf is another one.
 ///
 /// What is checked, so that acceptance is a proof (trusting the processor's rounding, the C library's sine to 2 ulps, and this code):
-/// - the meshes are those that the certificate names; the elements listed for a body include every triangle, every edge of no triangle and
+/// - meshes and path are those that the certificate names, by their hashes (else it is stale); the elements listed for a body include every
+/// triangle, every edge of no triangle and
 ///   every vertex of no edge; each piece is split into two that together are it;
 /// - each segment of the path has a tree of cells whose leaves cover all time and all pairs of elements (halves of intervals are exact);
 /// - each leaf's plane proves the claimed lower bound: see prove_leaf in interval_motion.hpp;
+/// - what is claimed of the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): of a body
+///   inside another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
+/// - there is a pair;
 /// - the upper bound is attained by its witness: not below the distance there, nor above it by more than rounding.
 /// The cost is linear in the certificate: a few microseconds a leaf, on all threads. A false leaf ends at its first piece without proof.
 ///
@@ -48,6 +52,7 @@ struct CertificateFault {
 
 struct CertificateReport {
     std::vector<CertificateFault> faults;  ///< the first thousand; none: every claim is proven
+    bool stale = false;                    ///< meshes or path are not those that it speaks of: nothing else was looked at
     long leaves = 0;                       ///< proven
     long pieces = 0;                       ///< into which these were halved for it
     bool accepted() const { return faults.empty(); }

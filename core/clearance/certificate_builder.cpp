@@ -57,10 +57,12 @@ void name_crossing_edge(const PieceTree& tree, int element, int corner, const Ve
 
 }  // namespace
 
-certificate::Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion,
-                                           std::size_t pairs) {
+certificate::Certificate start_certificate(const model::Model& model, const stepper::Trajectory& trajectory,
+                                           const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs) {
     certificate::Certificate certificate;
     certificate.geometry_hash = records::geometry_hash(model);
+    certificate.path_hash = records::path_hash(trajectory);
+    certificate.length_unit = model.length_unit;
     certificate.motion = motion;
     for (const PieceTree* tree : trees) certificate.bodies.push_back(tree != nullptr ? body_pieces(*tree) : certificate::BodyPieces{});
     certificate.pairs.resize(pairs);

@@ -12,9 +12,9 @@
 
 namespace fettle::core::clearance {
 
-/// Hash, pieces of the bodies (null: of no pair), room for the pairs.
-certificate::Certificate start_certificate(const model::Model& model, const std::vector<const PieceTree*>& trees, bool motion,
-                                           std::size_t pairs);
+/// Hashes, unit, pieces of the bodies (null: of no pair), room for the pairs.
+certificate::Certificate start_certificate(const model::Model& model, const stepper::Trajectory& trajectory,
+                                           const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs);
 
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
 void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate);

@@ -2,7 +2,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,13 +10,11 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
-#include "fettle/core/clearance/pair_details.hpp"
+#include "fettle/core/clearance/pair_certification.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 kinematics::PathSegment held(const kinematics::Pose& pose) {
     kinematics::PathSegment path;
@@ -40,8 +38,10 @@ std::vector<SegmentPlace> segment_places(const stepper::Trajectory& trajectory, 
 
 // What all pairs of a body share.
 struct BodyMotion {
-    std::shared_ptr<const PieceTree> tree;  // that of its first copy, if it is one of several; none: the body is not asked for
-    std::vector<BodySegment> segments;
+    // Those of its first copy, if it is one of several; none: the body is not asked for.
+    std::shared_ptr<const PieceTree> tree;
+    std::shared_ptr<const certificate::SolidMesh> solid;
+    std::vector<BodySegment> segments;  // none: its path cannot be measured
 };
 
 std::vector<BodySegment> body_segments(const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places, int body) {
@@ -50,6 +50,21 @@ std::vector<BodySegment> body_segments(const stepper::Trajectory& trajectory, co
         segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
                                                        : stepper::path_segment(trajectory, place.step, place.segment, body)));
     return segments;
+}
+
+// Finite, and small enough that no product of a few of them overflows: as the checker's limit (certificate/interval_motion.hpp).
+bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places,
+                        int index) {
+    const auto usable = [](const auto& x) { return x.size() == 0 || (x.allFinite() && x.cwiseAbs().maxCoeff() < 1e30); };
+    if (!usable(body.mesh.vertices)) return false;
+    return std::all_of(places.begin(), places.end(), [&](const SegmentPlace& place) {
+        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][index];
+        if (!usable(pose.rotation) || !usable(pose.position)) return false;
+        if (place.step < 0) return true;
+        const auto& nodes = trajectory.steps[place.step].nodes;
+        const auto good = [&](int k) { return usable(nodes[k][index].position) && usable(nodes[k][index].rotation_vector); };
+        return good(place.segment) && good(place.segment + 1);
+    });
 }
 
 std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory,
@@ -61,101 +76,27 @@ std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::T
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const model::Body& body = model.bodies[bodies[i]];
         BodyMotion& motion = motions[bodies[i]];
-        motion.segments = body_segments(trajectory, places, bodies[i]);
-        if (first[i] == static_cast<std::size_t>(i))
-            motion.tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
+        if (has_usable_numbers(body, trajectory, places, bodies[i])) motion.segments = body_segments(trajectory, places, bodies[i]);
+        if (first[i] != static_cast<std::size_t>(i)) return;
+        motion.tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
+        motion.solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_mesh(body.mesh));
     });
-    for (std::size_t i = 0; i < bodies.size(); ++i) motions[bodies[i]].tree = motions[bodies[first[i]]].tree;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        motions[bodies[i]].tree = motions[bodies[first[i]]].tree;
+        motions[bodies[i]].solid = motions[bodies[first[i]]].solid;
+    }
     return motions;
 }
 
 PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::Trajectory& trajectory,
                        const std::vector<SegmentPlace>& places) {
-    PairMotion pair{*a.tree, *b.tree, trajectory, {}};
+    PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
     for (std::size_t i = 0; i < places.size(); ++i) {
         pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], a.tree->radius(), b.tree->radius()));
         pair.segments.back().step = places[i].step;
         pair.segments.back().segment = places[i].segment;
     }
     return pair;
-}
-
-PairStatus judge(const PairClearance& pair, double dhat) {
-    if (pair.intersecting) return PairStatus::violated;
-    if (!(pair.minimum > 0)) {
-        if (pair.upper < dhat) return PairStatus::contact;
-        return pair.complete || pair.lower >= dhat ? PairStatus::clear : PairStatus::undecided;
-    }
-    if (pair.lower >= pair.minimum) return PairStatus::clear;
-    return pair.upper < pair.minimum ? PairStatus::violated : PairStatus::undecided;
-}
-
-// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room; half of it after
-// thinning.
-double checking_room(const ClearanceOptions& options, const PairMotion& pair) {
-    double slack = 0;
-    for (const PairSegment& segment : pair.segments) slack = std::max(slack, segment.slack);
-    return options.tolerance / 8 + 8 * slack;
-}
-
-// The least at the nodes of the path, as a tool that samples would see it; a good upper bound for a search over the motion, too.
-Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
-    search.sample_nodes = pair.segments.size() > 1;  // the motion is searched as well, which costs little more
-    search.nodes_only = !search.sample_nodes;
-    if (search.nodes_only) search.tolerance *= 0.01;
-    const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
-    return search.nodes_only ? found.nearest : found.sampled;
-}
-
-// Of one pair, in the making.
-struct PairRecord {
-    certificate::PairCertificate& certificate;
-    const certificate::CertifiedBody &a, &b;
-};
-
-SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search,
-                              const std::optional<PairRecord>& record) {
-    search.enough = options.enough;
-    if (!record) {
-        search.sample_nodes = options.sample_nodes && pair.segments.size() > 1;
-        return search_pair(pair.a, pair.b, pair.segments, search);
-    }
-    search.tolerance *= 0.75;
-    search.proof = &record->certificate.segments;
-    SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
-    const double room = checking_room(options, pair);
-    found.lower = std::max(0.0, found.lower - room);
-    complete_certificate(pair, found, record->certificate);
-    thin_certificate(pair, record->a, record->b, 0.5 * room, record->certificate);
-    return found;
-}
-
-PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, double dhat, const ClearanceOptions& options,
-                           const std::optional<PairRecord>& record) {
-    SearchOptions search;
-    search.tolerance = options.tolerance;
-    search.max_evaluations = options.max_evaluations;
-    search.should_stop = options.should_stop;
-    const bool apart = options.sample_nodes && (record || pair.segments.size() == 1);
-    if (apart) search.seed = least_at_nodes(pair, search);
-    const SearchResult found = certified_search(pair, options, search, record);
-    PairClearance result;
-    result.a = request.a;
-    result.b = request.b;
-    result.minimum = request.minimum;
-    result.lower = found.lower;
-    result.upper = found.upper;
-    result.sampled = !options.sample_nodes ? infinity : (apart ? *search.seed : found.sampled).pair.distance;
-    result.complete = found.complete;
-    result.intersecting = found.intersecting;
-    search.seed.reset();
-    if (!result.intersecting && found.lower == 0 && found.upper <= options.tolerance)
-        result.intersecting = intersects_at_nodes(pair, search);
-    result.witnesses = all_witnesses(pair, found.nearest, options.witness_tolerance, options.max_witnesses, search);
-    result.witness = result.witnesses.front();
-    result.status = judge(result, dhat);
-    if (options.margin_curve) result.margin = margin_curve(pair, found, search);
-    return result;
 }
 
 std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
@@ -169,6 +110,12 @@ std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
     return bodies;
+}
+
+// Of what could not be measured there is nothing to certify.
+void drop_unbounded(certificate::Certificate& certificate) {
+    const auto unbounded = [](const certificate::PairCertificate& pair) { return !std::isfinite(pair.upper) || pair.point_a.index < 0; };
+    certificate.pairs.erase(std::remove_if(certificate.pairs.begin(), certificate.pairs.end(), unbounded), certificate.pairs.end());
 }
 
 }  // namespace
@@ -199,7 +146,7 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
         for (const BodyMotion& motion : motions) trees.push_back(motion.tree.get());
-        *options.certificate = start_certificate(model, trees, options.motion && !trajectory.steps.empty(), pairs.size());
+        *options.certificate = start_certificate(model, trajectory, trees, options.motion && !trajectory.steps.empty(), pairs.size());
         certified = certified_bodies(*options.certificate, model);
     }
     std::vector<PairClearance> results(pairs.size());
@@ -214,12 +161,15 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
             record->certificate.a = request.a;
             record->certificate.b = request.b;
         }
-        results[i] =
-            certify_pair(pair_motion(motions[request.a], motions[request.b], trajectory, places), request, model.dhat, options, record);
+        const BodyMotion &a = motions[request.a], &b = motions[request.b];
+        results[i] = a.segments.empty() || b.segments.empty()
+                         ? unmeasured(request, "the numbers of its path are not finite, or larger than 1e30")
+                         : certify_pair(pair_motion(a, b, trajectory, places), request, model.dmin + model.dhat, options, record);
         if (!options.on_pair) return;
         const std::lock_guard<std::mutex> lock(report);
         options.on_pair(++done, count);
     });
+    if (options.certificate != nullptr) drop_unbounded(*options.certificate);
     return results;
 }
 

@@ -4,20 +4,26 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/clearance/overlap.hpp"
 
 namespace fettle::core::clearance {
 
 using certificate::Primitive;
 
+using certificate::Solids;
+
 enum class PairStatus {
-    clear,      ///< lower >= minimum
-    violated,   ///< upper < minimum, or the bodies pass through each other (`intersecting`)
-    undecided,  ///< the minimum lies between the bounds, closer than the tolerance (or the budget ran out, or the search was stopped)
-    contact     ///< minimum is 0 and the bodies come within the activation distance: reported, not judged
+    clear,      ///< lower >= minimum, and lower > 0
+    violated,   ///< upper < minimum, or the bodies clash: they pass through each other, or one lies inside the other
+    undecided,  ///< the minimum lies between the bounds, closer than the tolerance (or the budget ran out, or the search was stopped); or
+                ///< neither a clash nor lower > 0 is proven. `reason` says which
+    contact     ///< minimum is 0 and the bodies come within the activation distance, 0 < lower: reported, not judged
 };
 const char* to_string(PairStatus status);
 
@@ -59,23 +65,32 @@ struct ClearanceOptions {
     bool margin_curve = false;                      ///< fill PairClearance::margin: costs a search per path segment
     double witness_tolerance = 0;                   ///< greater than 0: fill PairClearance::witnesses with all within it of the least [m]
     int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
+    bool measure_overlap = true;                    ///< fill PairClearance::overlap of a clash: a fraction of a second each
     bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
     double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
     certificate::Certificate* certificate = nullptr;          ///< optional: the proofs are recorded here; `lower` is what they claim
     std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
 };
 
+/// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
 struct PairClearance {
     int a = 0, b = 0;
     double minimum = 0;
     double lower = 0, upper = 0;  ///< [m]
     PairStatus status = PairStatus::undecided;
-    Witness witness;            ///< attains `upper`
-    bool complete = true;       ///< false: budget or should_stop ended the search before the tolerance was reached
-    bool intersecting = false;  ///< an edge of one was found passing through a triangle of the other: a clash, not a contact
+    Witness witness;       ///< attains `upper`; of a clash of surfaces, where they meet first; of one inside the other, nearest surfaces
+    bool complete = true;  ///< false: budget or should_stop ended the search before the tolerance was reached
+    bool intersecting = false;         ///< the surfaces were found passing through each other, or the solids to share a ball: a clash
+    Solids solids = Solids::unproven;  ///< `overlap`: one lies inside the other's material (bounds are then 0), or shares a ball with it
+    std::optional<Overlap> overlap;    ///< of a clash of closed bodies: how deep, the deepest of up to 32 instants looked at
+    double clash_not_before = 0;       ///< of a clash: proven, there is none before this time [s]
+    double clash_time = 0;             ///< of a clash: when it was found first, to within the tolerance over the speed [s]
+    std::string reason;                ///< why it is undecided; empty: it is not
     double sampled = 0;  ///< least distance at the nodes of the path: what a tool that samples would say [m]; infinite if not asked for
     std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
     std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
+
+    bool is_clash() const { return intersecting || solids == Solids::overlap; }
 };
 
 }  // namespace fettle::core::clearance

@@ -7,11 +7,6 @@
 namespace fettle::core::clearance {
 namespace {
 
-double time_of(const PairMotion& pair, int segment, double s) {
-    const PairSegment& at = pair.segments[segment];
-    return stepper::time_at(pair.trajectory, at.step, at.segment, s);
-}
-
 // The same points at the same instant, seen from elements that share them.
 bool is_same(const Witness& x, const Witness& y, double timestep) {
     const double size = x.point_a.cwiseAbs().maxCoeff() + x.point_b.cwiseAbs().maxCoeff();
@@ -20,6 +15,11 @@ bool is_same(const Witness& x, const Witness& y, double timestep) {
 }
 
 }  // namespace
+
+double time_of(const PairMotion& pair, int segment, double s) {
+    const PairSegment& at = pair.segments[segment];
+    return stepper::time_at(pair.trajectory, at.step, at.segment, s);
+}
 
 Witness witness_of(const PairMotion& pair, const Encounter& encounter) {
     const PairSegment& segment = pair.segments[encounter.segment];
@@ -83,13 +83,6 @@ std::vector<MarginInterval> margin_curve(const PairMotion& pair, const SearchRes
         }
     }
     return margin;
-}
-
-bool intersects_at_nodes(const PairMotion& pair, const SearchOptions& search) {
-    SearchOptions options = search;
-    options.nodes_only = options.seek_intersection = true;
-    options.max_evaluations = std::min(search.max_evaluations, 1'000'000L);
-    return search_pair(pair.a, pair.b, pair.segments, options).intersecting;
 }
 
 }  // namespace fettle::core::clearance

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// What is reported of a pair beyond its least distance (clearance.hpp): witnesses by their primitives, all of those that tie, the margin
-/// curve, and whether the bodies pass through each other.
+/// What is reported of a pair beyond its least distance (clearance.hpp): witnesses by their primitives, all of those that tie, and the
+/// margin curve. Whether the bodies pass through each other: crossing.hpp.
 #pragma once
 
 #include <vector>
 
+#include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
 #include "fettle/core/clearance/pair_search.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
@@ -17,7 +18,10 @@ struct PairMotion {
     const PieceTree& b;
     const stepper::Trajectory& trajectory;
     std::vector<PairSegment> segments;
+    const certificate::SolidMesh &solid_a, &solid_b;
 };
+
+double time_of(const PairMotion& pair, int segment, double s);
 
 Witness witness_of(const PairMotion& pair, const Encounter& encounter);
 
@@ -26,8 +30,5 @@ std::vector<Witness> all_witnesses(const PairMotion& pair, const Encounter& firs
 
 /// Bounds per segment; `whole` are those over all of them.
 std::vector<MarginInterval> margin_curve(const PairMotion& pair, const SearchResult& whole, const SearchOptions& search);
-
-/// Does an edge of one pass through a triangle of the other, deeper than rounding, at a node of the path? Stops at the first found.
-bool intersects_at_nodes(const PairMotion& pair, const SearchOptions& search);
 
 }  // namespace fettle::core::clearance

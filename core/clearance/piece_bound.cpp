@@ -72,7 +72,7 @@ SegmentBound IntervalBound::along(const Vector3& n, const Piece& a, const Piece&
     const double rest = deviation_scale * (rest_a_ * a.radius + rest_b_ * b.radius) * rounded_up + 2 * slack_;
     const auto bound = [&](const Values& c) {
         SegmentBound result;
-        result.at_ends = std::min(c[0], c[3]);
+        result.at_ends = least_of(c[0], c[3]);
         result.lower = (length_ > 0 ? least_value({c[0], c[1] - rest, c[2] - rest, c[3]}, result.dip) : result.at_ends) - slack_;
         return result;
     };

@@ -197,7 +197,10 @@ SpanBounds RelativeSpans::bounds(const SpanGroup& group, const TurningPlane& pla
         rest += squared.sqrt() * (0.25 * rounded_up) * (group.step_shift + outer * group.step_turn);
     }
     const Lanes nodes = f.head<most_spans + 1>();
-    return {(nodes.min(f.tail<most_spans + 1>()) - rest) * shrink_ - slack_, nodes * shrink_ - slack_};
+    const Lanes next = f.tail<most_spans + 1>();
+    // The sum of both ends is a NaN wherever one of them is, which the lesser of the two need not be.
+    const Lanes spans = (nodes + next).isNaN().select(nodes + next, nodes.min(next));
+    return {(spans - rest) * shrink_ - slack_, nodes * shrink_ - slack_};
 }
 
 SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,

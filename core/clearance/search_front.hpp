@@ -13,6 +13,9 @@
 
 namespace fettle::core::clearance {
 
+/// What is no number proves nothing: a bound that every comparison takes for the worst.
+inline double proven(double lower) { return std::isnan(lower) ? -std::numeric_limits<double>::infinity() : lower; }
+
 enum class EntryKind { segment, spans };  ///< segment_search.hpp, span_search.hpp
 
 /// Entries that come and go, at places that stay.
@@ -77,9 +80,10 @@ public:
     double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * options.tolerance : -infinity; }
 
     /// A bound of what is not split any further.
-    void set_aside(double lower) { aside_ = std::min(aside_, lower); }
+    void set_aside(double lower) { aside_ = std::min(aside_, proven(lower)); }
 
     void push(double lower, EntryKind kind, int entry) {
+        if (std::isnan(lower)) return set_aside(lower);  // nor would its parts be one
         queue_.push_back({lower, made_++, static_cast<std::uint32_t>(entry), kind == EntryKind::spans});
         std::push_heap(queue_.begin(), queue_.end(), Later{});
     }
@@ -102,7 +106,8 @@ public:
     double lower_bound() const { return std::max(0.0, std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result.upper})); }
 
     void take_upper(const Encounter& encounter) {
-        const double slack = segments[static_cast<std::size_t>(encounter.segment)].slack, upper = encounter.pair.distance + slack;
+        const double slack = segments[static_cast<std::size_t>(encounter.segment)].slack, sum = encounter.pair.distance + slack;
+        const double upper = std::isnan(sum) ? infinity : sum;
         const bool clash = encounter.pair.intersecting && encounter.pair.depth > 8 * slack;
         if ((encounter.s == 0 || encounter.s == 1) && encounter.pair.distance < result.sampled.pair.distance) result.sampled = encounter;
         const bool better = options.seek_intersection ? clash && !result.intersecting : upper < result.upper;

@@ -28,6 +28,7 @@ double third_derivative(const BodySegment& body, const Vector3& n, const Reach& 
 // Lower bound of the cubic on [0, 1], equal to its least value up to rounding: the hull of its coefficients, after a split at the least
 // value if that is inside. Where the split lies is of no consequence for the bound's truth.
 double least_value(const Coefficients& c, double& dip) {
+    if (!std::isfinite(c[0] + c[1] + c[2] + c[3])) return -std::numeric_limits<double>::infinity();  // std::min would lose a NaN
     const double ends = std::min(c[0], c[3]);
     if (c[1] >= ends && c[2] >= ends) return ends;
     // The derivative is 3 times the parabola with coefficients p, q, r; it rises through 0 where the cubic is least.
@@ -131,7 +132,7 @@ SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPla
     const double rest_b = std::max(third_derivative(segment.b, plane.n0, b), third_derivative(segment.b, plane.n1, b));
     const double rest = deviation_scale * h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;
     SegmentBound bound;
-    bound.at_ends = std::min(c[0], c[3]);
+    bound.at_ends = least_of(c[0], c[3]);
     bound.lower = h > 0 ? least_value({c[0], c[1] - rest, c[2] - rest, c[3]}, bound.dip) : bound.at_ends;
     bound.lower -= segment.slack;
     return bound;

@@ -35,7 +35,10 @@
 /// bound, and twice more to c1 and c2: |D| and its error are three times those of a place, |d(0)|/3 + 2|D|/3 at most 7/3.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "fettle/core/clearance/piece_tree.hpp"
 #include "fettle/core/kinematics/path.hpp"
@@ -95,8 +98,11 @@ Vector3 unit_direction(const Vector3& v);
 using Coefficients = std::array<double, 4>;
 Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, const Matrix3& b);
 
+/// The lesser of two bounds; NaN if one is, as std::min is not.
+inline double least_of(double x, double y) { return std::isunordered(x, y) ? std::numeric_limits<double>::quiet_NaN() : std::min(x, y); }
+
 /// Least value on [0, 1] of the cubic with these Bernstein coefficients, from below, equal up to rounding; `dip` is set to its place if
-/// that is inside.
+/// that is inside. Minus infinity if a coefficient is not finite.
 double least_value(const Coefficients& c, double& dip);
 
 /// A lower bound, and what it would be if the distance were monotone: the difference is what halving the interval can win.

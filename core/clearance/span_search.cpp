@@ -73,8 +73,8 @@ double SpanSearch::close(Entry& entry) {
     const double enough = span_cutoff(spans_.group(entry.group)), sampling = front_.sampling_cutoff();
     double least = infinity;
     for_bits(entry.open_spans, [&](int j) {
-        const double lower = entry.lower.spans[j];
-        if (lower < enough) {
+        const double lower = proven(entry.lower.spans[j]);
+        if (!(lower >= enough)) {
             least = std::min(least, lower);
         } else {
             front_.set_aside(lower);
@@ -82,8 +82,8 @@ double SpanSearch::close(Entry& entry) {
         }
     });
     for_bits(entry.open_nodes, [&](int j) {
-        const double lower = entry.lower.nodes[j];
-        if (lower < sampling) {
+        const double lower = proven(entry.lower.nodes[j]);
+        if (!(lower >= sampling)) {
             least = std::min(least, lower);
         } else {
             entry.open_nodes ^= 1U << j;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/base/units.hpp"
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/warning_groups.hpp"
@@ -232,6 +232,10 @@ bool JsonNode::check_range(double number, const NumberRange& range, std::string_
         context_->errors.push_back(not_finite_error(where(), shown()));
         return false;
     }
+    if (!base::is_usable_number(number)) {
+        fail(ErrorCode::out_of_range, shown() + " is out of range: at most 1e30 in absolute value is allowed");
+        return false;
+    }
     const bool low_fails = range.low_open ? !(number > range.low) : !(number >= range.low);
     if (!low_fails && number <= range.high) return true;
     std::string allowed;
@@ -290,19 +294,24 @@ std::optional<std::string> JsonNode::choice(const std::vector<std::string_view>&
 }
 
 std::optional<double> JsonNode::length(double unit, const NumberRange& range) const {
+    return quantity(base::Dimension::length, unit, range);
+}
+
+std::optional<double> JsonNode::quantity(base::Dimension dimension, double si_per_number, const NumberRange& range) const {
     if (!exists()) return std::nullopt;
+    const std::string unit = " " + std::string(base::si_unit(dimension));
     if (is_string() && !spells_not_finite(value_of(value_).get<std::string>())) {
-        const auto parsed = base::parse_length(value_of(value_).get<std::string>(), where());
+        const auto parsed = base::parse_quantity(value_of(value_).get<std::string>(), dimension, where());
         if (!parsed) {
             context_->errors.insert(context_->errors.end(), parsed.errors().begin(), parsed.errors().end());
             return std::nullopt;
         }
-        if (!check_range(*parsed, range, " m")) return std::nullopt;
+        if (!check_range(*parsed, range, unit)) return std::nullopt;
         return *parsed;
     }
     const auto found = number();
-    if (!found || !check_range(in_metres(*found, unit), range, " m")) return std::nullopt;
-    return in_metres(*found, unit);
+    if (!found || !check_range(in_metres(*found, si_per_number), range, unit)) return std::nullopt;
+    return in_metres(*found, si_per_number);
 }
 
 template <class Read>
@@ -344,7 +353,7 @@ std::optional<std::vector<double>> JsonNode::numbers() const {
     out.reserve(array.size());
     for (std::size_t i = 0; i < array.size(); ++i) {
         // Long lists of numbers are common: a node, with its pointer, is made only to report a fault.
-        const bool plain = array[i].is_number();
+        const bool plain = array[i].is_number() && base::is_usable_number(array[i].get<double>());
         const std::optional<double> found = plain ? array[i].get<double>() : child(&array[i], std::to_string(i)).number();
         good = good && found.has_value();
         out.push_back(found.value_or(0));

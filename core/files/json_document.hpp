@@ -21,10 +21,11 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/base/units.hpp"
 
 namespace fettle::core::files {
 
-/// Which numbers are allowed. Infinite ends mean no limit.
+/// Which numbers are allowed. Infinite ends mean no limit but base::largest_magnitude, which holds for every number of every file.
 struct NumberRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -76,6 +77,9 @@ public:
     std::optional<std::string> choice(const std::vector<std::string_view>& allowed) const;
     /// A number in units of `unit` [m], or a string with a unit of its own ("0.3mm"). @return [m]
     std::optional<double> length(double unit, const NumberRange& range = any_number) const;
+    /// A number in units of `si_per_number`, or a string with a unit of its own, of the same dimension ("30 g" where a mass is wanted).
+    /// @return SI
+    std::optional<double> quantity(base::Dimension dimension, double si_per_number, const NumberRange& range = any_number) const;
     /// Three numbers; three lengths [m].
     std::optional<Vector3> vector3() const;
     std::optional<Vector3> length3(double unit) const;

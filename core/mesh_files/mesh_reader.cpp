@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
@@ -52,17 +53,18 @@ Result<RawMesh> read_raw(const std::string& path) {
     return extension == ".obj" ? parse_obj(text.str(), path) : parse_off(text.str(), path);
 }
 
-Errors check_finite(const RawMesh& raw, const std::string& path) {
+Errors check_numbers(const RawMesh& raw, const std::string& path) {
     Errors errors;
     std::size_t count = 0;
     for (std::size_t i = 0; i < raw.vertices.size(); ++i) {
         const Vector3& x = raw.vertices[i];
-        if (x.allFinite() || ++count > max_listed) continue;
+        if (base::is_usable_number(x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()) || ++count > max_listed) continue;
         std::ostringstream text;
-        text << "vertex " << i << " (counted from 0) is not finite: " << x.transpose() << "; export the mesh again";
-        errors.push_back({ErrorCode::not_finite, path, text.str()});
+        text << "vertex " << i << " (counted from 0) is " << (x.allFinite() ? "beyond 1e30 m" : "not finite") << ": " << x.transpose()
+             << "; export the mesh again";
+        errors.push_back({x.allFinite() ? ErrorCode::out_of_range : ErrorCode::not_finite, path, text.str()});
     }
-    if (count > max_listed) errors.push_back({ErrorCode::not_finite, path, "and " + std::to_string(count - max_listed) + " more vertices"});
+    if (count > max_listed) errors.push_back({errors.back().code, path, "and " + std::to_string(count - max_listed) + " more vertices"});
     return errors;
 }
 
@@ -123,7 +125,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
     // Scaled before anything is compared: rounding can make equal what was not in the file.
     const double unit = raw.metres_per_unit > 0 ? raw.metres_per_unit : options.unit;
     for (Vector3& x : raw.vertices) x *= unit;
-    if (Errors errors = check_finite(raw, path); !errors.empty()) return errors;
+    if (Errors errors = check_numbers(raw, path); !errors.empty()) return errors;
     auto faces = grouped_triangles(raw, options.weld, path);
     if (!faces) return faces.errors();
 

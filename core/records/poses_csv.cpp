@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/text_lines.hpp"
@@ -172,7 +173,12 @@ private:
 
     std::optional<double> number(std::size_t column) {
         const auto value = files::parsed_number(row_[column]);
-        if (value && std::isfinite(*value)) return value;
+        if (value && base::is_usable_number(*value)) return value;
+        if (value && std::isfinite(*value)) {
+            fail(ErrorCode::out_of_range,
+                 "column " + columns_[column].name + ": " + row_[column] + " is out of range: at most 1e30 in absolute value is allowed");
+            return std::nullopt;
+        }
         fail(value ? ErrorCode::not_finite : ErrorCode::parse,
              "column " + columns_[column].name + ": \"" + row_[column] + "\" is not a " + (value ? "finite " : "") + "number");
         return std::nullopt;

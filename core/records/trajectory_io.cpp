@@ -278,6 +278,32 @@ std::uint64_t geometry_hash(const model::Model& model) {
     return hash.value();
 }
 
+std::uint64_t path_hash(const stepper::Trajectory& trajectory) {
+    files::Fnv1a hash;
+    const auto add = [&](const Vector3& v) {
+        for (const double x : v) hash.add(x);
+    };
+    hash.add(trajectory.timestep);
+    hash.add(trajectory.time_start);
+    for (const double time : trajectory.times) hash.add(time);
+    for (const auto& poses : trajectory.poses) {
+        for (const kinematics::Pose& pose : poses) {
+            for (int row = 0; row < 3; ++row) add(pose.rotation.row(row));
+            add(pose.position);
+        }
+    }
+    for (const stepper::TrajectoryStep& step : trajectory.steps) {
+        hash.add(static_cast<std::uint64_t>(step.nodes.size()));
+        for (const auto& node : step.nodes) {
+            for (const kinematics::ChartPoint& point : node) {
+                add(point.position);
+                add(point.rotation_vector);
+            }
+        }
+    }
+    return hash.value();
+}
+
 base::Errors write_trajectory(const std::filesystem::path& path, const stepper::Trajectory& trajectory, const model::Model& model,
                               const std::string& scene_path, const stepper::Checkpoint* checkpoint) {
     FETTLE_ASSERT(trajectory.body_names.size() == model.bodies.size() && trajectory.poses.size() == trajectory.steps.size() + 1,

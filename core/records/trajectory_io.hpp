@@ -44,6 +44,10 @@ struct StoredTrajectory {
 /// FNV-1a over names, vertices (their bits, relative to the reference point), triangles and edges of all bodies.
 std::uint64_t geometry_hash(const model::Model& model);
 
+/// FNV-1a over the continuous path: time step, start time, times, poses (rotation row by row, then position), nodes (position, rotation
+/// vector), all as their bits.
+std::uint64_t path_hash(const stepper::Trajectory& trajectory);
+
 /// Written whole or not at all (base/atomic_file.hpp). Contract: the trajectory is the model's, all numbers finite.
 [[nodiscard]] base::Errors write_trajectory(const std::filesystem::path& path, const stepper::Trajectory& trajectory,
                                             const model::Model& model, const std::string& scene_path = {},

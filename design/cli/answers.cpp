@@ -60,24 +60,24 @@ Json clearance_json(const std::vector<PairClearance>& pairs, const std::vector<s
     return json;
 }
 
-Json parameters_json(const Design& design, const VectorX& values) {
+Json parameters_json(const description::Design& design, const VectorX& values) {
     Json json = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
+        json[design.parameters[k].name] = description::from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
     }
     return json;
 }
 
-Json units_json(const Design& design) {
+Json units_json(const description::Design& design) {
     Json json = Json::object();
-    for (const Parameter& parameter : design.parameters) json[parameter.name] = parameter.unit.name;
+    for (const description::Parameter& parameter : design.parameters) json[parameter.name] = parameter.unit.name;
     return json;
 }
 
-Json gradient_json(const Design& design, const VectorX& gradient) {
+Json gradient_json(const description::Design& design, const VectorX& gradient) {
     Json json = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = gradient[static_cast<Eigen::Index>(k)] * design.parameters[k].unit.factor;
+        json[design.parameters[k].name] = gradient[static_cast<Eigen::Index>(k)] * to_si(1, design.parameters[k].unit);
     }
     return json;
 }

@@ -9,7 +9,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/design/cli/console.hpp"
-#include "fettle/design/design.hpp"
+#include "fettle/design/description/design.hpp"
 
 namespace fettle::design::cli {
 
@@ -25,11 +25,11 @@ core::clearance::PairStatus overall_status(const std::vector<core::clearance::Pa
 nlohmann::ordered_json clearance_json(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names);
 
 /// Values by parameter name, in the parameters' own units.
-nlohmann::ordered_json parameters_json(const Design& design, const VectorX& values);
+nlohmann::ordered_json parameters_json(const description::Design& design, const VectorX& values);
 /// Unit by parameter name.
-nlohmann::ordered_json units_json(const Design& design);
+nlohmann::ordered_json units_json(const description::Design& design);
 /// Derivatives by parameter name, per unit of the parameter as the file has it.
-nlohmann::ordered_json gradient_json(const Design& design, const VectorX& gradient);
+nlohmann::ordered_json gradient_json(const description::Design& design, const VectorX& gradient);
 
 std::vector<std::string> body_names(const core::model::Model& model);
 

@@ -13,7 +13,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
-#include "fettle/design/process_presets.hpp"
+#include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
 
@@ -68,7 +68,7 @@ Result<Lengths> read_lengths(const Options& options) {
         errors.push_back({ErrorCode::missing_key, "command line",
                           "how much clearance is required? say --minimum 0.3mm, --process fdm, or --pairs A:B=0.3mm"});
     if (!options.pairs.process.empty()) {
-        const Result<ProcessPreset> preset = process_preset(options.pairs.process, "--process");
+        const auto preset = quantities::process_preset(options.pairs.process, "--process");
         errors.insert(errors.end(), preset.errors().begin(), preset.errors().end());
     }
     if (!errors.empty()) return errors;
@@ -186,7 +186,7 @@ Command add_clearance(CLI::App& program, const CommonOptions& common) {
     CLI::App* app = program.add_subcommand("clearance", "Certified least distance of each pair of bodies");
     auto options = std::make_shared<Options>();
     add_options(*app, *options);
-    app->footer(process_table() +
+    app->footer(quantities::process_table() +
                 "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
                 "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
     return {app, [options, &common](Console& console) { return run_clearance(*options, common, console); }};

@@ -7,7 +7,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/clearance_subject.hpp"
-#include "fettle/design/process_presets.hpp"
+#include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
 
@@ -241,9 +241,9 @@ private:
     }
 
     void require() {
-        std::optional<ProcessPreset> preset;
+        std::optional<quantities::ProcessPreset> preset;
         if (!options_.process.empty()) {
-            const Result<ProcessPreset> found = process_preset(options_.process, "--process");
+            const auto found = quantities::process_preset(options_.process, "--process");
             errors_.insert(errors_.end(), found.errors().begin(), found.errors().end());
             if (!found) return;
             preset = *found;
@@ -255,7 +255,7 @@ private:
                 pair.minimum = *options_.minimum;
                 pair.required_by = "--minimum";
             } else if (preset) {
-                const Result<double> required = required_clearance(*preset, size_of(pair.a), size_of(pair.b), "pair " + name);
+                const Result<double> required = quantities::required_clearance(*preset, size_of(pair.a), size_of(pair.b), "pair " + name);
                 errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
                 pair.minimum = required ? *required : 0;
                 pair.required_by = "--process " + options_.process;

@@ -5,15 +5,21 @@
 
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/design_file.hpp"
-#include "fettle/design/design_problem.hpp"
-#include "fettle/design/difference_check.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/difference_check.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using description::Design;
+using description::Parameter;
+using problem::DesignEvaluation;
+using problem::DesignProblem;
+using studies::CheckReport;
+using studies::CheckRow;
 
 struct Options {
     std::string path;
@@ -41,13 +47,14 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     json["terms"] = terms;
     Json list = Json::array();
     for (size_t i = 0; i < design.constraints.size(); ++i) {
-        const constraints::Constraint& constraint = *design.constraints[i];
-        const objectives::Quantity& quantity = evaluation.constraints[i];
+        const description::Constraint& constraint = design.constraints[i];
+        const description::Measurement& measured = evaluation.constraints[i];
         Json entry;
-        entry["name"] = constraint.name();
-        entry["value"] = quantity.value;
-        entry["certified_lower"] = quantity.lower;
-        entry["met"] = constraint.violation(quantity) <= 0;
+        entry["name"] = constraint.name;
+        entry["value"] = measured.value;
+        entry["certified_lower"] = measured.lower;
+        entry["met"] = description::violation(constraint.bounds, measured) <= 0;
+        if (!measured.fault.empty()) entry["fault"] = measured.fault;
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(static_cast<Eigen::Index>(i)).transpose());
         list.push_back(std::move(entry));
     }
@@ -59,7 +66,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
 
 double factor_of(const Design& design, const std::string& parameter) {
     for (const Parameter& p : design.parameters) {
-        if (p.name == parameter) return p.unit.factor;
+        if (p.name == parameter) return to_si(1, p.unit);
     }
     return 1;
 }
@@ -95,27 +102,28 @@ std::string values_text(const Design& design, const DesignEvaluation& e) {
     std::string text = formatted("objective %.10g\n", e.objective);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const Parameter& p = design.parameters[k];
-        text += formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[static_cast<Eigen::Index>(k)] * p.unit.factor,
-                          p.unit.name.c_str());
+        text += formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[static_cast<Eigen::Index>(k)] * to_si(1, p.unit),
+                          std::string(p.unit.name).c_str());
     }
     for (size_t i = 0; i < design.constraints.size(); ++i) {
-        const double unit = design.constraints[i]->bounds().unit;
-        text += formatted("%-40s %12.7g, at least %12.7g, required [%g, %g]\n", design.constraints[i]->name().c_str(),
-                          e.constraints[i].value / unit, e.constraints[i].lower / unit, design.constraints[i]->bounds().lower / unit,
-                          design.constraints[i]->bounds().upper / unit);
+        const auto& [name, bounds, quantity] = design.constraints[i];
+        const description::Measurement& measured = e.constraints[i];
+        text += formatted("%-40s %12.7g, at least %12.7g, required [%g, %g]\n", name.c_str(), measured.value / bounds.unit,
+                          measured.lower / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit);
+        if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
     }
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
 }
 
 int run_gradient(const Options& options, const CommonOptions& common, Console& console) {
-    Result<Design> read = read_design(options.path, {common.mesh_dirs});
+    Result<reading::DesignFile> read = reading::read_design(options.path, {common.mesh_dirs});
     if (!read) return console.input_errors(read.errors());
     tell_warnings(console, read->warnings);
-    const Result<DesignProblem> problem = DesignProblem::create(std::move(read).value());
+    const Result<DesignProblem> problem = DesignProblem::create(std::move(read->design));
     if (!problem) return console.input_errors(problem.errors());
     const Design& design = problem->design();
-    const VectorX values = values_of(design.parameters);
-    EvaluateOptions evaluate;
+    const VectorX values = description::values_of(design.parameters);
+    problem::EvaluateOptions evaluate;
     evaluate.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     evaluate.should_stop = interrupted;
     const DesignEvaluation evaluation = problem->evaluate(values, evaluate);
@@ -127,10 +135,10 @@ int run_gradient(const Options& options, const CommonOptions& common, Console& c
     std::string text = values_text(design, evaluation);
     int code = exit_done;
     if (options.check) {
-        CheckOptions check;
+        studies::CheckOptions check;
         check.on_parameter = [&](int done, int of) { console.progress("differences", done, of); };
         check.should_stop = interrupted;
-        const CheckReport report = check_gradients(*problem, values, evaluation, check);
+        const CheckReport report = studies::check_gradients(*problem, values, evaluation, check);
         add_check(design, report, json);
         text += check_text(report);
         const bool good = report.largest_relative_error <= options.check_limit && report.failures.empty() && !report.interrupted;

@@ -10,9 +10,9 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
-#include "fettle/design/design_file.hpp"
-#include "fettle/design/design_problem.hpp"
-#include "fettle/design/scene_shapes.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::cli {
 
@@ -24,26 +24,26 @@ FileKind file_kind(const std::string& path) {
     }
     if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
     if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
-    return is_design_file(path) ? FileKind::design : FileKind::scene;
+    return reading::is_design_file(path) ? FileKind::design : FileKind::scene;
 }
 
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
     LoadedModel loaded;
-    if (is_design_file(path)) {
-        Result<Design> design = read_design(path, {common.mesh_dirs});
-        if (!design) return design.errors();
-        loaded.scene_path = design->scene_path;
-        loaded.steps = design->steps;
-        loaded.warnings = design->warnings;
-        const VectorX values = values_of(design->parameters);
-        const Result<DesignProblem> problem = DesignProblem::create(std::move(design).value());
+    if (reading::is_design_file(path)) {
+        Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+        if (!file) return file.errors();
+        loaded.scene_path = file->scene_path;
+        loaded.steps = file->design.steps;
+        loaded.warnings = file->warnings;
+        const VectorX values = description::values_of(file->design.parameters);
+        const auto problem = problem::DesignProblem::create(std::move(file->design));
         if (!problem) return problem.errors();
         Result<core::model::Model> model = problem->model_at(values);
         if (!model) return model.errors();
         loaded.model = std::move(model).value();
         return loaded;
     }
-    const Result<core::scene::Scene> scene = core::scene::read_scene(path, scene_read_options(common.mesh_dirs));
+    const Result<core::scene::Scene> scene = core::scene::read_scene(path, reading::scene_read_options(common.mesh_dirs));
     if (!scene) return scene.errors();
     loaded.scene_path = path;
     loaded.warnings = scene->warnings;

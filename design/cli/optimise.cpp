@@ -7,15 +7,19 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/design_file.hpp"
-#include "fettle/design/optimise_design.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/optimise_file.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using description::Design;
 using optimisers::OptimiserStatus;
+using problem::DesignEvaluation;
+using problem::DesignProblem;
+using studies::OptimiseOutcome;
 
 struct Options {
     std::string path, optimiser, out;
@@ -25,13 +29,14 @@ struct Options {
 Json constraints_json(const Design& design, const DesignEvaluation& final) {
     Json list = Json::array();
     for (size_t i = 0; i < final.constraints.size(); ++i) {
-        const constraints::Constraint& constraint = *design.constraints[i];
-        const objectives::Quantity& q = final.constraints[i];
-        list.push_back({{"name", constraint.name()},
-                        {"value", q.value},
-                        {"lower", q.lower},
-                        {"upper", q.upper},
-                        {"met", constraint.violation(q) <= 0}});
+        const description::Constraint& constraint = design.constraints[i];
+        const description::Measurement& measured = final.constraints[i];
+        list.push_back({{"name", constraint.name},
+                        {"value", measured.value},
+                        {"lower", measured.lower},
+                        {"upper", measured.upper},
+                        {"met", description::violation(constraint.bounds, measured) <= 0}});
+        if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
     }
     return list;
 }
@@ -90,51 +95,50 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         formatted("objective %.8g, from %.8g at the start; %d evaluations (%d failed), %d iterations, optimality %.2g\n",
                   report.best.objective, report.start.objective, report.evaluations, report.failures, report.iterations, report.optimality);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        const Parameter& p = design.parameters[k];
-        text += formatted("  %-24s %12.7g -> %12.7g %s\n", p.name.c_str(), from_si(p.value, p.unit),
-                          from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), p.unit.name.c_str());
+        const description::Parameter& p = design.parameters[k];
+        text += formatted("  %-24s %12.7g -> %12.7g %s\n", p.name.c_str(), description::from_si(p.value, p.unit),
+                          description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), std::string(p.unit.name).c_str());
     }
     for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
-        const constraints::Constraint& constraint = *design.constraints[i];
-        const objectives::Quantity& q = outcome.final.constraints[i];
-        const double unit = constraint.bounds().unit;
-        const bool met = constraint.violation(q) <= 0;
-        text += formatted("  %-40s proven [%.7g, %.7g], required [%g, %g]: ", constraint.name().c_str(), q.lower / unit, q.upper / unit,
-                          constraint.bounds().lower / unit, constraint.bounds().upper / unit) +
-                console.coloured(met ? "met" : "VIOLATED", met) + "\n";
+        const auto& [name, bounds, quantity] = design.constraints[i];
+        const description::Measurement& measured = outcome.final.constraints[i];
+        const bool met = description::violation(bounds, measured) <= 0;
+        text += formatted("  %-40s proven [%.7g, %.7g], required [%g, %g]: ", name.c_str(), measured.lower / bounds.unit,
+                          measured.upper / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
+                console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
     return text + "written to " + out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
 }
 
-std::string output_folder(const Options& options, const Design& design) {
+std::string output_folder(const Options& options, const reading::DesignFile& file) {
     if (!options.out.empty()) return options.out;
-    if (!design.output.empty()) return design.output;
+    if (!file.output.empty()) return file.output;
     return std::filesystem::path(options.path).stem().stem().string() + ".out";
 }
 
 int run_optimise(const Options& options, const CommonOptions& common, Console& console) {
-    Result<Design> read = read_design(options.path, {common.mesh_dirs});
-    if (!read) return console.input_errors(read.errors());
-    tell_warnings(console, read->warnings);
-    const Result<DesignProblem> problem = DesignProblem::create(std::move(read).value());
+    const Result<reading::DesignFile> file = reading::read_design(options.path, {common.mesh_dirs});
+    if (!file) return console.input_errors(file.errors());
+    tell_warnings(console, file->warnings);
+    const Result<DesignProblem> problem = DesignProblem::create(file->design);
     if (!problem) return console.input_errors(problem.errors());
-    OptimiseOptions optimise;
-    optimise.directory = output_folder(options, problem->design());
-    optimise.resume = options.resume;
+    const studies::RunFolder folder{output_folder(options, *file), options.resume};
+    studies::OptimiseOptions optimise;
     optimise.optimiser = options.optimiser;
     optimise.should_stop = interrupted;
     optimise.narrate = [&](const std::string& line) { console.narrate(line); };
     optimise.on_step = [&](const core::stepper::Progress& p) { console.progress("      simulating", p.step, p.steps); };
-    const Result<OptimiseOutcome> outcome = optimise_design(*problem, optimise);
-    if (!outcome) return console.input_errors(outcome.errors());
-    if (!outcome->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + outcome->history_kept_as);
-    const Json json = outcome_json(*problem, *outcome, optimise.directory);
+    const Result<studies::FileOutcome> run = studies::optimise_file(*file, *problem, folder, optimise);
+    if (!run) return console.input_errors(run.errors());
+    const OptimiseOutcome& outcome = run->outcome;
+    if (!run->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + run->history_kept_as);
+    const Json json = outcome_json(*problem, outcome, folder.directory);
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    const Errors errors = core::files::write_file_atomically(std::filesystem::path(optimise.directory) / "result.json", text);
+    const Errors errors = core::files::write_file_atomically(std::filesystem::path(folder.directory) / "result.json", text);
     if (!errors.empty()) return console.input_errors(errors);
-    console.result(json, outcome_text(problem->design(), *outcome, console, optimise.directory));
-    return exit_code(outcome->report.status);
+    console.result(json, outcome_text(problem->design(), outcome, console, folder.directory));
+    return exit_code(outcome.report.status);
 }
 
 }  // namespace

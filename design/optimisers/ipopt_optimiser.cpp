@@ -99,7 +99,6 @@ public:
                            Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {}
 
     int iterations() const { return iterations_; }
-    bool settled() const { return settled_; }
 
 private:
     // 4 in a row: a limited-memory step is now and then short while its curvature is still being learnt.
@@ -171,16 +170,15 @@ void set_options(Ipopt::OptionsList& list, const OptimiserOptions& options) {
 }  // namespace
 
 NativeOutcome IpoptOptimiser::minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
-    if (evaluator.variables() == 0) return {true, 0, "no variables"};
+    if (evaluator.variables() == 0) return {0, "no variables"};
     static std::mutex one_solve_at_a_time;
     const std::lock_guard<std::mutex> lock(one_solve_at_a_time);
     Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
     set_options(*application->Options(), options);
-    if (application->Initialize("") != Ipopt::Solve_Succeeded) return {false, 0, "cannot be initialised"};
+    if (application->Initialize("") != Ipopt::Solve_Succeeded) return {0, "cannot be initialised"};
     Ipopt::SmartPtr<ScaledProblem> problem = new ScaledProblem(evaluator, options);
     const Ipopt::ApplicationReturnStatus status = application->OptimizeTNLP(GetRawPtr(problem));
-    const bool success = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level || problem->settled();
-    return {success, problem->iterations(), words(status)};
+    return {problem->iterations(), words(status)};
 }
 
 }  // namespace fettle::design::optimisers

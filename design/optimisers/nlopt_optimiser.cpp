@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include "fettle/design/optimisers/optimality.hpp"
 
 namespace fettle::design::optimisers {
 
@@ -182,7 +181,7 @@ std::string NloptOptimiser::name() const {
 
 NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
     const int n = evaluator.variables();
-    if (n == 0) return {true, 0, "no variables"};
+    if (n == 0) return {0, "no variables"};
     VectorX start = evaluator.scaled_start();
     double radius = 1;
     NativeOutcome outcome;
@@ -203,7 +202,7 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
             }
             continue;
         }
-        // Rounding limits SLSQP at a good optimum as often as at a bad one: the optimality residual is the judge.
+        // Rounding limits SLSQP at a good optimum as often as at a bad one; the verdict does not ask it (optimisation.hpp).
         const bool ended = run.result > 0 || run.result == NLOPT_ROUNDOFF_LIMITED;
         const bool at_box =
             ((best - lower).array() <= 0 && lower.array() > 0).any() || ((upper - best).array() <= 0 && upper.array() < 1).any();
@@ -211,10 +210,6 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
             radius = std::min(1.0, 2 * radius);
             start = best;
             continue;
-        }
-        outcome.success = run.result > 0 && run.result != NLOPT_MAXEVAL_REACHED;
-        if (run.result == NLOPT_ROUNDOFF_LIMITED) {
-            outcome.success = optimality_residual(evaluator, best, evaluator.best_scaled_evaluation(), nearly_active) <= nearly_optimal;
         }
         return outcome;
     }

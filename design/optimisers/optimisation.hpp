@@ -14,13 +14,15 @@
 
 namespace fettle::design::optimisers {
 
+/// Of the best design: `feasible` is a violation of 0, `optimal` an optimality residual of at most nearly_optimal (optimality.hpp).
+/// However the native optimiser ended, a run that was not cut short is one of converged, not_converged and infeasible.
 enum class OptimiserStatus {
-    converged,          ///< feasible, and the native optimiser ended of itself
-    budget_spent,       ///< feasible, but max_evaluations came first
-    infeasible,         ///< the native optimiser ended at a design that violates a requirement
-    infeasible_budget,  ///< max_evaluations came before a feasible design was found
-    not_converged,      ///< feasible, but the native optimiser gave up
-    interrupted,        ///< should_stop; the best design so far
+    converged,          ///< feasible and optimal
+    not_converged,      ///< feasible, but not optimal
+    infeasible,         ///< a requirement is violated
+    budget_spent,       ///< max_evaluations ended the run; feasible, optimal or not
+    infeasible_budget,  ///< max_evaluations ended the run before a feasible design was found
+    interrupted,        ///< should_stop ended the run; the best design so far
     start_failed        ///< the start cannot be evaluated
 };
 const char* to_string(OptimiserStatus status);

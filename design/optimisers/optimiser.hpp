@@ -18,11 +18,11 @@ struct OptimiserOptions {
     std::function<void(int, const VectorX&, const Evaluation&, bool best)> on_evaluation;  ///< optional
 };
 
-/// What a native optimiser says of itself.
+/// What a native optimiser says of itself, for people. Whether it calls its end a success decides nothing: the verdict is our own
+/// (optimisation.hpp).
 struct NativeOutcome {
-    bool success = false;
     int iterations = 0;
-    std::string message;  ///< its own words, for people
+    std::string message;  ///< its own words
 };
 
 class Optimiser {

@@ -42,3 +42,33 @@ TEST_CASE("lengths are written in a unit and read back", "[base]") {
     CHECK(parse_length(format_length(0.1234567890123456, "mm", 17)).value() == Approx(0.1234567890123456).epsilon(1e-15));
     CHECK_THROWS_AS(format_length(1, "yard"), ContractError);
 }
+
+TEST_CASE("a quantity has a dimension, and another one's unit is refused", "[base]") {
+    CHECK(parse_quantity("30 g", Dimension::mass).value() == 0.03);
+    CHECK(parse_quantity("1.24 g/cm^3", Dimension::density).value() == 1240);
+    CHECK(parse_quantity("2 N mm", Dimension::torque).value() == 0.002);
+    CHECK(parse_quantity("180deg", Dimension::angle).value() == Approx(3.14159265358979));
+    CHECK(parse_quantity("0.25", Dimension::number).value() == 0.25);
+    const Error length = parse_quantity("30mm", Dimension::mass, "a#/x").errors().at(0);
+    CHECK(length.code == ErrorCode::wrong_type);
+    CHECK(length.where == "a#/x");
+    CHECK(length.message.find("\"mm\" is a unit of length, a mass is wanted") != std::string::npos);
+    CHECK(parse_quantity("30 stone", Dimension::mass).errors().at(0).code == ErrorCode::out_of_range);
+    CHECK(parse_quantity("30", Dimension::mass).errors().at(0).code == ErrorCode::out_of_range);
+    CHECK_FALSE(si_per_unit("kg", Dimension::length));
+    CHECK(si_per_unit("rpm", Dimension::angular_speed).value() == Approx(0.104719755119659));
+}
+
+TEST_CASE("every unit has one name, and every dimension an SI unit", "[base]") {
+    for (const Unit& unit : units()) {
+        CHECK(find_unit(unit.name) == &unit);
+        CHECK_FALSE(si_unit(unit.dimension).empty());
+        CHECK(parse_quantity("3 " + std::string(unit.name), unit.dimension).value() == to_si(3, unit));
+    }
+}
+
+TEST_CASE("quantities beyond any mechanism are refused", "[base]") {
+    CHECK(parse_length("1e30 m").value() == 1e30);
+    CHECK(parse_length("1e31 um").errors().at(0).code == ErrorCode::out_of_range);
+    CHECK(parse_length("-1e40 m").errors().at(0).code == ErrorCode::out_of_range);
+}

@@ -190,7 +190,17 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
              return cuts[i] = r() % 2 ? 0 : 1000000, true;
          }},
         {"hash", [](Case& c, std::mt19937& r) { return c.certificate.geometry_hash ^= std::uint64_t{1} << (r() % 64), true; }},
-        {"version", [](Case& c, std::mt19937& r) { return c.certificate.version = 2 + static_cast<int>(r() % 5), true; }},
+        {"hash of the path", [](Case& c, std::mt19937& r) { return c.certificate.path_hash ^= std::uint64_t{1} << (r() % 64), true; }},
+        {"no pair", [](Case& c, std::mt19937&) { return c.certificate.pairs.clear(), true; }},
+        {"solids claimed otherwise",
+         [](Case& c, std::mt19937& r) { return c.certificate.pairs[0].solids = r() % 2 ? Solids::overlap : Solids::not_closed, true; }},
+        {"disjoint without a bound",
+         [](Case& c, std::mt19937&) {
+             c.certificate.pairs[0].lower = 0;
+             c.certificate.pairs[0].segments.clear();
+             return true;
+         }},
+        {"version", [](Case& c, std::mt19937& r) { return c.certificate.version = 3 + static_cast<int>(r() % 5), true; }},
         {"other bodies",
          [](Case& c, std::mt19937& r) {
              return c.certificate.pairs[0].b = static_cast<int>(r() % 3) - 1 == 1 ? 2 : static_cast<int>(r() % 2) * -1, true;
@@ -257,6 +267,9 @@ std::pair<int, int> damage_campaign(std::mt19937& random, int wanted, int per_ca
             ++i;
             ++made;
             ++of_kind[kind];
+            // Or the hash alone would give the changed path away.
+            if (damaged.certificate.path_hash == whole.certificate.path_hash)
+                damaged.certificate.path_hash = core::records::path_hash(damaged.trajectory);
             const bool found = !check_certificate(damaged.certificate, damaged.model, damaged.trajectory).accepted();
             CAPTURE(damages()[kind].first);
             if (!found) CHECK(found);

@@ -4,48 +4,11 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "fettle/tests/core/clearance/clearance_models.hpp"
 
 using namespace fettle;
 using namespace fettle::tests::clearance;
 using namespace fettle::core::clearance;
-
-namespace {
-
-core::model::Model model_of(const std::vector<Solid>& solids, const std::vector<Vector3>& positions) {
-    core::model::Model model;
-    for (std::size_t i = 0; i < solids.size(); ++i) {
-        core::model::Body body;
-        body.name = "body " + std::to_string(i);
-        body.mesh = solids[i].mesh;
-        body.hierarchy = solids[i].hierarchy;
-        body.pose_start.position = positions[i];
-        model.bodies.push_back(body);
-    }
-    model.dhat = 1e-4;
-    return model;
-}
-
-ClearanceOptions options_with(double tolerance) {
-    ClearanceOptions options;
-    options.tolerance = tolerance;
-    return options;
-}
-
-// Body 0 at rest, body 1 visiting the nodes within one step.
-core::stepper::Trajectory one_step(const core::model::Model& model, const std::vector<core::kinematics::ChartPoint>& nodes) {
-    core::stepper::Trajectory trajectory = as_assembled(model);
-    trajectory.timestep = 0.5;
-    trajectory.time_start = 2;
-    core::stepper::TrajectoryStep step;
-    for (const auto& node : nodes) step.nodes.push_back({{model.bodies[0].pose_start.position, Vector3::Zero()}, node});
-    trajectory.steps.push_back(step);
-    trajectory.poses.push_back(trajectory.poses[0]);
-    trajectory.poses[1][1] = {core::kinematics::rotation(nodes.back().rotation_vector), nodes.back().position};
-    return trajectory;
-}
-
-}  // namespace
 
 TEST_CASE("Boxes as assembled: bounds, status and witness", "[clearance]") {
     const auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5}), box({1, 1, 1})}, {{0, 0, 0}, {2, 0.1, 0.2}, {0, 2.00005, 0}});
@@ -229,7 +192,7 @@ TEST_CASE("Passing through is told from touching", "[clearance]") {
     CHECK(results[0].status == PairStatus::violated);
     CHECK(results[0].lower == 0);
     CHECK(!results[1].intersecting);
-    CHECK(results[1].status == PairStatus::contact);
+    CHECK(results[1].status == PairStatus::undecided);  // faces in one plane: whether they cross is a matter of rounding
     CHECK(results[2].status == PairStatus::violated);
 }
 

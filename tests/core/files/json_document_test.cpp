@@ -51,6 +51,24 @@ TEST_CASE("Numbers that are not finite are called so", "[scene]") {
     }
 }
 
+TEST_CASE("Numbers beyond any mechanism are out of range, wherever they stand", "[scene]") {
+    JsonDocument document = parsed(R"({"a": 1e160, "b": [0, -1e31, 0], "c": "1e40 mm", "d": 1e30, "e": "30mm"})");
+    const JsonNode root = document.root();
+    CHECK_FALSE(root["a"].number());
+    CHECK_FALSE(root["b"].numbers());
+    CHECK_FALSE(root["b"].vector3());
+    CHECK_FALSE(root["c"].length(1));
+    CHECK(root["d"].number() == 1e30);
+    REQUIRE(document.errors().size() == 4);
+    for (const base::Error& error : document.errors()) {
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(contains(error.message, "at most 1e30"));
+    }
+    CHECK(document.errors()[1].where == "a.json#/b/1");
+    CHECK_FALSE(root["e"].quantity(base::Dimension::mass, 1));
+    CHECK(document.errors().back().code == ErrorCode::wrong_type);
+}
+
 TEST_CASE("Two equal keys in one object are refused", "[scene]") {
     const auto error = only_error(JsonDocument::parse(R"({"a": {"mass": 1, "mass": 2}, "mass": 3})", "a.json").errors());
     CHECK(error.code == ErrorCode::inconsistent);

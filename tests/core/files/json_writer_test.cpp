@@ -11,7 +11,7 @@
 namespace fettle::core::files {
 
 TEST_CASE("Written JSON reads back bit for bit", "[scene]") {
-    const std::vector<double> numbers{0, -0.0, 0.1, -1.0 / 3, 5e-324, 1.7976931348623157e308, 9007199254740993.0 * 1024};
+    const std::vector<double> numbers{0, -0.0, 0.1, -1.0 / 3, 5e-324, 9.9999999999999989e29, 9007199254740993.0 * 1024};
     const std::string name = "a \"quoted\" \\ name,\n\ttab \x01, µm";
     JsonWriter out;
     out.text = "{";

@@ -160,6 +160,19 @@ TEST_CASE("poses: what is written reads back, and as a trajectory file too", "[s
     }
 }
 
+TEST_CASE("poses: numbers beyond any mechanism are refused, in CSV and in JSON", "[stepper][poses]") {
+    const Folder folder;
+    const model::Model model = boxes();
+    const std::string rows = "0,crank,0,0,0,1,0,0,0\n1,crank,1e158,0,0,1,0,0,0\n";
+    const std::string position = faults(read_poses(folder.write("p.csv", csv(rows)), model));
+    CHECK(mentions(position, "p.csv:3: column px: 1e158 is out of range: at most 1e30"));
+    const auto turned = folder.write("r.csv", "time,body,px[m],py[m],pz[m],rx,ry,rz\n0,crank,0,0,0,0,0,0\n1,crank,0,0,0,1e160,0,0\n");
+    CHECK(mentions(faults(read_poses(turned, model)), "r.csv:3: column rx: 1e160 is out of range: at most 1e30"));
+    const auto json = folder.write("p.json", R"({"fettle_poses": 1, "units": "mm", "rotation": "rotation_vector", "times": [0, 1],
+        "bodies": {"crank": [[0,0,0,0,0,0], [0,0,1e158,0,0,1e160]]}})");
+    CHECK(mentions(faults(read_poses(json, model)), "p.json#/bodies/crank/1/2: 1e+158 is out of range: at most 1e30"));
+}
+
 TEST_CASE("poses: every fault in a CSV has its line", "[stepper][poses]") {
     const Folder folder;
     const model::Model model = boxes();

@@ -91,7 +91,7 @@ TEST_CASE("A trajectory reads back bit for bit, with all that certifying needs",
     trajectory.time_start = 0.1;
     trajectory.steps[3].nodes[1][0].rotation_vector.x() = -0.0;
     trajectory.steps[3].nodes[1][0].rotation_vector.y() = 5e-324;
-    trajectory.steps[3].nodes[1][0].position.x() = 1.7976931348623157e308;
+    trajectory.steps[3].nodes[1][0].position.x() = 9.9999999999999989e29;
     trajectory.steps[3].nodes[1][0].position.y() = 9007199254740993.0 * 1024;
     const fs::path path = folder.path / "new" / "run.trajectory.json";
     REQUIRE(write_trajectory(path, trajectory, model, "some/a.scene.json").empty());

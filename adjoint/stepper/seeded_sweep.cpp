@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/stepper/seeded_sweep.hpp"
+
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+
+namespace fettle::adjoint::stepper {
+
+namespace {
+
+bool reaches_past_start(const TrajectoryGradient& seed) {
+    for (std::size_t t = 1; t < seed.pose_bar.size(); ++t) {
+        for (const Matrix34& bar : seed.pose_bar[t]) {
+            if (!bar.isZero(0)) return true;
+        }
+    }
+    return false;
+}
+
+void add_start(const TrajectoryGradient& seed, ModelGradient& sum) {
+    for (std::size_t i = 0; i < sum.bodies.size(); ++i) sum.bodies[i].pose_start_bar += seed.pose_bar[0][i];
+}
+
+}  // namespace
+
+Result<std::vector<ModelGradient>> seeded_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                                std::vector<Seeds> seeds) {
+    std::vector<ModelGradient> result;
+    std::vector<TrajectoryGradient> moving;
+    std::vector<std::size_t> of;
+    for (std::size_t k = 0; k < seeds.size(); ++k) {
+        result.push_back(std::move(seeds[k].model_bar));
+        if (!reaches_past_start(seeds[k].trajectory_bar)) {
+            add_start(seeds[k].trajectory_bar, result.back());
+            continue;
+        }
+        moving.push_back(std::move(seeds[k].trajectory_bar));
+        of.push_back(k);
+    }
+    if (moving.empty()) return result;
+    const Result<std::vector<ModelGradient>> parts = reverse_sweep(model, trajectory, moving);
+    if (!parts) return parts.errors();
+    for (std::size_t j = 0; j < of.size(); ++j) add(result[of[j]], (*parts)[j]);
+    return result;
+}
+
+}  // namespace fettle::adjoint::stepper

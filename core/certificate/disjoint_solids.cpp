@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/certificate/disjoint_solids.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/geometry/predicates.hpp"
+
+namespace fettle::core::certificate {
+namespace {
+
+constexpr double largest = 1e30;
+
+enum class Side { outside, inside, unknown };
+
+Interval3 placed(const IntervalMatrix& rotation, const Vector3& x) {
+    Interval3 out;
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = rotation[i][0] * Interval(x[0]) + rotation[i][1] * Interval(x[1]) + rotation[i][2] * Interval(x[2]);
+    return out;
+}
+
+Vector3 middle(const Interval3& x) { return {0.5 * (x[0].low + x[0].high), 0.5 * (x[1].low + x[1].high), 0.5 * (x[2].low + x[2].high)}; }
+
+Matrix3 middle(const IntervalMatrix& m) {
+    Matrix3 out;
+    for (int i = 0; i < 3; ++i) out.row(i) = middle(m[static_cast<std::size_t>(i)]);
+    return out;
+}
+
+// Both bodies where their paths begin, as seen from the place of one of them.
+struct Start {
+    IntervalMatrix inner, outer;
+    Interval3 offset;  // q_inner - q_outer
+};
+
+Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double lower) {
+    Interval3 world = placed(at.inner, x);
+    for (std::size_t k = 0; k < 3; ++k) world[k] = world[k] + at.offset[k];
+    const Vector3 near = middle(at.outer).inverse() * middle(world);
+    if (!near.allFinite() || !(near.cwiseAbs().maxCoeff() < largest)) return Side::unknown;
+    Interval3 off = placed(at.outer, near);
+    for (std::size_t k = 0; k < 3; ++k) off[k] = off[k] - world[k];
+    if (!(norm_bound(off) < lower)) return Side::unknown;
+    return is_in_material(near, outer) ? Side::inside : Side::outside;
+}
+
+// One part inside is enough; else one that is not known.
+Side any_inside(const SolidMesh& inner, const SolidMesh& outer, const Start& at, double lower) {
+    Side found = Side::outside;
+    if (outer.shells.empty()) return found;
+    for (const int v : inner.samples) {
+        const Side side = side_of(inner.mesh->vertices.col(v), at, outer, lower);
+        if (side == Side::inside) return side;
+        if (side == Side::unknown) found = side;
+    }
+    return found;
+}
+
+bool is_usable(const BodyPath& path) { return path.magnitude < largest; }  // false for what is not a number, too
+
+}  // namespace
+
+SolidMesh solid_mesh(const geometry::Mesh& mesh) {
+    SolidMesh solid;
+    solid.mesh = &mesh;
+    solid.is_closed = mesh.triangles.empty() || geometry::is_closed(mesh);
+    solid.samples = mesh.codimensional_points;
+    const bool has_shells = mesh.triangle_shell.size() == mesh.triangles.size();
+    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto shell = static_cast<std::size_t>(has_shells ? mesh.triangle_shell[t] : 0);
+        if (shell >= solid.shells.size()) solid.shells.resize(shell + 1);
+        SolidMesh::Shell& part = solid.shells[shell];
+        if (part.triangles.empty()) {
+            solid.samples.push_back(mesh.triangles[t][0]);
+            part.low = part.high = mesh.vertices.col(mesh.triangles[t][0]);
+        }
+        part.triangles.push_back(mesh.triangles[t]);
+        for (const int v : mesh.triangles[t]) {
+            on_triangle[static_cast<std::size_t>(v)] = true;
+            part.low = part.low.cwiseMin(mesh.vertices.col(v));
+            part.high = part.high.cwiseMax(mesh.vertices.col(v));
+        }
+    }
+    for (const geometry::Edge& edge : mesh.edges)
+        if (!on_triangle[static_cast<std::size_t>(edge[0])]) solid.samples.push_back(edge[0]);
+    return solid;
+}
+
+bool is_in_material(const Vector3& point, const SolidMesh& solid) {
+    std::vector<const SolidMesh::Shell*> around;
+    for (const SolidMesh::Shell& shell : solid.shells) {
+        if ((point.array() < shell.low.array()).any() || (point.array() > shell.high.array()).any()) continue;
+        if (geometry::point_in_solid(point, solid.mesh->vertices, shell.triangles)) around.push_back(&shell);
+    }
+    if (around.size() < 2) return !around.empty();
+    int winding = 0;
+    for (const SolidMesh::Shell* shell : around) winding += geometry::volume_sign(solid.mesh->vertices, shell->triangles);
+    return winding != 0;
+}
+
+Solids solids_of(const SolidMesh& a, const SolidMesh& b, const BodyPath& path_a, const BodyPath& path_b, double lower) {
+    if (!(lower > 0) || !is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
+    Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, {}}, back{at.outer, at.inner, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        at.offset[k] = path_a.place[k] - path_b.place[k];
+        back.offset[k] = -at.offset[k];
+    }
+    const Side a_in_b = b.is_closed ? any_inside(a, b, at, lower) : Side::outside;
+    const Side b_in_a = a.is_closed ? any_inside(b, a, back, lower) : Side::outside;
+    if (a_in_b == Side::inside || b_in_a == Side::inside) return Solids::overlap;
+    if (a_in_b == Side::unknown || b_in_a == Side::unknown) return Solids::unproven;
+    return a.is_closed && b.is_closed ? Solids::disjoint : Solids::not_closed;
+}
+
+}  // namespace fettle::core::certificate

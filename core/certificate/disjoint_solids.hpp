@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// Are two solids disjoint, and not one inside the other? Surfaces that stay apart do not tell: a ball inside a block is far from its
+/// faces. But surfaces that never meet leave every connected part of one body on the same side of the other for all the time, so that one
+/// instant decides, exactly:
+///   let x be a point of body a's surface in the world, and every point of b's surface farther than `lower` > 0 from it. Any point Z of b's
+///   frame with |R_b Z + q_b - x| < lower (verified in interval arithmetic) is inside b's solid if and only if x is, for the way from one
+///   to the other meets no surface; and whether Z is inside is decided by exact predicates (geometry/mesh_validity.hpp).
+/// A solid is what its closed shells wind around: inside one shell is inside; inside several, by the sum of their orientations, so that a
+/// cavity (a shell turned inwards) is not material. Loose edges and points bound nothing, but may lie inside.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::core::certificate {
+
+/// A mesh as what may be inside, and what something may be inside of.
+struct SolidMesh {
+    struct Shell {
+        std::vector<geometry::Triangle> triangles;
+        Vector3 low = Vector3::Zero(), high = Vector3::Zero();  ///< box
+    };
+    const geometry::Mesh* mesh = nullptr;  ///< must stay where it is
+    bool is_closed = false;                ///< or without triangles: then nothing can be inside
+    std::vector<Shell> shells;
+    std::vector<int> samples;  ///< one vertex of everything that hangs together
+};
+SolidMesh solid_mesh(const geometry::Mesh& mesh);
+
+/// Is the point, in the body's frame, in the material? Exact; false on the surface. Contract: closed.
+bool is_in_material(const Vector3& point, const SolidMesh& solid);
+
+/// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided where both paths begin.
+/// `not_closed` where what is not closed keeps the question open; `unproven` if lower is 0 or within rounding.
+Solids solids_of(const SolidMesh& a, const SolidMesh& b, const BodyPath& path_a, const BodyPath& path_b, double lower);
+
+}  // namespace fettle::core::certificate

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/pair_certification.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "fettle/core/clearance/crossing.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int most_instants = 32;  // at which solids are looked at
+
+double most_slack(const PairMotion& pair) {
+    double slack = 0;
+    for (const PairSegment& segment : pair.segments) slack = std::max(slack, segment.slack);
+    return slack;
+}
+
+// Is the distance something that arithmetic can tell? Else a search would halve for ever: numbers so large that rounding moves bodies by
+// more than a thousandth of what is to be told apart, or a million radians in one segment.
+bool is_measurable(const PairMotion& pair) {
+    return std::all_of(pair.segments.begin(), pair.segments.end(), [&](const PairSegment& segment) {
+        const double apart = (segment.a.poses[0].position - segment.b.poses[0].position).norm();
+        return segment.slack <= 1e-3 * (pair.a.radius() + pair.b.radius() + apart) && segment.a.speed <= 1e6 && segment.b.speed <= 1e6;
+    });
+}
+
+// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room; half of it after
+// thinning.
+double checking_room(const ClearanceOptions& options, const PairMotion& pair) { return options.tolerance / 8 + 8 * most_slack(pair); }
+
+// The least at the nodes of the path, as a tool that samples would see it; a good upper bound for a search over the motion, too.
+Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
+    search.sample_nodes = pair.segments.size() > 1;  // the motion is searched as well, which costs little more
+    search.nodes_only = !search.sample_nodes;
+    if (search.nodes_only) search.tolerance *= 0.01;
+    const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    return search.nodes_only ? found.nearest : found.sampled;
+}
+
+SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search,
+                              const std::optional<PairRecord>& record) {
+    search.enough = options.enough;
+    if (!record) {
+        search.sample_nodes = options.sample_nodes && pair.segments.size() > 1;
+        return search_pair(pair.a, pair.b, pair.segments, search);
+    }
+    search.tolerance *= 0.75;
+    search.proof = &record->certificate.segments;
+    SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    const double room = checking_room(options, pair);
+    found.lower = std::max(0.0, found.lower - room);
+    complete_certificate(pair, found, record->certificate);
+    thin_certificate(pair, record->a, record->b, 0.5 * room, record->certificate);
+    return found;
+}
+
+class PairCertification {
+public:
+    PairCertification(const PairMotion& pair, const PairRequest& request, const ClearanceOptions& options,
+                      const std::optional<PairRecord>& record)
+        : pair_(pair), options_(options), record_(record) {
+        result_.a = request.a;
+        result_.b = request.b;
+        result_.minimum = request.minimum;
+        search_.tolerance = options.tolerance;
+        search_.max_evaluations = options.max_evaluations;
+        search_.should_stop = options.should_stop;
+    }
+
+    PairClearance run(double contact_distance) {
+        measure();
+        if (found_.lower == 0 && found_.complete) {
+            look_closer();
+            settle();
+        } else {
+            decide_solids();
+        }
+        if (record_) record_->certificate.solids = result_.intersecting ? Solids::unproven : result_.solids;
+        tell_bounds();
+        if (result_.is_clash()) describe_clash();
+        judge(contact_distance);
+        if (options_.margin_curve) result_.margin = margin_curve(pair_, found_, search_);
+        return std::move(result_);
+    }
+
+private:
+    void measure() {
+        const bool apart = options_.sample_nodes && (record_ || pair_.segments.size() == 1);
+        if (apart) search_.seed = least_at_nodes(pair_, search_);
+        found_ = certified_search(pair_, options_, search_, record_);
+        result_.sampled = !options_.sample_nodes ? infinity : (apart ? *search_.seed : found_.sampled).pair.distance;
+        search_.seed.reset();
+    }
+
+    // Closer than the tolerance, which need not mean that they touch: a finer one may prove that they do not.
+    void look_closer() {
+        if (found_.intersecting || !(found_.upper > 64 * most_slack(pair_)) || !(found_.upper <= 10 * options_.tolerance)) return;
+        ClearanceOptions finer = options_;
+        SearchOptions search = search_;
+        finer.sample_nodes = false;
+        finer.tolerance = search.tolerance = 1e-2 * found_.upper;
+        search.max_evaluations /= 20;
+        const certificate::PairCertificate before = record_ ? record_->certificate : certificate::PairCertificate{};
+        SearchResult closer = certified_search(pair_, finer, search, record_);
+        if (closer.lower > found_.lower && closer.upper <= found_.upper) {
+            closer.sampled = found_.sampled;
+            found_ = closer;
+        } else if (closer.intersecting) {
+            found_.intersecting = true;
+            found_.nearest = closer.nearest;
+        }
+        if (record_ && !(found_.lower > 0)) record_->certificate = before;
+    }
+
+    void settle() {
+        if (found_.lower > 0) return decide_solids();
+        result_.intersecting = found_.intersecting;
+        if (!result_.intersecting) {
+            const CrossingResult crossing = find_crossing(pair_, search_);
+            if (crossing.crossing) {
+                result_.intersecting = true;
+                known_ = *crossing.crossing;
+            } else if (crossing.lower > 0 && !record_) {  // a certificate's claim stays what it is
+                found_.lower = std::min(crossing.lower, found_.upper);
+                return decide_solids();
+            }
+        } else {
+            known_ = found_.nearest;
+        }
+        if (!result_.intersecting && shares_a_ball()) result_.intersecting = true;
+    }
+
+    // Surfaces that never meet leave one thing to ask, whose answer never changes.
+    void decide_solids() {
+        const PairSegment& first = pair_.segments.front();
+        result_.solids = certificate::solids_of(
+            pair_.solid_a, pair_.solid_b, certificate::body_path(pair_.trajectory, first.step, first.segment, result_.a),
+            certificate::body_path(pair_.trajectory, first.step, first.segment, result_.b), found_.lower);
+        if (!record_ || result_.solids != Solids::overlap) return;
+        record_->certificate.lower = 0;
+        record_->certificate.segments.clear();
+    }
+
+    struct Instant {
+        int segment = 0;
+        double s = 0;
+    };
+
+    // Where they are nearest, where a crossing was found, and nodes of the path.
+    std::vector<Instant> instants() const {
+        std::vector<Instant> list{{found_.nearest.segment, found_.nearest.s}};
+        if (known_.segment >= 0) list.push_back({known_.segment, known_.s});
+        const auto count = static_cast<int>(pair_.segments.size());
+        const int nodes = std::min(count, most_instants - 3);
+        for (int i = 0; i < nodes; ++i) list.push_back({static_cast<int>(static_cast<long>(i) * count / nodes), 0});
+        list.push_back({count - 1, 1});
+        return list;
+    }
+
+    int cell_budget() const {
+        const double triangles = static_cast<double>(pair_.a.mesh->triangles.size() + pair_.b.mesh->triangles.size());
+        return static_cast<int>(std::clamp(1e8 / (triangles + 1), 100.0, 4000.0));
+    }
+
+    std::optional<Overlap> overlap_at(const Instant& at, int cells) const {
+        const PairSegment& segment = pair_.segments[static_cast<std::size_t>(at.segment)];
+        auto overlap = clearance::overlap_at({pair_.a, pair_.solid_a}, {pair_.b, pair_.solid_b}, segment, at.s, cells);
+        if (!overlap) return overlap;
+        overlap->time = time_of(pair_, at.segment, at.s);
+        overlap->center += kinematics::pose_at(segment.b.path, at.s).position;
+        return overlap;
+    }
+
+    // The deepest of the instants, roughly.
+    std::optional<Instant> deepest() const {
+        std::optional<Instant> where;
+        double depth = -1;
+        for (const Instant& at : instants()) {
+            const auto overlap = overlap_at(at, std::max(cell_budget() / most_instants, 64));
+            if (!overlap || !(overlap->depth_lower > depth)) continue;
+            depth = overlap->depth_lower;
+            where = at;
+        }
+        return where;
+    }
+
+    bool shares_a_ball() {
+        for (const Instant& at : instants()) {
+            const auto overlap = overlap_at(at, std::max(cell_budget() / most_instants, 64));
+            if (!overlap || !(overlap->depth_lower > 0)) continue;
+            known_ = found_.nearest;
+            known_.segment = at.segment;
+            known_.s = at.s;
+            result_.solids = Solids::overlap;
+            return true;
+        }
+        return false;
+    }
+
+    void tell_bounds() {
+        const bool inside = result_.solids == Solids::overlap;
+        result_.lower = result_.is_clash() ? 0 : found_.lower;
+        result_.upper = inside ? 0 : found_.upper;
+        result_.complete = found_.complete;
+        result_.witnesses =
+            all_witnesses(pair_, found_.nearest, result_.is_clash() ? 0 : options_.witness_tolerance, options_.max_witnesses, search_);
+        result_.witness = result_.witnesses.front();
+    }
+
+    void describe_clash() {
+        result_.clash_not_before = result_.clash_time = time_of(pair_, 0, 0);  // of one inside the other: from the start on
+        if (result_.intersecting && known_.segment >= 0 && pair_.segments.front().step >= 0) {
+            const FirstContact first = first_contact(pair_, known_, search_);
+            result_.clash_not_before = first.not_before;
+            result_.witness = result_.witnesses.front() = witness_of(pair_, first.encounter);
+            result_.clash_time = result_.witness.time;
+        }
+        if (!options_.measure_overlap) return;
+        if (const auto at = deepest()) result_.overlap = overlap_at(*at, cell_budget());
+    }
+
+    void judge(double contact_distance) {
+        const bool told = result_.lower > 0 && result_.solids != Solids::unproven;  // what is not closed is told as that
+        if (result_.is_clash()) {
+            result_.status = PairStatus::violated;
+        } else if (result_.minimum > 0) {
+            result_.status = told && result_.lower >= result_.minimum ? PairStatus::clear
+                             : result_.upper < result_.minimum        ? PairStatus::violated
+                                                                      : PairStatus::undecided;
+        } else if (!told) {
+            result_.status = PairStatus::undecided;
+        } else if (!(result_.upper >= contact_distance)) {
+            result_.status = PairStatus::contact;
+        } else {
+            result_.status = result_.complete || result_.lower >= contact_distance ? PairStatus::clear : PairStatus::undecided;
+        }
+        if (result_.status != PairStatus::undecided) return;
+        result_.reason = !result_.complete ? "the search was cut short, by a stop or its budget"
+                         : !(result_.lower > 0)
+                             ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
+                         : !told ? "whether one lies inside the other is a matter of rounding"
+                                 : "the minimum lies between the bounds: a smaller tolerance tells";
+    }
+
+    const PairMotion& pair_;
+    const ClearanceOptions& options_;
+    const std::optional<PairRecord>& record_;
+    SearchOptions search_;
+    SearchResult found_;
+    Encounter known_;  // in each other at its instant; segment -1: not known
+    PairClearance result_;
+};
+
+}  // namespace
+
+PairClearance unmeasured(const PairRequest& request, const std::string& reason) {
+    PairClearance result;
+    result.a = request.a;
+    result.b = request.b;
+    result.minimum = request.minimum;
+    result.upper = result.sampled = infinity;
+    result.complete = false;
+    result.reason = reason;
+    result.witnesses.push_back(result.witness);
+    return result;
+}
+
+PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, double contact_distance, const ClearanceOptions& options,
+                           const std::optional<PairRecord>& record) {
+    if (!is_measurable(pair)) return unmeasured(request, "its numbers are so large that rounding hides the distance");
+    return PairCertification(pair, request, options, record).run(contact_distance);
+}
+
+}  // namespace fettle::core::clearance

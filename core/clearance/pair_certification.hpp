@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// One pair of bodies, from the search for its least distance to a verdict (clearance.hpp does it for all of them):
+/// 1. bounds of the distance of the surfaces (pair_search.hpp), with a finer tolerance where the lower bound is 0 but need not be;
+/// 2. where it stays 0: do the surfaces cross somewhere along the path, or can that be refuted (crossing.hpp)? do the solids share a ball
+/// at
+///    one of some instants (overlap.hpp)? since when?
+/// 3. where it is greater than 0: do the solids lie apart, or one inside the other (certificate/disjoint_solids.hpp)?
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fettle/core/clearance/certificate_builder.hpp"
+#include "fettle/core/clearance/pair_details.hpp"
+
+namespace fettle::core::clearance {
+
+/// Of one pair, in the making.
+struct PairRecord {
+    certificate::PairCertificate& certificate;
+    const certificate::CertifiedBody &a, &b;
+};
+
+/// @param contact_distance  bodies as near as that push each other: dmin + dhat [m]
+PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, double contact_distance, const ClearanceOptions& options,
+                           const std::optional<PairRecord>& record);
+
+/// Undecided, with nothing known.
+PairClearance unmeasured(const PairRequest& request, const std::string& reason);
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// A requirement on a simulated design: lower <= quantity <= upper. The optimiser aims at bounds narrowed by a margin and sees the
+/// quantity's `value`; whether a design meets the requirement is judged by the proven side of the quantity alone: measured.lower >= lower
+/// and measured.upper <= upper. (Of a clearance `value` is the certificate's upper bound, which its witness attains up to rounding.)
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "fettle/design/description/quantity.hpp"
+
+namespace fettle::design::description {
+
+struct Bounds {
+    double lower = -std::numeric_limits<double>::infinity();  ///< SI
+    double upper = std::numeric_limits<double>::infinity();
+    double margin = 0;  ///< by which the optimiser keeps away from both; less than half their distance
+    double unit = 1;    ///< SI value of the unit that violations are counted in
+};
+inline double target_lower(const Bounds& bounds) { return bounds.lower + bounds.margin; }
+inline double target_upper(const Bounds& bounds) { return bounds.upper - bounds.margin; }
+
+struct Constraint {
+    std::string name;
+    Bounds bounds;
+    std::shared_ptr<const Quantity> quantity;
+};
+
+/// max(0, lower - measured.lower, measured.upper - upper) in `unit`s; at least 1 if the measurement has a fault. 0: the requirement is met,
+/// proven.
+double violation(const Bounds& bounds, const Measurement& measured);
+
+}  // namespace fettle::design::description

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// A design: a scene, what may be changed in it, what is wanted and what is required. Plain data, SI units; made by a program, or read from
+/// a file (reading/design_reader.hpp). Evaluation: problem/design_problem.hpp, which also says what is wrong with one.
+///
+///     Design design;
+///     design.scene.timestep = 0.01;
+///     core::scene::Body pin;
+///     pin.name = "pin";
+///     add_part(design, pin, shape);                       // the mesh is the shape's as drawn
+///     design.parameters.push_back({.name = "radius", .value = 5e-3, .lower = 4e-3, .upper = 6e-3,
+///                                  .moves = {{.target = MoveTarget::dimension, .body = 0, .dimension = "radius"}}});
+///     design.objective.push_back({.name = "mass", .quantity = mass});
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fettle/core/scene/scene.hpp"
+#include "fettle/design/description/constraint.hpp"
+#include "fettle/design/description/parameter.hpp"
+#include "fettle/design/description/quantity.hpp"
+#include "fettle/design/description/shape.hpp"
+
+namespace fettle::design::description {
+
+/// Contributes weight * value / unit to the objective, a plain number.
+struct ObjectiveTerm {
+    std::string name;
+    double weight = 1;
+    double unit = 1;  ///< SI value of the unit that `weight` is per
+    std::shared_ptr<const Quantity> quantity;
+};
+
+struct OptimiserSettings {
+    std::string name = "ipopt";  ///< optimisers/optimisation.hpp knows which there are
+    int max_evaluations = 100;
+    double tolerance = 1e-4;
+};
+
+struct Design {
+    core::scene::Scene scene;                          ///< as written, before any parameter moves it
+    std::vector<std::shared_ptr<const Shape>> shapes;  ///< per body; null, or beyond its end: the body's mesh stays as it is
+    int steps = 0;                                     ///< of the simulation
+    double clearance_tolerance = 1e-9;                 ///< upper - lower wanted of certified distances [m]
+    std::vector<Parameter> parameters;
+    std::vector<ObjectiveTerm> objective;
+    std::vector<Constraint> constraints;
+    OptimiserSettings optimiser;
+};
+
+/// The shape of a body; null if its mesh is fixed.
+inline const Shape* shape_of(const Design& design, int body) {
+    return static_cast<size_t>(body) < design.shapes.size() ? design.shapes[static_cast<size_t>(body)].get() : nullptr;
+}
+
+/// Adds a body with the shape as drawn for its mesh. @return its index, or what keeps the shape from being made.
+Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape);
+
+}  // namespace fettle::design::description

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/description/parameter.hpp"
+
+#include <cmath>
+
+namespace fettle::design::description {
+
+VectorX values_of(const std::vector<Parameter>& parameters) {
+    VectorX p(static_cast<Eigen::Index>(parameters.size()));
+    for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;
+    return p;
+}
+
+double from_si(double si, const Unit& unit) {
+    const double guess = si / to_si(1, unit);
+    if (to_si(guess, unit) == si) return guess;
+    double below = guess, above = guess;
+    for (int k = 0; k < 4; ++k) {
+        below = std::nextafter(below, -INFINITY);
+        above = std::nextafter(above, INFINITY);
+        if (to_si(below, unit) == si) return below;
+        if (to_si(above, unit) == si) return above;
+    }
+    return guess;
+}
+
+double representable(double si, const Unit& unit) { return to_si(from_si(si, unit), unit); }
+
+}  // namespace fettle::design::description

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/description/quantity.hpp"
+
+namespace fettle::design::description {
+
+Errors Quantity::check(const core::model::Model&, int) const { return {}; }
+
+Errors check_body(const core::model::Model& model, int body) {
+    if (body >= 0 && body < static_cast<int>(model.bodies.size())) return {};
+    return {{ErrorCode::out_of_range, "",
+             "there is no body " + std::to_string(body) + "; the scene has " + std::to_string(model.bodies.size()) + ", counted from 0"}};
+}
+
+}  // namespace fettle::design::description

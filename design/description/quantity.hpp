@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// A number that a simulated design has: what an objective sums and what a constraint bounds. Value and derivative are two functions, so
+/// that their times can be told apart; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
+/// twice. Those of the program: ../quantities. Add one: derive from Quantity, and hand it to the design (design.hpp).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fettle/adjoint/model_gradient.hpp"
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::design::description {
+
+using adjoint::Seeds;
+
+/// A design, simulated. The trajectory was computed from the model.
+struct Simulated {
+    const core::model::Model& model;
+    const core::stepper::Trajectory& trajectory;
+    double clearance_tolerance = 1e-9;  ///< upper - lower wanted of certified distances [m]
+};
+
+/// lower <= true value <= upper; `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
+struct Measurement {
+    double value = 0, lower = 0, upper = 0;                   ///< SI
+    std::optional<core::clearance::PairClearance> clearance;  ///< where the value comes from, if it is a certified distance
+    std::string fault;  ///< why no bound on it can be met, whatever the numbers (a body lies inside the other); empty: nothing of the kind
+};
+inline Measurement exact(double value) { return {value, value, value, std::nullopt, {}}; }
+
+class Quantity {
+public:
+    virtual ~Quantity() = default;
+
+    /// What it measures: a bound in a unit of another dimension is an error, and reports count in a unit of this one.
+    virtual Dimension dimension() const = 0;
+
+    /// Const and pure: called from several threads at once.
+    virtual Measurement value(const Simulated& simulated) const = 0;
+
+    /// Adds scale * d(value) to the seeds. `measured` is what value() returned for the same `simulated`.
+    virtual void add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const = 0;
+
+    /// What makes it meaningless for these bodies and this number of steps: a body that is not there, a volume of an open mesh. Asked once,
+    /// of the scene as written. `where` is left to the caller.
+    virtual Errors check(const core::model::Model& model, int steps) const;
+};
+
+/// The error of Quantity::check for an index that is none of the model's bodies.
+Errors check_body(const core::model::Model& model, int body);
+
+}  // namespace fettle::design::description

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// A part whose vertices are a function of named dimensions: what a parameter of kind `dimension` moves. The generators of ../shapes
+/// implement it (shapes/generated_part.hpp). Add one: derive from Shape, and hand it to the design (design.hpp).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::design::description {
+
+struct ShapeDimension {
+    std::string name;
+    double value = 0;  ///< of the part as drawn [m]
+};
+
+/// A part at given dimensions.
+struct ShapeInstance {
+    core::geometry::Mesh mesh;       ///< [m], in the body's file frame
+    std::vector<Matrix3X> jacobian;  ///< per dimension k: d vertices / d dimension k, 3 x n [1], exact
+};
+
+class Shape {
+public:
+    virtual ~Shape() = default;
+
+    /// Never empty, names unique.
+    virtual const std::vector<ShapeDimension>& dimensions() const = 0;
+
+    /// The part at other dimensions, one value for each of dimensions(), in their order [m]. A pure function; the mesh's connectivity is
+    /// the same for all values, its triangles bound a solid without self-intersection. Called from several threads at once.
+    /// Errors: values that make no valid part; `where` names the dimension.
+    virtual Result<ShapeInstance> at(const std::vector<double>& values) const = 0;
+};
+
+/// The part as drawn.
+Result<ShapeInstance> as_drawn(const Shape& shape);
+
+}  // namespace fettle::design::description

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/check_design.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace fettle::design::problem {
+
+namespace {
+
+using description::Design;
+using description::Move;
+using description::MoveTarget;
+using description::Parameter;
+using description::Shape;
+
+class DesignCheck {
+public:
+    DesignCheck(const Design& design, const core::model::Model& model) : design_(design), model_(model) {}
+
+    Errors run() {
+        if (design_.steps < 0) add(ErrorCode::out_of_range, "steps", "the number of time steps is not negative");
+        if (!(design_.clearance_tolerance > 0)) add(ErrorCode::out_of_range, "clearance_tolerance", "it must be greater than 0");
+        for (size_t i = 0; i < design_.shapes.size(); ++i) check_shape(static_cast<int>(i));
+        std::set<std::string> names;
+        for (const Parameter& parameter : design_.parameters) {
+            if (!names.insert(parameter.name).second) add(ErrorCode::inconsistent, place(parameter), "another parameter has this name");
+            check_parameter(parameter);
+        }
+        for (const auto& term : design_.objective) {
+            const std::string where = "objective `" + term.name + "`";
+            if (!std::isfinite(term.weight) || !(term.unit > 0)) add(ErrorCode::out_of_range, where, "a finite weight, and a unit above 0");
+            check_quantity(term.quantity.get(), where);
+        }
+        names.clear();
+        for (const auto& constraint : design_.constraints) {
+            const std::string where = "constraint `" + constraint.name + "`";
+            const description::Bounds& bounds = constraint.bounds;
+            if (!names.insert(constraint.name).second) add(ErrorCode::inconsistent, where, "another constraint has this name");
+            if (!(bounds.lower <= bounds.upper) || !(bounds.margin >= 0) || !(bounds.unit > 0))
+                add(ErrorCode::out_of_range, where, "its bounds are in order, its margin is not negative, its unit is above 0");
+            check_quantity(constraint.quantity.get(), where);
+        }
+        return errors_;
+    }
+
+private:
+    static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
+
+    void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
+
+    bool has_body(int body) const { return body >= 0 && body < static_cast<int>(design_.scene.bodies.size()); }
+
+    void check_shape(int body) {
+        const Shape* shape = description::shape_of(design_, body);
+        if (shape == nullptr) return;
+        if (!has_body(body)) return add(ErrorCode::out_of_range, "shapes", "there are more shapes than bodies");
+        const core::scene::Body& of = design_.scene.bodies[static_cast<size_t>(body)];
+        const std::string where = "shape of body `" + of.name + "`";
+        const Result<description::ShapeInstance> drawn = description::as_drawn(*shape);
+        if (!drawn) {
+            for (Error error : drawn.errors()) add(error.code, where + ": " + error.where, error.message);
+            return;
+        }
+        const auto vertices = drawn->mesh.vertices.cols();
+        const bool fits =
+            std::all_of(drawn->jacobian.begin(), drawn->jacobian.end(), [&](const Matrix3X& j) { return j.cols() == vertices; });
+        if (!fits || drawn->jacobian.size() != shape->dimensions().size() || shape->dimensions().empty())
+            add(ErrorCode::inconsistent, where,
+                "its Jacobian has a 3 x n matrix for each of its dimensions, n its vertices; it has one or more");
+        if (!core::geometry::have_same_shape(drawn->mesh, of.mesh))
+            add(ErrorCode::inconsistent, where, "the body's mesh is not the shape as drawn; let add_part make it");
+    }
+
+    void check_parameter(const Parameter& parameter) {
+        const bool in_order = parameter.lower <= parameter.value && parameter.value <= parameter.upper;
+        if (!in_order || !std::isfinite(parameter.lower) || !std::isfinite(parameter.upper))
+            add(ErrorCode::out_of_range, place(parameter), "its bounds are finite, and its value lies within them");
+        for (const Move& move : parameter.moves) {
+            if (!has_body(move.body)) {
+                add(ErrorCode::out_of_range, place(parameter), "it moves body " + std::to_string(move.body) + ", which is not there");
+            } else {
+                check_move(parameter, move);
+            }
+        }
+    }
+
+    void check_move(const Parameter& parameter, const Move& move) {
+        const core::scene::Body& body = design_.scene.bodies[static_cast<size_t>(move.body)];
+        if (move.target == MoveTarget::dimension) {
+            const Shape* shape = description::shape_of(design_, move.body);
+            const bool known = shape != nullptr && std::any_of(shape->dimensions().begin(), shape->dimensions().end(),
+                                                               [&](const auto& d) { return d.name == move.dimension; });
+            if (!known)
+                add(ErrorCode::out_of_range, place(parameter),
+                    "body `" + body.name + "` has no shape with a dimension \"" + move.dimension + "\"");
+        }
+        if (move.target == MoveTarget::motor_rate && (move.dof < 0 || move.dof > 5 || !body.prescribed[static_cast<size_t>(move.dof)]))
+            add(ErrorCode::inconsistent, place(parameter), "body `" + body.name + "` has no motor on that coordinate");
+    }
+
+    void check_quantity(const description::Quantity* quantity, const std::string& where) {
+        if (quantity == nullptr) return add(ErrorCode::missing_key, where, "it has no quantity");
+        for (Error error : quantity->check(model_, design_.steps)) add(error.code, where, error.message);
+    }
+
+    const Design& design_;
+    const core::model::Model& model_;
+    Errors errors_;
+};
+
+}  // namespace
+
+Errors check_design(const Design& design, const core::model::Model& model) { return DesignCheck(design, model).run(); }
+
+}  // namespace fettle::design::problem

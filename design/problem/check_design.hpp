@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// What is wrong with a design that a program made. (Readers tell of a file's faults with their place in it.)
+#pragma once
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/design/description/design.hpp"
+
+namespace fettle::design::problem {
+
+/// Every fault of the parts but the scene, which build_model judges: bodies, dimensions and motors that are not there, bounds that are not
+/// in order, names that are not unique, a shape whose part as drawn is not its body's mesh, and what quantities say of themselves.
+/// `where` names the parameter, term or constraint.
+/// @param model  Of the scene as written.
+Errors check_design(const description::Design& design, const core::model::Model& model);
+
+}  // namespace fettle::design::problem

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/design_problem.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "fettle/adjoint/stepper/seeded_sweep.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/design/problem/check_design.hpp"
+
+namespace fettle::design::problem {
+
+namespace {
+
+using core::model::Model;
+using description::Design;
+using description::Simulated;
+
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+std::string first_reason(const Errors& errors) {
+    std::string reason = (errors.front().where.empty() ? "" : errors.front().where + ": ") + errors.front().message;
+    if (errors.size() > 1) reason += " (and " + std::to_string(errors.size() - 1) + " more)";
+    return reason;
+}
+
+}  // namespace
+
+Result<DesignProblem> DesignProblem::create(Design design) {
+    Result<Model> model = core::model::build_model(design.scene);
+    if (!model) return model.errors();
+    const Errors errors = check_design(design, *model);
+    if (!errors.empty()) return errors;
+    DesignProblem problem;
+    for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
+    problem.kappa_ = model->kappa;
+    // Their defaults are functions of the scene's size, which parameters change.
+    design.scene.dhat = model->dhat;
+    design.scene.velocity_tolerance = model->velocity_tolerance;
+    problem.design_ = std::move(design);
+    return problem;
+}
+
+Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
+    core::model::BuildOptions options;
+    options.reference_points = reference_points_;
+    options.kappa = kappa_;
+    options.check_meshes = false;  // the scene's were checked; generators make valid solids only
+    return core::model::build_model(scene, options);
+}
+
+Result<Model> DesignProblem::model_at(const VectorX& p) const {
+    const Result<MovedScene> moved = move_scene(design_, p);
+    if (!moved) return moved.errors();
+    return build(moved->scene);
+}
+
+DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions& options) const {
+    const Stopwatch forward;
+    DesignEvaluation evaluation;
+    const Result<MovedScene> moved = move_scene(design_, p);
+    if (!moved) {
+        evaluation.reason = first_reason(moved.errors());
+        return evaluation;
+    }
+    Result<Model> model = build(moved->scene);
+    if (!model) {
+        evaluation.reason = first_reason(model.errors());
+        return evaluation;
+    }
+    evaluation.model = std::make_shared<const Model>(std::move(model).value());
+    simulate(options, evaluation);
+    if (!evaluation.reason.empty()) {
+        evaluation.forward_seconds = forward.seconds();
+        return evaluation;
+    }
+    measure(evaluation);
+    evaluation.usable = true;
+    evaluation.forward_seconds = forward.seconds();
+    if (options.gradients) {
+        const Stopwatch backward;
+        differentiate(*moved, evaluation);
+        evaluation.backward_seconds = backward.seconds();
+    }
+    return evaluation;
+}
+
+// Sets the reason where it did not end well.
+void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const {
+    core::stepper::SimulationOptions simulation;
+    simulation.steps = design_.steps;
+    simulation.for_gradient = true;  // also without gradients: the same numbers for the same design
+    simulation.on_step = options.on_step;
+    simulation.should_stop = options.should_stop;
+    evaluation.simulation = core::stepper::simulate(*evaluation.model, simulation);
+    const core::stepper::SimulationReport& report = evaluation.simulation.report;
+    if (report.status == core::stepper::SimulationStatus::ok) return;
+    evaluation.interrupted = report.status == core::stepper::SimulationStatus::interrupted;
+    evaluation.reason = report.message.empty() ? core::stepper::to_string(report.status) : report.message;
+}
+
+void DesignProblem::measure(DesignEvaluation& evaluation) const {
+    const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
+    for (const description::ObjectiveTerm& term : design_.objective) {
+        evaluation.terms.push_back(term.quantity->value(simulated));
+        evaluation.objective += term.weight * evaluation.terms.back().value / term.unit;
+    }
+    for (const auto& constraint : design_.constraints) {
+        evaluation.constraints.push_back(constraint.quantity->value(simulated));
+        evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
+    }
+}
+
+void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const {
+    const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
+    const auto zero = [&] { return adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())); };
+    std::vector<adjoint::Seeds> seeds{zero()};
+    for (size_t k = 0; k < design_.objective.size(); ++k) {
+        const description::ObjectiveTerm& term = design_.objective[k];
+        term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, seeds[0]);
+    }
+    for (size_t i = 0; i < design_.constraints.size(); ++i) {
+        seeds.push_back(zero());
+        design_.constraints[i].quantity->add_seeds(simulated, evaluation.constraints[i], 1, seeds.back());
+    }
+    const Result<std::vector<adjoint::ModelGradient>> gradients =
+        adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
+    if (!gradients) {
+        evaluation.usable = false;
+        evaluation.reason = first_reason(gradients.errors());
+        return;
+    }
+    const int n = parameter_count();
+    evaluation.gradient = pull_back(moved, *evaluation.model, (*gradients)[0], n);
+    evaluation.jacobian.resize(static_cast<Eigen::Index>(design_.constraints.size()), n);
+    for (Eigen::Index i = 0; i < evaluation.jacobian.rows(); ++i) {
+        evaluation.jacobian.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i) + 1], n).transpose();
+    }
+}
+
+}  // namespace fettle::design::problem

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+/// Owns the chain from parameters to numbers and their gradients, and holds no mathematics of its own:
+///   parameters -> parts and poses -> Scene -> Model -> simulate -> objective and constraints -> seeds -> reverse sweep -> d/d(parameters)
+/// Fixed once, from the scene as written, so that they are no hidden function of the parameters: reference points, barrier stiffness kappa,
+/// activation distance, solver tolerance. The same design has the same numbers, bit for bit, whether a program made it or a file.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/design/description/design.hpp"
+#include "fettle/design/problem/moved_scene.hpp"
+
+namespace fettle::design::problem {
+
+struct EvaluateOptions {
+    bool gradients = true;
+    std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
+    std::function<bool()> should_stop;                            ///< optional
+};
+
+/// A design, simulated and measured.
+struct DesignEvaluation {
+    bool usable = false;
+    std::string reason;        ///< why not: the part that cannot be made, the bodies that intersect, what blocks the motor ...
+    bool interrupted = false;  ///< not usable, because should_stop said so
+    std::shared_ptr<const core::model::Model> model;    ///< null if it could not be built
+    core::stepper::Simulation simulation;               ///< as far as it came
+    std::vector<description::Measurement> terms;        ///< per objective term, SI
+    std::vector<description::Measurement> constraints;  ///< per constraint, SI
+    double objective = 0;                               ///< sum of weight * value / unit
+    double violation = 0;                               ///< largest of the constraints' violations (description/constraint.hpp)
+    VectorX gradient;                                   ///< d objective / d parameters, SI; empty unless asked for
+    MatrixX jacobian;                                   ///< d constraint values / d parameters, SI
+    double forward_seconds = 0;                         ///< parts, model, simulation, values
+    double backward_seconds = 0;                        ///< seeds, sweep, chain
+};
+
+/// Const after creation: evaluate may be called from several threads at once.
+class DesignProblem {
+public:
+    /// Errors: the scene as written cannot be built (its bodies intersect, a mesh is open ...), and what check_design finds.
+    static Result<DesignProblem> create(description::Design design);
+
+    const description::Design& design() const { return design_; }
+    int parameter_count() const { return static_cast<int>(design_.parameters.size()); }
+    /// That all designs are simulated with [N/m].
+    double kappa() const { return kappa_; }
+
+    /// The model at parameter values p (SI).
+    Result<core::model::Model> model_at(const VectorX& p) const;
+
+    /// Deterministic. A trial that cannot be built or simulated is not usable, and says why; no number stands in for it.
+    DesignEvaluation evaluate(const VectorX& p, const EvaluateOptions& options = {}) const;
+
+private:
+    DesignProblem() = default;
+    Result<core::model::Model> build(const core::scene::Scene& scene) const;
+    void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
+    void measure(DesignEvaluation& evaluation) const;
+    void differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const;
+
+    description::Design design_;
+    std::vector<Vector3> reference_points_;
+    double kappa_ = 0;
+};
+
+}  // namespace fettle::design::problem

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/optimiser_problem.hpp"
+
+#include <cmath>
+
+namespace fettle::design::problem {
+
+optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const EvaluateOptions& options) {
+    const description::Design& design = design_problem.design();
+    const auto n = static_cast<Eigen::Index>(design.parameters.size()), m = static_cast<Eigen::Index>(design.constraints.size());
+    optimisers::Problem problem;
+    problem.start = description::values_of(design.parameters);
+    problem.lower.resize(n);
+    problem.upper.resize(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        problem.lower[k] = design.parameters[static_cast<size_t>(k)].lower;
+        problem.upper[k] = design.parameters[static_cast<size_t>(k)].upper;
+    }
+    problem.representable = [&design](const VectorX& p) {
+        VectorX q = p;
+        for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = description::representable(p[k], design.parameters[static_cast<size_t>(k)].unit);
+        return q;
+    };
+    problem.constraint_lower.resize(m);
+    problem.constraint_upper.resize(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+        problem.constraint_lower[i] = description::target_lower(design.constraints[static_cast<size_t>(i)].bounds);
+        problem.constraint_upper[i] = description::target_upper(design.constraints[static_cast<size_t>(i)].bounds);
+    }
+    problem.evaluate = [&design_problem, options](const VectorX& p) { return optimiser_evaluation(design_problem.evaluate(p, options)); };
+    return problem;
+}
+
+optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) {
+    if (evaluation.interrupted) throw optimisers::Interrupted();
+    optimisers::Evaluation e;
+    e.usable = evaluation.usable;
+    e.reason = evaluation.reason;
+    if (!e.usable) return e;
+    e.objective = evaluation.objective;
+    e.gradient = evaluation.gradient;
+    e.constraints.resize(static_cast<Eigen::Index>(evaluation.constraints.size()));
+    for (size_t i = 0; i < evaluation.constraints.size(); ++i)
+        e.constraints[static_cast<Eigen::Index>(i)] = evaluation.constraints[i].value;
+    e.jacobian = evaluation.jacobian;
+    e.violation = evaluation.violation;
+    if (std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
+        std::isfinite(e.violation))
+        return e;
+    optimisers::Evaluation failed;
+    failed.reason = "a value or derivative is not finite";
+    return failed;
+}
+
+}  // namespace fettle::design::problem

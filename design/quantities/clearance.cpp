@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/clearance.hpp"
+
+#include <algorithm>
+
+#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+
+namespace fettle::design::quantities {
+
+using core::clearance::PairClearance;
+using description::Measurement;
+using description::Simulated;
+
+namespace {
+
+core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int first, int last) {
+    core::stepper::Trajectory part;
+    part.time_start = whole.time_start + first * whole.timestep;
+    part.timestep = whole.timestep;
+    part.body_names = whole.body_names;
+    part.poses.assign(whole.poses.begin() + first, whole.poses.begin() + last + 1);
+    part.steps.assign(whole.steps.begin() + first, whole.steps.begin() + last);
+    return part;
+}
+
+// Surfaces apart, solids not.
+bool one_lies_inside(const PairClearance& pair) { return pair.solids == core::certificate::Solids::overlap && !pair.intersecting; }
+
+}  // namespace
+
+std::pair<int, int> window_steps(int steps, int window, int windows) {
+    const auto edge = [&](int w) { return static_cast<int>(static_cast<long>(w) * steps / windows); };
+    return {edge(window), std::max(edge(window + 1), edge(window) + 1)};
+}
+
+PairClearance Clearance::certify(const Simulated& s) const {
+    core::clearance::ClearanceOptions options;
+    options.tolerance = s.clearance_tolerance;
+    options.sample_nodes = false;
+    options.measure_overlap = false;
+    options.motion = range_.motion;
+    const std::vector<core::clearance::PairRequest> request{{range_.a, range_.b, minimum_}};
+    if (!range_.motion || range_.windows <= 1) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
+    const auto [first, last] = window_steps(static_cast<int>(s.trajectory.steps.size()), range_.window, range_.windows);
+    PairClearance pair = core::clearance::certify_clearance(s.model, part_of(s.trajectory, first, last), request, options).front();
+    if (pair.witness.step >= 0) pair.witness.step += first;
+    return pair;
+}
+
+Measurement Clearance::value(const Simulated& s) const {
+    const PairClearance pair = certify(s);
+    const std::string names =
+        "`" + s.model.bodies[static_cast<size_t>(range_.a)].name + "` and `" + s.model.bodies[static_cast<size_t>(range_.b)].name + "`";
+    if (one_lies_inside(pair)) {
+        const double inside = -pair.witness.distance;
+        return {inside, inside, inside, pair, "of " + names + " one lies inside the other's material"};
+    }
+    Measurement measured{pair.upper, pair.lower, pair.upper, pair, {}};
+    if (pair.intersecting) measured.fault = names + " pass through each other";
+    if (pair.lower > 0 && pair.solids == core::certificate::Solids::unproven)
+        measured.fault = "of " + names + " one may lie inside the other's material: " + pair.reason;
+    return measured;
+}
+
+void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
+    const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
+    adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *measured.clearance, sign * scale, seeds.trajectory_bar, seeds.model_bar);
+}
+
+Errors Clearance::check(const core::model::Model& model, int steps) const {
+    Errors errors = description::check_body(model, range_.a);
+    for (const Error& error : description::check_body(model, range_.b)) errors.push_back(error);
+    if (range_.a == range_.b) errors.push_back({ErrorCode::inconsistent, "", "a clearance is between two bodies; both are the same"});
+    if (range_.motion && steps < 1) errors.push_back({ErrorCode::out_of_range, "", "a clearance over the motion needs a step"});
+    if (range_.windows < 1 || range_.window < 0 || range_.window >= range_.windows)
+        errors.push_back({ErrorCode::out_of_range, "", "the windows of a motion are counted from 0, and are at least 1"});
+    return errors;
+}
+
+}  // namespace fettle::design::quantities

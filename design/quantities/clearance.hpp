@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+/// Certified clearance of two bodies [m], as assembled or over the motion (or a window of it: the least distance over a long motion jumps
+/// between times that are far apart, and is not smooth there; as one quantity per window each follows its own). As assembled, of a pin in
+/// a bore drawn concentric, it is the play of the fit (half the diametral one), as long as the fit is where the two are closest.
+///
+/// Of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the other's material
+/// (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. Of bodies that are not closed, which have
+/// no inside, it is the distance of the surfaces.
+#pragma once
+
+#include <utility>
+
+#include "fettle/design/description/quantity.hpp"
+
+namespace fettle::design::quantities {
+
+struct ClearanceRange {
+    int a = 0, b = 0;             ///< bodies
+    bool motion = false;          ///< over the trajectory; false: as assembled
+    int window = 0, windows = 1;  ///< which of how many equal parts of the motion
+};
+
+class Clearance : public description::Quantity {
+public:
+    /// @param minimum  What the certificate's verdict (PairClearance::status) is about [m]; changes no bound.
+    explicit Clearance(const ClearanceRange& range, double minimum = 0) : range_(range), minimum_(minimum) {}
+
+    Dimension dimension() const override { return Dimension::length; }
+    description::Measurement value(const description::Simulated& simulated) const override;
+    void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
+                   description::Seeds& seeds) const override;
+    Errors check(const core::model::Model& model, int steps) const override;
+
+private:
+    core::clearance::PairClearance certify(const description::Simulated& simulated) const;
+
+    ClearanceRange range_;
+    double minimum_;
+};
+
+/// Steps [first, last) of window w of n: [floor(w steps / n), floor((w + 1) steps / n)), and one step where that is empty (n > steps).
+std::pair<int, int> window_steps(int steps, int window, int windows);
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/marker_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/design/quantities/marker.hpp"
+
+namespace fettle::design::quantities {
+
+using description::Measurement;
+using description::Seeds;
+using description::Simulated;
+
+MarkerPath::MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times)
+    : body_(body), point_(point), targets_(std::move(targets)), times_(std::move(times)) {
+    FETTLE_ASSERT(!targets_.empty(), "a path of no points");
+    FETTLE_ASSERT(times_.empty() || times_.size() == targets_.size(), "one time per target, or none");
+}
+
+MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Vector3& target) const {
+    Place best;
+    double best_distance = std::numeric_limits<double>::infinity();
+    for (size_t t = 0; t + 1 < path.size(); ++t) {
+        const Vector3 along = path[t + 1] - path[t];
+        const double length_squared = along.squaredNorm();
+        const double s = length_squared > 0 ? std::clamp(along.dot(target - path[t]) / length_squared, 0.0, 1.0) : 0.0;
+        const Vector3 position = path[t] + s * along;
+        const double distance = (position - target).squaredNorm();
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = {static_cast<int>(t), s, position};
+        }
+    }
+    return best;
+}
+
+std::vector<MarkerPath::Place> MarkerPath::places(const Simulated& s) const {
+    std::vector<Vector3> path;
+    const int last = static_cast<int>(s.trajectory.poses.size()) - 1;
+    for (int t = 0; t <= last; ++t) path.push_back(marker_position(s, t, body_, point_));
+    FETTLE_ASSERT(last >= 1, "a marker's path needs a step");
+    std::vector<Place> result;
+    for (size_t k = 0; k < targets_.size(); ++k) {
+        if (times_.empty()) {
+            result.push_back(nearest(path, targets_[k]));
+            continue;
+        }
+        const double steps = (times_[k] - s.trajectory.time_start) / s.trajectory.timestep;
+        const int t = std::clamp(static_cast<int>(std::floor(steps)), 0, last - 1);
+        const double fraction = std::clamp(steps - t, 0.0, 1.0);
+        const auto i = static_cast<size_t>(t);
+        result.push_back({t, fraction, path[i] + fraction * (path[i + 1] - path[i])});
+    }
+    return result;
+}
+
+Measurement MarkerPath::value(const Simulated& simulated) const {
+    const std::vector<Place> found = places(simulated);
+    double sum = 0;
+    for (size_t k = 0; k < targets_.size(); ++k) sum += (found[k].position - targets_[k]).squaredNorm();
+    return description::exact(sum / static_cast<double>(targets_.size()));
+}
+
+void MarkerPath::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
+    const std::vector<Place> found = places(simulated);
+    for (size_t k = 0; k < targets_.size(); ++k) {
+        const Vector3 gradient = scale * 2 / static_cast<double>(targets_.size()) * (found[k].position - targets_[k]);
+        add_marker_seed(simulated, found[k].index, body_, point_, (1 - found[k].fraction) * gradient, seeds);
+        add_marker_seed(simulated, found[k].index + 1, body_, point_, found[k].fraction * gradient, seeds);
+    }
+}
+
+Errors MarkerPath::check(const core::model::Model& model, int steps) const {
+    Errors errors = description::check_body(model, body_);
+    if (steps < 1) errors.push_back({ErrorCode::out_of_range, "", "a marker's path needs a step"});
+    return errors;
+}
+
+}  // namespace fettle::design::quantities

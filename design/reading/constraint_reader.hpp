@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// Reads the `constraints` of a design file. Part of design_reader.hpp.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/design/description/constraint.hpp"
+#include "fettle/design/reading/read_context.hpp"
+
+namespace fettle::design::reading {
+
+/// @param clearance_margin  By which the optimiser keeps away from bounds on lengths [m].
+/// A bound is a number in the unit of the quantity's dimension (ReadContext::unit), or a string with a unit of that dimension.
+/// Faults go to the node's document.
+std::vector<description::Constraint> read_constraints(const core::files::JsonNode& node, const ReadContext& context,
+                                                      double clearance_margin);
+
+}  // namespace fettle::design::reading

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/design_reader.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/design/reading/constraint_reader.hpp"
+#include "fettle/design/reading/parameter_reader.hpp"
+#include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+
+namespace fettle::design::reading {
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::files::JsonDocument;
+using core::files::JsonNode;
+
+std::vector<std::string_view> views(const std::vector<std::string>& names) { return {names.begin(), names.end()}; }
+
+/// Reads one file. Faults go to the document; values read after a fault are never used.
+class DesignReader {
+public:
+    DesignReader(JsonDocument& document, const DesignReadOptions& options) : document_(document), options_(options) {}
+
+    Result<DesignFile> read() {
+        const JsonNode root = document_.root();
+        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "simulation", "parameters", "objective",
+                         "constraints", "optimiser", "output"});
+        root["$schema"].string();
+        root["description"].string();
+        root.require("fettle_design").integer(1, 1);
+        file_.path = document_.path();
+        const auto unit = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
+        if (unit) file_.length_unit = *find_unit(*unit);
+        if (!read_scene_file(root.require("scene"))) return all_errors();
+        make_shapes();
+        read_simulation(root["simulation"]);
+        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep};
+        design_.parameters = read_parameters(root.require("parameters"), context, design_.shapes, file_.length_unit);
+        read_objective(root["objective"], context);
+        const double margin = read_optimiser(root["optimiser"]);
+        design_.constraints = read_constraints(root["constraints"], context, margin);
+        file_.output = root["output"].string().value_or("");
+        if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
+        if (!document_.errors().empty()) return all_errors();
+        file_.warnings = document_.warnings();
+        file_.warnings.insert(file_.warnings.end(), design_.scene.warnings.begin(), design_.scene.warnings.end());
+        return std::move(file_);
+    }
+
+private:
+    // Names of bodies mean nothing without the scene: its faults end the reading, together with those found so far.
+    bool read_scene_file(const JsonNode& node) {
+        const auto name = node.string();
+        if (!name) return false;
+        file_.scene_path = (fs::path(file_.path).parent_path() / *name).string();
+        Result<core::scene::Scene> scene = core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs));
+        if (!scene) {
+            scene_errors_ = scene.errors();
+            return false;
+        }
+        design_.scene = std::move(scene).value();
+        return true;
+    }
+
+    // A part that the scene has scaled is none that a parameter can move.
+    void make_shapes() {
+        for (const core::scene::Body& body : design_.scene.bodies) {
+            design_.shapes.emplace_back();
+            if (!body.shape) continue;
+            const auto part = generated_part(*body.shape);
+            if (!part) continue;  // the scene's own reading has said so
+            const auto drawn = description::as_drawn(**part);
+            if (drawn && drawn->mesh.vertices == body.mesh.vertices) design_.shapes.back() = *part;
+        }
+    }
+
+    void read_simulation(const JsonNode& node) {
+        const double end_time = design_.scene.end_time.value_or(1000 * design_.scene.timestep);
+        design_.steps = static_cast<int>(std::lround(end_time / design_.scene.timestep));
+        if (!node.exists()) return;
+        node.allow_keys({"steps", "clearance_tolerance"});
+        design_.steps = node["steps"].integer(1).value_or(design_.steps);
+        design_.clearance_tolerance =
+            node["clearance_tolerance"].length(to_si(1, file_.length_unit), core::files::positive).value_or(design_.clearance_tolerance);
+    }
+
+    void read_objective(const JsonNode& node, const ReadContext& context) {
+        std::set<std::string> names;
+        for (const JsonNode& entry : node.elements()) {
+            const auto type_name = entry.require("type").choice(quantity_names());
+            if (!type_name) continue;
+            const QuantityType& type = *find_quantity_type(*type_name);
+            std::vector<std::string_view> keys{"type", "name", "weight"};
+            keys.insert(keys.end(), type.keys.begin(), type.keys.end());
+            entry.allow_keys(keys);
+            description::ObjectiveTerm term;
+            term.quantity = type.read(entry, context);
+            term.weight = entry["weight"].number().value_or(1);
+            term.name = unique_name(entry["name"].string().value_or(type.default_name(entry)), names);
+            if (!term.quantity) continue;
+            term.unit = context.unit(term.quantity->dimension());
+            design_.objective.push_back(std::move(term));
+        }
+    }
+
+    /// @return clearance_margin [m]
+    double read_optimiser(const JsonNode& node) {
+        constexpr double default_margin = 2e-6;
+        if (!node.exists()) return default_margin;
+        node.allow_keys({"name", "max_evaluations", "tolerance", "clearance_margin"});
+        description::OptimiserSettings& settings = design_.optimiser;
+        settings.name = node["name"].choice(views(optimisers::optimiser_names())).value_or(settings.name);
+        settings.max_evaluations = node["max_evaluations"].integer(1).value_or(settings.max_evaluations);
+        settings.tolerance = node["tolerance"].number({0, 1, true}).value_or(settings.tolerance);
+        return node["clearance_margin"].length(to_si(1, file_.length_unit), core::files::not_negative).value_or(default_margin);
+    }
+
+    Errors all_errors() const {
+        Errors errors = document_.errors();
+        errors.insert(errors.end(), scene_errors_.begin(), scene_errors_.end());
+        return errors;
+    }
+
+    JsonDocument& document_;
+    const DesignReadOptions& options_;
+    DesignFile file_;
+    description::Design& design_ = file_.design;
+    Errors scene_errors_;
+};
+
+}  // namespace
+
+Result<DesignFile> parse_design(const std::string& text, const std::string& path, const DesignReadOptions& options) {
+    Result<JsonDocument> document = JsonDocument::parse(text, path);
+    if (!document) return document.errors();
+    if (!is_design(*document)) {
+        return Error{ErrorCode::missing_key, document->root().where(), "not a design: `fettle_design` (its version, 1) is not there"};
+    }
+    Result<DesignFile> file = DesignReader(*document, options).read();
+    if (file) file->text = text;
+    return file;
+}
+
+Result<DesignFile> read_design(const std::string& path, const DesignReadOptions& options) {
+    const Result<std::string> text = core::files::read_file(path);
+    if (!text) return text.errors();
+    return parse_design(*text, path, options);
+}
+
+bool is_design(JsonDocument& document) {
+    const JsonNode root = document.root();
+    return root.is_object() && root["fettle_design"].exists();
+}
+
+bool is_design_file(const std::string& path) {
+    Result<JsonDocument> document = JsonDocument::read(path);
+    return document && is_design(*document);
+}
+
+}  // namespace fettle::design::reading

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// Reads design files (*.design.json), described by design.schema.json beside this file. Rewriting: design_text.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/design/description/design.hpp"
+
+namespace fettle::design::reading {
+
+/// A design and what its file says besides.
+struct DesignFile {
+    description::Design design;
+    std::string path, text;  ///< of the file, and its contents
+    std::string scene_path;
+    Unit length_unit;    ///< of the file
+    std::string output;  ///< folder, absolute or relative to the working directory; empty: not said
+    std::vector<std::string> warnings;
+};
+
+struct DesignReadOptions {
+    std::vector<std::string> mesh_dirs;  ///< also looked in for meshes
+};
+
+/// Reads a design and its scene. @return the design, or every fault of both files, each with its file and JSON pointer; bodies, dimensions
+/// and keys that do not exist come with the nearest that does.
+Result<DesignFile> read_design(const std::string& path, const DesignReadOptions& options = {});
+/// The same of a text in hand; `path` is the file's name in messages, and says where the scene is looked for.
+Result<DesignFile> parse_design(const std::string& text, const std::string& path, const DesignReadOptions& options = {});
+
+/// Is this file a design (has it the key `fettle_design`), rather than a scene? False if it cannot be read.
+bool is_design_file(const std::string& path);
+bool is_design(core::files::JsonDocument& document);
+
+}  // namespace fettle::design::reading

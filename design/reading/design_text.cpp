@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/design_text.hpp"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
+
+namespace fettle::design::reading {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// 10 and 10.0 are the same number, however they are written.
+void make_numbers_equal(nlohmann::json& json) {
+    if (json.is_number()) json = json.get<double>();
+    if (!json.is_structured()) return;
+    for (auto& child : json) make_numbers_equal(child);
+}
+
+// Everything of a scene that is not in its own text: meshes, which come from files or generators.
+void append_bytes(std::string& text, const void* data, size_t size) { text.append(static_cast<const char*>(data), size); }
+
+}  // namespace
+
+std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory) {
+    auto json = nlohmann::ordered_json::parse(file.text);
+    for (size_t k = 0; k < file.design.parameters.size(); ++k) {
+        const description::Parameter& parameter = file.design.parameters[k];
+        auto& entry = json["parameters"][k];
+        const double value = values[static_cast<Eigen::Index>(k)];
+        // A value at a bound is written as the bound is: a neighbour with the same SI value could lie outside.
+        entry["value"] = value == parameter.lower   ? entry["lower"].get<double>()
+                         : value == parameter.upper ? entry["upper"].get<double>()
+                                                    : description::from_si(value, parameter.unit);
+    }
+    std::error_code failure;
+    const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
+    json["scene"] = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
+    json.erase("output");  // it was relative to the first file's folder
+    return json.dump(2) + "\n";
+}
+
+std::string design_hash(const DesignFile& file) {
+    auto json = nlohmann::json::parse(file.text);
+    for (const char* key : {"$schema", "description", "optimiser", "output", "scene"}) json.erase(key);
+    make_numbers_equal(json);
+    std::string all = std::string(core::base::version()) + "\n" + json.dump() + "\n";
+    if (const Result<std::string> scene = core::files::read_file(file.scene_path)) all += *scene;
+    for (const core::scene::Body& body : file.design.scene.bodies) {
+        append_bytes(all, body.mesh.vertices.data(), static_cast<size_t>(body.mesh.vertices.size()) * sizeof(double));
+        append_bytes(all, body.mesh.triangles.data(), body.mesh.triangles.size() * sizeof(core::geometry::Triangle));
+    }
+    return core::files::hash_of(all);
+}
+
+}  // namespace fettle::design::reading

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// What is done with the text of a design file: rewritten with other values, and hashed.
+#pragma once
+
+#include <string>
+
+#include "fettle/design/reading/design_reader.hpp"
+
+namespace fettle::design::reading {
+
+/// The design file with other parameter values (SI), to be written in folder `directory` (for the relative path of the scene). All else is
+/// as it was, comments of `description` included. Values that are representable (description/parameter.hpp)
+/// read back as the same bits.
+std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory);
+
+/// Hash of all that an evaluation's numbers depend on: the program's version, the design without optimiser and output, the scene and its
+/// meshes.
+std::string design_hash(const DesignFile& file);
+
+}  // namespace fettle::design::reading

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/quantity_reader.hpp"
+
+#include "fettle/core/scene/mass_kind.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/stroke.hpp"
+
+namespace fettle::design::reading {
+
+namespace {
+
+using core::files::JsonNode;
+using description::Quantity;
+
+// For default names only: a wrong type is reported by the reading proper.
+std::string text(const JsonNode& node) { return node.is_string() ? *node.string() : std::string("?"); }
+
+std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto axis = context.axis(node.require("axis"));
+    const auto target = node["target"].length(context.length_unit, core::files::not_negative);
+    if (!body || !axis) return nullptr;
+    return std::make_shared<quantities::Stroke>(*body, *axis, target);
+}
+
+std::vector<Vector3> read_points(const JsonNode& node, double unit) {
+    std::vector<Vector3> points;
+    for (const JsonNode& entry : node.elements()) {
+        if (const auto point = entry.length3(unit)) points.push_back(*point);
+    }
+    if (node.is_array() && points.empty()) node.fail(ErrorCode::out_of_range, "a path needs a point");
+    return points;
+}
+
+std::vector<double> read_times(const JsonNode& node, size_t points, double end_time) {
+    std::vector<double> times;
+    for (const JsonNode& entry : node.elements()) {
+        if (const auto time = entry.number({0, end_time, false})) times.push_back(*time);
+    }
+    if (node.is_array() && node.elements().size() != points) {
+        node.fail(ErrorCode::inconsistent,
+                  "a path has one time for each of its " + std::to_string(points) + " points, or no `times` (free timing)");
+    }
+    return times;
+}
+
+std::shared_ptr<const Quantity> read_marker_path(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto point = node.require("point").length3(context.length_unit);
+    const std::vector<Vector3> targets = read_points(node.require("points"), context.length_unit);
+    const std::vector<double> times = read_times(node["times"], targets.size(), context.end_time);
+    if (!body || !point || targets.empty() || (!times.empty() && times.size() != targets.size())) return nullptr;
+    return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times);
+}
+
+std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
+    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
+    const bool motion = node["motion"].boolean().value_or(false);
+    if (!a || !b) return nullptr;
+    if (*a == *b) {
+        node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
+        return nullptr;
+    }
+    return std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = *a, .b = *b, .motion = motion});
+}
+
+std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContext& context) {
+    std::vector<int> bodies;
+    const JsonNode list = node.require("bodies");
+    for (const JsonNode& entry : list.elements()) {
+        const auto index = context.body(entry);
+        if (!index) continue;
+        bodies.push_back(*index);
+        const core::scene::Body& body = context.scene.bodies[static_cast<size_t>(*index)];
+        if (core::scene::centre_of_mass(body.mesh, body.mass_kind)) continue;
+        entry.fail(ErrorCode::mesh_invalid, "the mesh of body " + entry.shown() + " has nothing for a density in " +
+                                                core::scene::density_unit(body.mass_kind) + " (of an open mesh there is no volume)");
+    }
+    if (list.is_array() && bodies.empty()) list.fail(ErrorCode::out_of_range, "the mass of no body; name at least one");
+    return std::make_shared<quantities::Mass>(context.scene, bodies);
+}
+
+std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
+std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
+std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
+std::string clearance_name(const JsonNode& node) {
+    const bool motion = node["motion"].is_bool() && *node["motion"].boolean();
+    return "clearance " + text(node["a"]) + ":" + text(node["b"]) + (motion ? " over the motion" : "");
+}
+std::string mass_name(const JsonNode& node) {
+    std::string name = "mass";
+    if (!node["bodies"].is_array()) return name;
+    for (const JsonNode& body : node["bodies"].elements()) name += (name == "mass" ? " " : "+") + text(body);
+    return name;
+}
+
+}  // namespace
+
+const std::vector<QuantityType>& quantity_table() {
+    static const std::vector<QuantityType> table{{"stroke", {"body", "axis", "target"}, read_stroke, stroke_name},
+                                                 {"marker_path", {"body", "point", "points", "times"}, read_marker_path, marker_name},
+                                                 {"play", {"a", "b"}, read_clearance, play_name},
+                                                 {"clearance", {"a", "b", "motion"}, read_clearance, clearance_name},
+                                                 {"mass", {"bodies"}, read_mass, mass_name}};
+    return table;
+}
+
+std::vector<std::string_view> quantity_names() {
+    std::vector<std::string_view> names;
+    for (const QuantityType& type : quantity_table()) names.push_back(type.name);
+    return names;
+}
+
+const QuantityType* find_quantity_type(std::string_view name) {
+    for (const QuantityType& type : quantity_table()) {
+        if (type.name == name) return &type;
+    }
+    return nullptr;
+}
+
+}  // namespace fettle::design::reading

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+/// The kinds of quantity (design/quantities/) by the `type` that a design file calls them, and their reading.
+/// Add one: a row here, the keys in design.schema.json.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/design/description/quantity.hpp"
+#include "fettle/design/reading/read_context.hpp"
+
+namespace fettle::design::reading {
+
+struct QuantityType {
+    std::string_view name;
+    std::vector<std::string_view> keys;  ///< besides those common to all terms and constraints
+    /// @return nothing if something was wrong; the faults are with the document.
+    std::shared_ptr<const description::Quantity> (*read)(const core::files::JsonNode& node, const ReadContext& context);
+    std::string (*default_name)(const core::files::JsonNode& node);  ///< "stroke piston"
+};
+const std::vector<QuantityType>& quantity_table();
+std::vector<std::string_view> quantity_names();
+const QuantityType* find_quantity_type(std::string_view name);
+
+}  // namespace fettle::design::reading

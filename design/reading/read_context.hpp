@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// What reading a part of a design file needs to know of the rest: the scene, the file's unit, the time simulated.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/scene/scene.hpp"
+
+namespace fettle::design::reading {
+
+struct ReadContext {
+    const core::scene::Scene& scene;
+    double length_unit = 1;  ///< of the file [m]
+    double end_time = 0;     ///< of the simulation [s]
+
+    /// Index of the body that a node names; unknown_key with the nearest name otherwise.
+    std::optional<int> body(const core::files::JsonNode& node) const;
+    /// A direction, normalised. Errors: zero.
+    std::optional<Vector3> axis(const core::files::JsonNode& node) const;
+    /// SI value of the unit that plain numbers of this dimension are in: lengths and areas by the file's unit, masses in grams, else SI.
+    double unit(Dimension dimension) const;
+};
+
+/// `wanted`, or "wanted 2", "wanted 3", ... if it is taken; takes it.
+std::string unique_name(const std::string& wanted, std::set<std::string>& taken);
+
+}  // namespace fettle::design::reading

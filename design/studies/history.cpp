@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/history.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+
+namespace fettle::design::studies {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+Json to_json(const VectorX& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
+
+VectorX to_vector(const Json& json) {
+    const auto values = json.get<std::vector<double>>();
+    return Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Json named(const std::vector<std::pair<std::string, double>>& values) {
+    Json json = Json::object();
+    for (const auto& [name, value] : values) json[name] = value;
+    return json;
+}
+
+std::vector<std::pair<std::string, double>> named_values(const Json& json) {
+    std::vector<std::pair<std::string, double>> values;
+    for (const auto& [name, value] : json.items()) values.emplace_back(name, value.get<double>());
+    return values;
+}
+
+std::string header_line(const HistoryHeader& header) {
+    Json json;
+    json["fettle_history"] = 1;
+    json["design"] = header.design_hash;
+    json["program"] = core::base::version();
+    json["parameters"] = header.parameters;
+    json["constraints"] = header.constraints;
+    return json.dump() + "\n";
+}
+
+std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, int number) {
+    const optimisers::Evaluation& e = entry.evaluation;
+    Json json;
+    json["evaluation"] = number;
+    json["usable"] = e.usable;
+    if (!e.usable) json["reason"] = e.reason;
+    Json parameters = Json::object();
+    for (size_t k = 0; k < header.parameters.size(); ++k) parameters[header.parameters[k]] = entry.point[static_cast<Eigen::Index>(k)];
+    json["parameters"] = parameters;
+    if (e.usable) {
+        json["objective"] = e.objective;
+        json["gradient"] = to_json(e.gradient);
+        json["constraints"] = to_json(e.constraints);
+        Json rows = Json::array();
+        for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i) rows.push_back(to_json(e.jacobian.row(i).transpose()));
+        json["jacobian"] = rows;
+        json["violation"] = e.violation;
+        json["terms"] = named(entry.terms);
+        json["certified"] = named(entry.certified);
+    }
+    json["forward_seconds"] = entry.forward_seconds;
+    json["backward_seconds"] = entry.backward_seconds;
+    return json.dump() + "\n";
+}
+
+HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {
+    const Json json = Json::parse(line);
+    HistoryEntry entry;
+    const auto n = static_cast<Eigen::Index>(header.parameters.size());
+    entry.point.resize(n);
+    for (Eigen::Index k = 0; k < n; ++k) entry.point[k] = json.at("parameters").at(header.parameters[static_cast<size_t>(k)]).get<double>();
+    optimisers::Evaluation& e = entry.evaluation;
+    e.usable = json.at("usable").get<bool>();
+    entry.forward_seconds = json.at("forward_seconds").get<double>();
+    entry.backward_seconds = json.at("backward_seconds").get<double>();
+    if (!e.usable) {
+        e.reason = json.at("reason").get<std::string>();
+        return entry;
+    }
+    e.objective = json.at("objective").get<double>();
+    e.gradient = to_vector(json.at("gradient"));
+    e.constraints = to_vector(json.at("constraints"));
+    e.jacobian.resize(static_cast<Eigen::Index>(json.at("jacobian").size()), n);
+    for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i)
+        e.jacobian.row(i) = to_vector(json.at("jacobian")[static_cast<size_t>(i)]).transpose();
+    e.violation = json.at("violation").get<double>();
+    entry.terms = named_values(json.at("terms"));
+    entry.certified = named_values(json.at("certified"));
+    const auto m = static_cast<Eigen::Index>(header.constraints.size());
+    if (e.gradient.size() != n || e.constraints.size() != m || e.jacobian.rows() != m)
+        throw std::runtime_error("sizes do not match the header");
+    return entry;
+}
+
+Errors header_errors(const std::string& line, const HistoryHeader& header, const std::string& path) {
+    const Json json = Json::parse(line, nullptr, false);
+    if (json.is_discarded() || !json.is_object() || json.value("fettle_history", 0) != 1) {
+        return {{ErrorCode::parse, path + ": line 1", "this is not a history of fettle; give --out another folder"}};
+    }
+    if (json.value("design", "") != header.design_hash || json.value("parameters", std::vector<std::string>{}) != header.parameters ||
+        json.value("constraints", std::vector<std::string>{}) != header.constraints) {
+        return {{ErrorCode::inconsistent, path,
+                 "this is the history of another design, scene or version (hash " + json.value("design", std::string("none")) + ", now " +
+                     header.design_hash + "); run without --resume to start anew (this file is kept), or give --out another folder"}};
+    }
+    return {};
+}
+
+std::string system_message() { return std::strerror(errno); }
+
+std::string bits_of(const VectorX& x) {
+    std::string key(static_cast<size_t>(x.size()) * sizeof(double), '\0');
+    std::memcpy(key.data(), x.data(), key.size());
+    return key;
+}
+
+// history.jsonl -> the first of history.1.jsonl, history.2.jsonl, ... that is free
+Result<std::string> rename_away(const fs::path& path) {
+    for (int k = 1;; ++k) {
+        const fs::path target = path.parent_path() / ("history." + std::to_string(k) + ".jsonl");
+        if (fs::exists(target)) continue;
+        std::error_code failure;
+        fs::rename(path, target, failure);
+        if (failure) return Error{ErrorCode::file_unreadable, path.string(), "cannot be renamed: " + failure.message()};
+        return target.string();
+    }
+}
+
+}  // namespace
+
+Result<History> History::open(const std::string& directory, const HistoryHeader& header, HistoryMode mode) {
+    History history;
+    history.header_ = header;
+    const fs::path path = fs::path(directory) / "history.jsonl";
+    std::error_code failure;
+    fs::create_directories(directory, failure);
+    if (failure) return Error{ErrorCode::file_unreadable, directory, "cannot be made: " + failure.message()};
+    // Locked before it is renamed or read: a history that another run is still writing is left alone.
+    history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (history.file_ < 0) return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
+    if (::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
+        return Error{ErrorCode::file_unreadable, path.string(),
+                     "another process is writing this history; wait for it, or give --out another folder"};
+    }
+    if (mode == HistoryMode::fresh && fs::file_size(path, failure) > 0) {
+        const Result<std::string> kept = rename_away(path);
+        if (!kept) return kept.errors();
+        history.kept_as_ = *kept;
+        ::close(history.file_);
+        history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+        if (history.file_ < 0 || ::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
+            return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
+        }
+    }
+    Errors errors = history.read_existing(path.string());
+    if (!errors.empty()) return errors;
+    return history;
+}
+
+Errors History::read_existing(const std::string& path) {
+    const Result<std::string> text = core::files::read_file(path);
+    if (!text) return text.errors();
+    size_t begin = 0;
+    for (int line_number = 1;; ++line_number) {
+        const size_t end = text->find('\n', begin);
+        if (end == std::string::npos) break;  // what follows was cut off by a kill
+        const std::string line = text->substr(begin, end - begin);
+        if (line_number == 1) {
+            Errors errors = header_errors(line, header_, path);
+            if (!errors.empty()) return errors;
+        } else {
+            try {
+                replayed_.push_back(parsed_entry(line, header_));
+            } catch (const std::exception& e) {
+                // A last line can be whole and yet damaged, when a machine lost power; earlier ones cannot.
+                if (end + 1 == text->size()) break;
+                return {{ErrorCode::parse, path + ": line " + std::to_string(line_number), std::string("damaged: ") + e.what()}};
+            }
+        }
+        begin = end + 1;
+    }
+    entries_ = static_cast<int>(replayed_.size());
+    if (begin < text->size() && ::ftruncate(file_, static_cast<off_t>(begin)) != 0) {
+        return {{ErrorCode::file_unreadable, path, "cannot be cut back to its last whole line: " + system_message()}};
+    }
+    if (begin > 0) return {};
+    try {
+        write_line(header_line(header_));
+    } catch (const std::exception& e) {
+        return {{ErrorCode::file_unreadable, path, e.what()}};
+    }
+    return {};
+}
+
+void History::write_line(const std::string& line) {
+    size_t done = 0;
+    while (done < line.size()) {
+        const ssize_t written = ::write(file_, line.data() + done, line.size() - done);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw std::runtime_error("the history cannot be written: " + system_message());
+        done += static_cast<size_t>(written);
+    }
+    if (::fsync(file_) != 0 && errno != EINVAL) throw std::runtime_error("the history cannot be flushed to the disk: " + system_message());
+}
+
+void History::append(const HistoryEntry& entry) { write_line(entry_line(entry, header_, ++entries_)); }
+
+History::~History() {
+    if (file_ >= 0) ::close(file_);
+}
+
+History::History(History&& other) noexcept { *this = std::move(other); }
+
+History& History::operator=(History&& other) noexcept {
+    std::swap(file_, other.file_);
+    std::swap(entries_, other.entries_);
+    std::swap(header_, other.header_);
+    std::swap(replayed_, other.replayed_);
+    std::swap(kept_as_, other.kept_as_);
+    return *this;
+}
+
+std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate) {
+    std::map<std::string, optimisers::Evaluation> known;
+    for (const HistoryEntry& entry : history.replayed()) known[bits_of(entry.point)] = entry.evaluation;
+    return [&history, known = std::move(known), evaluate = std::move(evaluate)](const VectorX& point) {
+        const auto found = known.find(bits_of(point));
+        if (found != known.end()) return found->second;
+        const HistoryEntry entry = evaluate(point);
+        history.append(entry);
+        return entry.evaluation;
+    };
+}
+
+}  // namespace fettle::design::studies

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+/// The history of an optimisation: DIR/history.jsonl, a header line, then one JSON object per evaluation, appended and flushed to the disk
+/// as it happens. Doubles are written so that they read back bit for bit. A resumed run is the same run again, its evaluations answered
+/// from here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
+///   header      fettle_history 1, design (hash of all that an evaluation depends on), program, parameters, constraints (names)
+///   evaluation  evaluation (1, 2, ...), usable, reason, parameters (by name, SI), objective, gradient, constraints, jacobian (rows),
+///               violation, terms (by name), certified (lower bounds by constraint), forward_seconds, backward_seconds
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/design/optimisers/problem.hpp"
+
+namespace fettle::design::studies {
+
+struct HistoryHeader {
+    std::string design_hash;  ///< of everything that an evaluation's numbers depend on, the program's version included
+    std::vector<std::string> parameters, constraints;
+};
+
+struct HistoryEntry {
+    VectorX point;
+    optimisers::Evaluation evaluation;
+    std::vector<std::pair<std::string, double>> terms;      ///< of the objective, for people
+    std::vector<std::pair<std::string, double>> certified;  ///< lower bounds, for people
+    double forward_seconds = 0, backward_seconds = 0;
+};
+
+enum class HistoryMode {
+    fresh,  ///< an existing history is kept under another name (history.1.jsonl, ...)
+    resume  ///< an existing history is replayed; none is a fresh start
+};
+
+/// Owns the open file, which it locks against a second process.
+class History {
+public:
+    /// Errors: a history of another design (inconsistent), one that is in use by another process or cannot be written
+    /// (file_unreadable), a damaged line other than the last (parse). A last line cut off by a kill is dropped.
+    static Result<History> open(const std::string& directory, const HistoryHeader& header, HistoryMode mode);
+    ~History();
+    History(History&&) noexcept;
+    History& operator=(History&&) noexcept;
+
+    /// What an earlier run left, in its order.
+    const std::vector<HistoryEntry>& replayed() const { return replayed_; }
+
+    /// Writes one line and waits until it is on the disk. Throws std::runtime_error if it cannot: going on would lose what is computed.
+    void append(const HistoryEntry& entry);
+
+    /// Of the file that `fresh` renamed away; empty if there was none.
+    const std::string& kept_as() const { return kept_as_; }
+
+private:
+    History() = default;
+    void write_line(const std::string& line);
+    Errors read_existing(const std::string& path);
+
+    int file_ = -1;
+    int entries_ = 0;
+    HistoryHeader header_;
+    std::vector<HistoryEntry> replayed_;
+    std::string kept_as_;
+};
+
+/// Wraps problem.evaluate: a point that the history has (by the bits of its coordinates) is answered from it, others are computed by
+/// `evaluate` and appended. The history must outlive the function.
+std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate);
+
+}  // namespace fettle::design::studies

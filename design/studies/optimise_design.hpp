@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+/// Optimises a design: optimiser, final evaluation with certificates, what limits it. In memory: nothing is read or written but the
+/// history, if one is given. Of a design file, with its files: optimise_file.hpp.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/history.hpp"
+
+namespace fettle::design::studies {
+
+struct OptimiseOptions {
+    std::string optimiser;                                        ///< empty: what the design says
+    std::function<bool()> should_stop;                            ///< optional
+    std::function<void(const std::string&)> narrate;              ///< optional: a line per evaluation
+    std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
+    History* history = nullptr;                                   ///< optional: answers what it has, and keeps what is computed
+};
+
+struct OptimiseOutcome {
+    optimisers::OptimiserReport report;
+    problem::DesignEvaluation final;                        ///< of report.point, without gradients; not usable if the start was not
+    std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
+    std::vector<std::string> limits;  ///< what holds an infeasible design back: violated requirements, parameters at their bounds
+    int replayed = 0;                 ///< evaluations that the history answered
+};
+
+/// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.
+/// Errors: the optimiser's name.
+Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});
+
+/// An evaluation as the history keeps it. Throws optimisers::Interrupted if it was.
+HistoryEntry history_entry(const description::Design& design, const VectorX& p, const problem::DesignEvaluation& evaluation);
+
+}  // namespace fettle::design::studies

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+/// Designs without a file: shapes and quantities that a program derives, evaluated, differentiated and optimised in memory.
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "fettle/design/problem/check_design.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/stroke.hpp"
+#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/studies/optimise_design.hpp"
+#include "fettle/tests/design/small_problem.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design;
+using namespace fettle::design::description;
+using namespace fettle::tests::design_support;
+using problem::DesignEvaluation;
+using problem::DesignProblem;
+
+// A truncated pyramid about the origin: half widths at the foot and at the top, height.
+class Frustum : public Shape {
+public:
+    Frustum(double foot, double top, double height) : dimensions_{{"foot", foot}, {"top", top}, {"height", height}} {}
+    const std::vector<ShapeDimension>& dimensions() const override { return dimensions_; }
+    Result<ShapeInstance> at(const std::vector<double>& d) const override {
+        if (!(d[0] > 0 && d[1] > 0 && d[2] > 0)) return Error{ErrorCode::out_of_range, "foot", "a frustum's dimensions are above 0"};
+        ShapeInstance part;
+        part.mesh = tests::support::box_mesh(Vector3::Constant(-1), Vector3::Constant(1));
+        part.mesh.name = "frustum";
+        part.jacobian.assign(3, Matrix3X::Zero(3, 8));
+        for (Eigen::Index i = 0; i < 8; ++i) {
+            const Vector3 corner = part.mesh.vertices.col(i);
+            const size_t end = corner.z() < 0 ? 0 : 1;
+            part.jacobian[end].col(i).head<2>() = corner.head<2>();
+            part.jacobian[2](2, i) = corner.z() / 2;
+            part.mesh.vertices.col(i) << d[end] * corner.x(), d[end] * corner.y(), d[2] * corner.z() / 2;
+        }
+        return part;
+    }
+
+private:
+    std::vector<ShapeDimension> dimensions_;
+};
+
+// Mean over the configurations of (height of the reference point + weight times its mesh's first vertex' height in the body).
+class MeanHeight : public Quantity {
+public:
+    explicit MeanHeight(int body) : body_(static_cast<size_t>(body)) {}
+    Dimension dimension() const override { return Dimension::length; }
+    Measurement value(const Simulated& s) const override {
+        double sum = 0;
+        for (const auto& poses : s.trajectory.poses) sum += poses[body_].position.z();
+        return exact(sum / count(s) + 0.25 * s.model.bodies[body_].mesh.vertices(2, 7));
+    }
+    void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
+        for (auto& bar : seeds.trajectory_bar.pose_bar) bar[body_](2, 3) += scale / count(s);
+        seeds.model_bar.bodies[body_].vertices_bar(2, 7) += 0.25 * scale;
+    }
+
+private:
+    static double count(const Simulated& s) { return static_cast<double>(s.trajectory.poses.size()); }
+    size_t body_;
+};
+
+core::scene::Body held(const std::string& name, core::scene::BodyType type) {
+    core::scene::Body body;
+    body.name = name;
+    body.type = type;
+    for (auto& coordinate : body.prescribed) coordinate = core::scene::MotionCurve{};
+    return body;
+}
+
+Parameter parameter(const std::string& name, double value, double lower, double upper, std::vector<Move> moves, const char* unit = "mm") {
+    return {name, value, lower, upper, *find_unit(unit), std::move(moves)};
+}
+
+Move dimension(int body, const std::string& name) { return {.target = MoveTarget::dimension, .body = body, .dimension = name}; }
+
+// A frustum falls 0.02 mm onto a plate that a motor tilts.
+Design tilted_plate() {
+    Design design;
+    design.scene.gravity = Vector3(0, 0, -9.81);
+    design.scene.timestep = 0.005;
+    design.scene.dhat = 1e-4;
+    design.steps = 12;
+    core::scene::Body plate = held("plate", core::scene::BodyType::kinematic_body);
+    plate.mesh = tests::support::box_mesh(Vector3(-0.03, -0.03, -0.01), Vector3(0.03, 0.03, 0));
+    plate.prescribed[4]->rate = 0.7;
+    design.scene.bodies.push_back(plate);
+    core::scene::Body part;
+    part.name = "part";
+    part.pose.position = Vector3(2e-3, 1e-3, 4.12e-3);
+    part.angular_velocity = Vector3(8, 5, 0);
+    REQUIRE(add_part(design, part, std::make_shared<Frustum>(8e-3, 5e-3, 8e-3)).value() == 1);
+    design.parameters = {
+        parameter("height", 8e-3, 6e-3, 12e-3,
+                  {dimension(1, "height"),
+                   {.target = MoveTarget::position, .body = 1, .direction = {0, 0, 0.5}, .position_offset = {0, 0, 1.2e-4}}}),
+        parameter("foot", 8e-3, 6e-3, 10e-3, {dimension(1, "foot")}), parameter("top", 5e-3, 2e-3, 9e-3, {dimension(1, "top")}),
+        parameter("speed", 0.7, 0.2, 1, {{.target = MoveTarget::motor_rate, .body = 0, .dof = 4}}, "rad/s")};
+    design.objective = {{"height", -1, 1e-3, std::make_shared<MeanHeight>(1)},
+                        {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
+    Bounds at_least;
+    at_least.lower = 3.9e-3;
+    at_least.unit = 1e-3;
+    design.constraints = {{"height", at_least, std::make_shared<MeanHeight>(1)}};
+    design.optimiser = {"mma", 6, 1e-4};
+    return design;
+}
+
+bool same_bits(const VectorX& a, const VectorX& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), static_cast<size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differentiated, optimised in memory") {
+    const auto problem = DesignProblem::create(tilted_plate());
+    REQUIRE(problem);
+    const VectorX p = values_of(problem->design().parameters);
+    const DesignEvaluation at = problem->evaluate(p);
+    INFO(at.reason);
+    REQUIRE(at.usable);
+    int contacts = 0;
+    for (const auto& step : at.simulation.report.steps) contacts += step.contacts;
+    CHECK(contacts > 0);
+    const studies::CheckReport report = studies::check_gradients(*problem, p, at);
+    CHECK(report.failures.empty());
+    REQUIRE(report.rows.size() == 2 * 4);
+    for (const studies::CheckRow& row : report.rows) {
+        INFO(row.quantity << " " << row.parameter << ": " << row.adjoint << " against " << row.difference << " +- "
+                          << row.difference_error);
+        CHECK(row.relative_error < 1e-6);
+        CHECK(row.adjoint != 0);
+    }
+    const auto outcome = studies::optimise_design(*problem);
+    REQUIRE(outcome);
+    CHECK(outcome->report.evaluations > 2);
+    CHECK(outcome->report.best.objective < at.objective);
+    CHECK(outcome->final.usable);
+    const auto again = studies::optimise_design(*problem);
+    CHECK(same_bits(again->report.point, outcome->report.point));
+}
+
+TEST_CASE("a design read from a file and one made in memory have the same bits") {
+    const DesignFolder folder;
+    const Design read = file_of(folder).design;
+
+    Design made;
+    made.scene.gravity = Vector3(0, 0, to_si(-9810, *find_unit("mm/s^2")));
+    made.scene.timestep = 0.005;
+    made.scene.dhat = 1e-4;
+    made.steps = 20;
+    const auto box = [](double x, double y, double z) {
+        return shapes::GeneratedPart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
+    };
+    core::scene::Body table = held("table", core::scene::BodyType::kinematic_body);
+    table.pose.position = Vector3(0, 0, -5e-3);
+    table.prescribed[4]->rate = to_si(40, *find_unit("deg/s"));
+    REQUIRE(add_part(made, table, box(60e-3, 60e-3, 10e-3)));
+    core::scene::Body cube;
+    cube.name = "cube";
+    cube.angular_velocity = read.scene.bodies[1].angular_velocity;
+    cube.pose.position = Vector3(3e-3, 1e-3, 5.12e-3);
+    REQUIRE(add_part(made, cube, box(20e-3, 12e-3, 10e-3)));
+    core::scene::Body wall = held("wall", core::scene::BodyType::static_body);
+    wall.pose.position = Vector3(40e-3, 0, 0);
+    REQUIRE(add_part(made, wall, box(5e-3, 60e-3, 60e-3)));
+    made.scene.gravity = read.scene.gravity;
+    made.parameters = {
+        parameter("height", 10e-3, 6e-3, 14e-3,
+                  {dimension(1, "size_z"),
+                   {.target = MoveTarget::position, .body = 1, .direction = {0, 0, 0.5}, .position_offset = {0, 0, 1.2e-4}}}),
+        parameter("width", 20e-3, 15e-3, 30e-3, {dimension(1, "size_x")}),
+        parameter("place", 3e-3, -5e-3, 20e-3, {{.target = MoveTarget::position, .body = 1, .direction = {1, 0, 0}}}),
+        parameter("density", 1000, 500, 2000, {{.target = MoveTarget::density, .body = 1}}, "kg/m^3"),
+        parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")),
+                  {{.target = MoveTarget::motor_rate, .body = 0, .dof = 4}}, "deg/s")};
+    const double mm = 1e-3;
+    using Points = std::vector<Vector3>;
+    made.objective = {
+        {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(made.scene, std::vector<int>{1})},
+        {"timed", 0.1, mm * mm,
+         std::make_shared<quantities::MarkerPath>(1, Vector3(3e-3, 2e-3, 1e-3), Points{{4e-3, 2e-3, 7e-3}, {8e-3, 3e-3, 6e-3}},
+                                                  std::vector<double>{0.052, 0.1})},
+        {"free", 0.1, mm * mm,
+         std::make_shared<quantities::MarkerPath>(1, Vector3(0, 0, 5e-3), Points{{3e-3, 1e-3, 11e-3}}, std::vector<double>{})},
+        {"play", 0.5, mm, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = 1, .b = 2})},
+        {"stroke", 1, mm * mm, std::make_shared<quantities::Stroke>(1, Vector3::UnitZ(), 1e-3)}};
+    Bounds apart;
+    apart.lower = 15e-3;
+    made.constraints = {
+        {"apart", apart, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = 1, .b = 2, .motion = true})}};
+
+    const auto from_file = DesignProblem::create(read), from_memory = DesignProblem::create(made);
+    REQUIRE(from_file);
+    REQUIRE(from_memory);
+    const DesignEvaluation a = from_file->evaluate(values_of(read.parameters)), b = from_memory->evaluate(values_of(made.parameters));
+    REQUIRE(a.usable);
+    REQUIRE(b.usable);
+    CHECK(a.objective == b.objective);
+    CHECK(same_bits(a.gradient, b.gradient));
+    CHECK(a.constraints[0].value == b.constraints[0].value);
+    CHECK(same_bits(a.jacobian.row(0).transpose(), b.jacobian.row(0).transpose()));
+}
+
+TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {
+    Design design = tilted_plate();
+    design.parameters[1].moves[0].dimension = "fot";
+    design.parameters[2].lower = 6e-3;
+    design.parameters[3].moves[0].dof = 2;
+    design.parameters[3].moves[0].body = 1;
+    design.objective[0].quantity = nullptr;
+    design.objective[1].quantity = std::make_shared<quantities::Mass>(std::vector<quantities::Mass::Of>{{7}});
+    design.constraints[0].bounds.upper = 1e-3;
+    design.scene.bodies[1].mesh.vertices *= 0.9;
+    const auto problem = DesignProblem::create(std::move(design));
+    REQUIRE_FALSE(problem);
+    const Errors& errors = problem.errors();
+    const auto told = [&](const std::string& where) {
+        return std::count_if(errors.begin(), errors.end(), [&](const Error& e) { return e.where.find(where) != std::string::npos; });
+    };
+    CHECK(errors.size() == 7);
+    for (const char* where : {"shape of body `part`", "parameter `foot`", "parameter `top`", "parameter `speed`", "objective `height`",
+                              "objective `mass`", "constraint `height`"}) {
+        INFO(where);
+        CHECK(told(where) == 1);
+    }
+}

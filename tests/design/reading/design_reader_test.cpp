@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/design_reader.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "fettle/tests/design/small_design.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design::reading;
+using fettle::design::description::representable;
+using fettle::design::description::values_of;
+using namespace fettle::tests::design_support;
+
+struct Fault {
+    const char *from, *to;
+    ErrorCode code;
+    const char *pointer, *words;
+};
+
+bool has(const Errors& errors, const Fault& fault) {
+    for (const Error& error : errors) {
+        if (error.code == fault.code && error.where.find(fault.pointer) != std::string::npos &&
+            error.message.find(fault.words) != std::string::npos) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::string all(const Errors& errors) {
+    std::string text;
+    for (const Error& error : errors) text += error.where + ": " + error.message + "\n";
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a design file is read in SI units") {
+    const DesignFolder folder;
+    const Result<DesignFile> file = read_design(folder.design());
+    INFO(all(file.errors()));
+    REQUIRE(file);
+    const design::description::Design& design = file->design;
+    REQUIRE(design.parameters.size() == 5);
+    CHECK(design.parameters[0].value == 0.01);
+    CHECK(design.parameters[0].moves.size() == 2);
+    CHECK(design.parameters[0].moves[1].position_offset.z() == Approx(0.00012));
+    CHECK(design.parameters[3].value == 1000);
+    CHECK(design.parameters[4].value == Approx(40 * std::acos(-1.0) / 180));
+    CHECK(design.steps == 20);
+    REQUIRE(design.objective.size() == 5);
+    CHECK(design.objective[0].name == "mass cube");
+    REQUIRE(design.constraints.size() == 5);  // one of them in two windows
+    CHECK(design.constraints[0].bounds.lower == 0.015);
+    CHECK(target_lower(design.constraints[0].bounds) == Approx(0.015002));
+    CHECK(design.constraints[1].name == "clearance cube:wall over the motion 2 window 1");
+    CHECK(design.constraints[4].bounds.upper == Approx(0.004));
+    CHECK(design.optimiser.name == "mma");
+}
+
+TEST_CASE("every fault of a design is named, with its place") {
+    const Fault faults[] = {
+        {"\"lower\": 6,", "\"lower\": 16,", ErrorCode::inconsistent, "#/parameters/0/lower", "above the upper bound"},
+        {"\"value\": 10,", "\"value\": 15,", ErrorCode::out_of_range, "#/parameters/0/value", "outside the bounds"},
+        {"\"value\": 10,", "\"value\": \"ten\",", ErrorCode::wrong_type, "#/parameters/0/value", ""},
+        {"\"value\": 10,", "\"valeu\": 10,", ErrorCode::unknown_key, "#/parameters/0/valeu", "value"},
+        {"\"dimension\": \"size_z\"", "\"dimension\": \"size_zz\"", ErrorCode::out_of_range, "#/parameters/0/moves/0/dimension", "size_z"},
+        {"\"body\": \"cube\", \"dimension\"", "\"body\": \"cubes\", \"dimension\"", ErrorCode::out_of_range, "#/parameters/0/moves/0/body",
+         "did you mean \"cube\"?"},
+        {"\"motor\": \"table\"", "\"motor\": \"cube\"", ErrorCode::inconsistent, "#/parameters/4/moves/0/rate", "no motor"},
+        {"\"unit\": \"deg/s\"", "\"unit\": \"deg/sec\"", ErrorCode::out_of_range, "#/parameters/4/unit", "deg/s"},
+        {"\"unit\": \"deg/s\"", "\"unit\": \"mm\"", ErrorCode::inconsistent, "#/parameters/4/moves/0", "not a measure"},
+        {"\"name\": \"width\"", "\"name\": \"height\"", ErrorCode::inconsistent, "#/parameters/1/name", "already"},
+        {"\"type\": \"play\"", "\"type\": \"plays\"", ErrorCode::out_of_range, "#/objective/3/type", "play"},
+        {"\"weight\": 0.5", "\"wieght\": 0.5", ErrorCode::unknown_key, "#/objective/3/wieght", "weight"},
+        {"[0, 0, 2]", "[0, 0, 0]", ErrorCode::out_of_range, "#/objective/4/axis", "zero"},
+        {"[0.052, 0.1]", "[0.052]", ErrorCode::inconsistent, "#/objective/1/times", "one time for each"},
+        {"[0.052, 0.1]", "[0.052, 0.2]", ErrorCode::out_of_range, "#/objective/1/times/1", ""},
+        {"\"minimum\": 15", "\"minimum\": -15", ErrorCode::out_of_range, "#/constraints/0/minimum", ""},
+        {"\"a\": \"cube\", \"b\": \"wall\", \"minimum\": 15", "\"a\": \"cube\", \"b\": \"cube\", \"minimum\": 15", ErrorCode::inconsistent,
+         "#/constraints/0", "the same"},
+        {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 5, \"upper\": 4", ErrorCode::inconsistent, "#/constraints/3/lower", "above"},
+        // a quantity has a dimension: 30 mm is no mass, and a squared distance is no length
+        {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 1.5, \"upper\": \"30mm\"", ErrorCode::wrong_type, "#/constraints/3/upper",
+         "a mass is wanted"},
+        {"\"lower\": 0, \"upper\": 30", "\"lower\": 0, \"upper\": \"30 g\"", ErrorCode::wrong_type, "#/constraints/2/upper",
+         "a length is wanted"},
+        {"\"type\": \"mass\", \"bodies\": [\"cube\"], \"lower\": 1.5, \"upper\": 4",
+         "\"type\": \"marker_path\", \"body\": \"cube\", \"point\": [0, 0, 0], \"points\": [[0, 0, 0]], \"upper\": \"4mm\"",
+         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is wanted"},
+        {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
+        {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
+        {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "smal.scene.json", ""},
+        {"\"units\": \"mm\"", "\"units\": \"furlong\"", ErrorCode::out_of_range, "#/units", "mm"},
+        {"\"value\": 10,", "\"value\": NaN,", ErrorCode::not_finite, "", ""},
+        {"\"fettle_design\": 1", "\"fettle_design\": 2", ErrorCode::out_of_range, "#/fettle_design", ""},
+    };
+    for (const Fault& fault : faults) {
+        const DesignFolder folder(replaced(small_design, fault.from, fault.to));
+        const Result<DesignFile> design = read_design(folder.design());
+        INFO(fault.from << " -> " << fault.to << "\n" << all(design.errors()));
+        REQUIRE_FALSE(design);
+        CHECK(has(design.errors(), fault));
+    }
+}
+
+TEST_CASE("all faults are told at once") {
+    const std::string twice = replaced(replaced(small_design, "\"lower\": 6,", "\"lower\": 16,"), "\"minimum\": 15", "\"minimum\": -15");
+    const DesignFolder folder(twice);
+    CHECK(read_design(folder.design()).errors().size() == 2);
+}
+
+TEST_CASE("a scaled part cannot be moved by a dimension") {
+    const DesignFolder folder(small_design, replaced(small_scene, "\"angular_velocity\"", "\"scale\": 2, \"angular_velocity\""));
+    const Result<DesignFile> design = read_design(folder.design());
+    REQUIRE_FALSE(design);
+    CHECK(design.errors()[0].code == ErrorCode::unsupported);
+}
+
+TEST_CASE("bounds are plain numbers in the file's units, or carry a unit of their dimension") {
+    const auto upper_of = [](const std::string& bounds) {
+        const DesignFolder folder(replaced(small_design, "\"lower\": 1.5, \"upper\": 4", bounds));
+        const Result<DesignFile> file = read_design(folder.design());
+        INFO(all(file.errors()));
+        REQUIRE(file);
+        return file->design.constraints[4].bounds.upper;
+    };
+    CHECK(upper_of("\"upper\": 4") == 0.004);
+    CHECK(upper_of("\"upper\": \"4 g\"") == 0.004);
+    CHECK(upper_of("\"upper\": \"0.004kg\"") == 0.004);
+    CHECK(upper_of("\"upper\": \"4000 mg\"") == 0.004);
+}
+
+TEST_CASE("a density that is not per volume has no unit of a density per volume") {
+    const std::string scene = replaced(small_scene, "\"density\": 1000", "\"density\": 2, \"mass_per\": \"area\"");
+    const DesignFolder folder(small_design, scene);
+    const Result<DesignFile> wrong = read_design(folder.design());
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.errors()[0].where.find("#/parameters/3/moves/0") != std::string::npos);
+    CHECK(wrong.errors()[0].message.find("kg/m^2") != std::string::npos);
+    const DesignFolder right(
+        replaced(replaced(small_design, "\"value\": 1000, \"lower\": 500, \"upper\": 2000", "\"value\": 2, \"lower\": 1, \"upper\": 3"),
+                 "\"unit\": \"kg/m^3\"", "\"unit\": \"1\""),
+        scene);
+    CHECK(read_design(right.design()));
+}

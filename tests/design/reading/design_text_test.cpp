@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/design_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "fettle/tests/design/small_design.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design::reading;
+using namespace fettle::tests::design_support;
+using fettle::design::description::representable;
+using fettle::design::description::values_of;
+
+std::string all(const Errors& errors) {
+    std::string text;
+    for (const Error& error : errors) text += error.where + ": " + error.message + "\n";
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a rewritten design reads back bit for bit, from another folder, and has the same hash but for its values") {
+    const DesignFolder folder;
+    const Result<DesignFile> design = read_design(folder.design());
+    REQUIRE(design);
+    VectorX values(5);
+    values << 0.0123456789012345678, 0.2 / 11, -1e-3 / 3, 1234.5678901234567, 0.98765432109876543;
+    for (Eigen::Index k = 0; k < 5; ++k) values[k] = representable(values[k], design->design.parameters[static_cast<size_t>(k)].unit);
+    values[2] = design->design.parameters[2].upper;
+    const auto out = folder.path / "out";
+    std::filesystem::create_directories(out);
+    const std::string path = (out / "design.final.json").string();
+    std::ofstream(path) << design_text(*design, values, out.string());
+    const Result<DesignFile> again = read_design(path);
+    INFO(all(again.errors()));
+    REQUIRE(again);
+    for (Eigen::Index k = 0; k < 5; ++k) CHECK(again->design.parameters[static_cast<size_t>(k)].value == values[k]);
+    CHECK(design_hash(*again) != design_hash(*design));
+    std::ofstream(path) << design_text(*design, values_of(design->design.parameters), out.string());
+    CHECK(design_hash(*read_design(path)) == design_hash(*design));
+
+    const DesignFolder moved(small_design, replaced(small_scene, "\"size_y\": 12", "\"size_y\": 12.5"));
+    CHECK(design_hash(*read_design(moved.design())) != design_hash(*design));
+    const DesignFolder other_optimiser(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 9"));
+    CHECK(design_hash(*read_design(other_optimiser.design())) == design_hash(*design));
+}

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/history.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design::studies;
+namespace optimisers = fettle::design::optimisers;
+
+struct Folder : tests::support::TemporaryFolder {
+    std::string file() const { return TemporaryFolder::file("history.jsonl"); }
+};
+
+std::string contents(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+void overwrite(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+bool same_bits(const VectorX& a, const VectorX& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), static_cast<size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+HistoryHeader rosenbrock_header() { return {"0123456789abcdef", {"x", "y"}, {"disc"}}; }
+
+// Rosenbrock's valley inside a disc that cuts off its minimum; nothing here is a round number.
+HistoryEntry rosenbrock(const VectorX& p) {
+    HistoryEntry entry;
+    entry.point = p;
+    optimisers::Evaluation& e = entry.evaluation;
+    if (p[0] + p[1] > 1.55) {
+        e.reason = "too \"far\"\nout";
+        return entry;
+    }
+    const double a = p[1] - p[0] * p[0], b = 1 - p[0];
+    e.usable = true;
+    e.objective = 10 * a * a + b * b + 1e-3 * std::sin(7 * p[0]);
+    e.gradient = Vector2(-40 * a * p[0] - 2 * b + 7e-3 * std::cos(7 * p[0]), 20 * a);
+    e.constraints = VectorX::Constant(1, p.squaredNorm());
+    e.jacobian = 2 * p.transpose();
+    e.violation = std::max(0.0, p.squaredNorm() - 1.0);
+    entry.terms = {{"valley", 10 * a * a}};
+    entry.certified = {{"disc", p.squaredNorm()}};
+    entry.forward_seconds = 0.1;
+    return entry;
+}
+
+struct Run {
+    optimisers::OptimiserReport report;
+    int computed = 0;
+};
+
+struct Killed : std::exception {};
+
+// A run that dies in the middle of its `kill_at`-th computation (never, if negative).
+Result<Run> run(const Folder& folder, const std::string& name, HistoryMode mode, int kill_at = -1) {
+    Result<History> history = History::open(folder.path.string(), rosenbrock_header(), mode);
+    if (!history) return history.errors();
+    Run result;
+    optimisers::Problem problem;
+    problem.start = Vector2(-0.6, 0.3);
+    problem.lower = Vector2(-1.3, -1.1);
+    problem.upper = Vector2(1.7, 1.9);
+    problem.constraint_lower = VectorX::Constant(1, -INFINITY);
+    problem.constraint_upper = VectorX::Constant(1, 1 - 1e-6);
+    problem.evaluate = recorded(*history, [&](const VectorX& p) {
+        if (++result.computed == kill_at) throw Killed();
+        return rosenbrock(p);
+    });
+    optimisers::OptimiserOptions options;
+    options.tolerance = 1e-6;
+    auto optimiser = optimisers::make_optimiser(name);
+    result.report = optimisers::optimise(problem, **optimiser, options);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a run killed anywhere and resumed ends with the same design, bit for bit") {
+    for (const std::string& name : optimisers::optimiser_names()) {
+        INFO(name);
+        const Folder whole;
+        const Result<Run> reference = run(whole, name, HistoryMode::fresh);
+        REQUIRE(reference);
+        REQUIRE(reference->computed > 6);
+        CHECK(reference->report.feasible);
+        for (const int kill_at : {1, 2, 5, reference->computed}) {
+            const Folder folder;
+            CHECK_THROWS_AS(run(folder, name, HistoryMode::fresh, kill_at), Killed);
+            overwrite(folder.file(), contents(folder.file()) + "{\"evaluation\": 99, \"usab");  // killed while writing
+            const Result<Run> resumed = run(folder, name, HistoryMode::resume);
+            REQUIRE(resumed);
+            CHECK(resumed->computed == reference->computed - (kill_at - 1));
+            CHECK(resumed->report.evaluations == reference->report.evaluations);
+            CHECK(same_bits(resumed->report.point, reference->report.point));
+            CHECK(resumed->report.status == reference->report.status);
+            CHECK(contents(folder.file()) == contents(whole.file()));
+        }
+    }
+}
+
+TEST_CASE("a history reads back bit for bit") {
+    const Folder folder;
+    HistoryEntry entry = rosenbrock(Vector2(0.1, -0.7));
+    entry.point = Vector2(5e-324, -0.0);
+    entry.evaluation.objective = 1.7976931348623157e308;
+    entry.evaluation.gradient = Vector2(0.1 + 0.2, std::nextafter(1.0, 2.0));
+    entry.evaluation.jacobian << 1.0 / 3, -2.2250738585072014e-308;
+    {
+        Result<History> history = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::fresh);
+        REQUIRE(history);
+        history->append(entry);
+        history->append(rosenbrock(Vector2(2, 2)));
+    }
+    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    REQUIRE(again);
+    REQUIRE(again->replayed().size() == 2);
+    const HistoryEntry& read = again->replayed()[0];
+    CHECK(same_bits(read.point, entry.point));
+    CHECK(read.evaluation.objective == entry.evaluation.objective);
+    CHECK(same_bits(read.evaluation.gradient, entry.evaluation.gradient));
+    CHECK(same_bits(read.evaluation.jacobian.transpose(), entry.evaluation.jacobian.transpose()));
+    CHECK(read.terms == entry.terms);
+    CHECK_FALSE(again->replayed()[1].evaluation.usable);
+    CHECK(again->replayed()[1].evaluation.reason == "too \"far\"\nout");
+}
+
+TEST_CASE("a history of another design is refused, damage is named, nothing is lost") {
+    const Folder folder;
+    { REQUIRE(run(folder, "mma", HistoryMode::fresh)); }
+    const std::string first = contents(folder.file());
+
+    HistoryHeader other = rosenbrock_header();
+    other.design_hash = "fedcba9876543210";
+    const Result<History> refused = History::open(folder.path.string(), other, HistoryMode::resume);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.errors()[0].code == ErrorCode::inconsistent);
+    CHECK(contents(folder.file()) == first);
+
+    {
+        const Result<History> fresh = History::open(folder.path.string(), other, HistoryMode::fresh);
+        REQUIRE(fresh);
+        CHECK(contents(fresh->kept_as()) == first);
+        const Result<History> second = History::open(folder.path.string(), other, HistoryMode::resume);
+        REQUIRE_FALSE(second);  // locked
+        CHECK(second.errors()[0].message.find("another process") != std::string::npos);
+    }
+
+    std::string damaged = first;
+    damaged[damaged.find("\"usable\"") + 1] = 'X';
+    overwrite(folder.file(), damaged);
+    const Result<History> broken = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    REQUIRE_FALSE(broken);
+    CHECK(broken.errors()[0].where.find("line 2") != std::string::npos);
+}
