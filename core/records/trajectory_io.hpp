@@ -28,6 +28,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/stepper/simulation.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
