@@ -35,8 +35,7 @@ class Minimiser {
 public:
     Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
         : problem_(std::move(problem)), model_(*problem_.model), targets_(targets), workspace_(workspace), options_(options) {
-        for (const Pose& pose : problem_.poses_t0) at_.points.push_back({pose.position, Vector3::Zero()});
-        at_.poses = problem_.poses_t0;
+        at_ = options_.start.empty() ? start_of_step() : Iterate{options_.start, poses_of(problem_, options_.start), {}};
         result_.path.push_back(at_.points);
     }
 
@@ -60,6 +59,13 @@ public:
     }
 
 private:
+    Iterate start_of_step() const {
+        Iterate start;
+        for (const Pose& pose : problem_.poses_t0) start.points.push_back({pose.position, Vector3::Zero()});
+        start.poses = problem_.poses_t0;
+        return start;
+    }
+
     bool stop(NewtonStatus status, const std::string& message = {}) {
         result_.status = status;
         result_.message = message;

@@ -26,14 +26,15 @@ enum class NewtonStatus { converged, blocked, not_converged, interrupted };
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
-    bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level
+    bool to_rounding = false;                   ///< go on with exact steps until the residual is at rounding level
+    std::vector<kinematics::ChartPoint> start;  ///< where to begin; empty: where the step starts
     std::function<bool()> should_stop;
 };
 
 struct NewtonResult {
     NewtonStatus status = NewtonStatus::converged;
     std::string message;                                    ///< cause, with body names, when not converged
-    std::vector<std::vector<kinematics::ChartPoint>> path;  ///< the start and every accepted point
+    std::vector<std::vector<kinematics::ChartPoint>> path;  ///< where it began and every accepted point
     std::vector<kinematics::Pose> poses;                    ///< at the end of the path
     int iterations = 0;
     int friction_rounds = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/scripted_motion.hpp"
 
+#include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step.hpp"
 
@@ -21,6 +22,38 @@ std::vector<std::string> held_bodies(const model::Model& model) {
     return names;
 }
 
+namespace {
+
+using kinematics::ChartPoint;
+
+std::vector<ChartPoint> points_at(const model::Model& model, const std::vector<kinematics::Pose>& poses,
+                                  const std::vector<Vector6>& targets) {
+    std::vector<ChartPoint> points;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        points.push_back({poses[i].position, Vector3::Zero()});
+        for (int k = 0; k < 6; ++k) {
+            if (model::is_free(model.bodies[i], k)) continue;
+            (k < 3 ? points.back().position[k] : points.back().rotation_vector[k - 3]) = targets[i][k];
+        }
+    }
+    return points;
+}
+
+TrajectoryStep scripted_step(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time) {
+    TrajectoryStep step;
+    step.nodes.emplace_back();
+    for (const kinematics::Pose& pose : poses) step.nodes.back().push_back({pose.position, Vector3::Zero()});
+    step.fractions.push_back(0);
+    for (const PrescribedNode& node : prescribed_path(model, poses, time)) {
+        step.nodes.push_back(points_at(model, poses, node.targets));
+        step.fractions.push_back(node.fraction);
+    }
+    if (step.nodes.size() == 2) step.fractions.clear();
+    return step;
+}
+
+}  // namespace
+
 Trajectory follow_scripts(const model::Model& model, int steps) {
     SimulationOptions options;
     options.steps = steps;
@@ -31,23 +64,13 @@ Trajectory follow_scripts(const model::Model& model, int steps) {
     out.poses.push_back(start_state(model).history.poses);
     for (int t = 0; t < count; ++t) {
         const std::vector<kinematics::Pose> poses = out.poses.back();
-        const std::vector<Vector6> targets = prescribed_targets(model, poses, t * model.timestep);
-        TrajectoryStep step;
-        step.nodes.resize(2);
-        std::vector<kinematics::Pose> next;
+        out.steps.push_back(scripted_step(model, poses, t * model.timestep));
+        out.poses.emplace_back();
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            kinematics::ChartPoint end{poses[i].position, Vector3::Zero()};
-            for (int k = 0; k < 6; ++k) {
-                if (model::is_free(model.bodies[i], k)) continue;
-                (k < 3 ? end.position[k] : end.rotation_vector[k - 3]) = targets[i][k];
-            }
-            step.nodes[0].push_back({poses[i].position, Vector3::Zero()});
-            step.nodes[1].push_back(end);
+            const ChartPoint& end = out.steps.back().nodes.back()[i];
             const Matrix3 turned = kinematics::rotation(end.rotation_vector) * poses[i].rotation;
-            next.push_back({kinematics::orthonormalised(turned), end.position});
+            out.poses.back().push_back({kinematics::orthonormalised(turned), end.position});
         }
-        out.steps.push_back(std::move(step));
-        out.poses.push_back(std::move(next));
     }
     return out;
 }

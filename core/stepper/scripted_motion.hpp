@@ -11,7 +11,8 @@
 
 namespace fettle::core::stepper {
 
-/// The path is what a simulation's would be if nothing were in the way: one segment per step, straight in the step's chart.
+/// The path is what a simulation's would be if nothing were in the way: per step straight in the step's chart, through every entry of a
+/// script or table inside the step (prescribed_path.hpp).
 /// @param steps  negative: the model's end_time, or 1000 steps if it has none.
 Trajectory follow_scripts(const model::Model& model, int steps = -1);
 

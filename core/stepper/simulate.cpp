@@ -3,24 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <sstream>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/stepper/step.hpp"
+#include "fettle/core/stepper/step_count.hpp"
 
 namespace fettle::core::stepper {
-namespace {
-
-constexpr int default_steps = 1000;
-
-}  // namespace
-
 int step_count(const model::Model& model, const SimulationOptions& options) {
     if (options.steps >= 0) return options.steps;
-    // A hair below an integer is that integer: end_time = 100 h must give 100 steps.
-    if (model.end_time >= 0) return static_cast<int>(std::ceil(model.end_time / model.timestep - 1e-9));
-    return default_steps;
+    return model.end_time >= 0 ? step_count(model.end_time, model.timestep) : default_step_count;
 }
 
 const char* to_string(SimulationStatus status) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/step_outputs.hpp"
 
 namespace fettle::core::stepper {
@@ -25,29 +26,74 @@ std::vector<kinematics::Pose> end_poses(const std::vector<PathSegment>& segments
     return poses;
 }
 
-// The stored path: straight where that is clear, else through as few of the accepted points as are needed.
-TrajectoryStep stored_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted,
-                           solver::NewtonWorkspace& workspace) {
-    const auto is_clear = [&](const std::vector<PathSegment>& segments) {
-        {
-            const auto span = workspace.clock.charge(solver::SolvePhase::broad_phase);
-            cover(model, segments, solver::candidate_allowance(model), workspace.candidates);
-        }
-        const auto span = workspace.clock.charge(solver::SolvePhase::ccd);
-        const bool clear = contact::is_path_clear(model, workspace.candidates, segments);
-        settle(end_poses(segments), workspace.candidates);
-        return clear;
-    };
-    TrajectoryStep out{{accepted.front()}};
+bool is_clear(const model::Model& model, const std::vector<PathSegment>& segments, solver::NewtonWorkspace& workspace) {
+    {
+        const auto span = workspace.clock.charge(solver::SolvePhase::broad_phase);
+        cover(model, segments, solver::candidate_allowance(model), workspace.candidates);
+    }
+    const auto span = workspace.clock.charge(solver::SolvePhase::ccd);
+    const bool clear = contact::is_path_clear(model, workspace.candidates, segments);
+    settle(end_poses(segments), workspace.candidates);
+    return clear;
+}
+
+// Of one stretch, on from the nodes that are there: straight where that is clear, else through as few of the accepted points as are needed.
+void store_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted,
+                solver::NewtonWorkspace& workspace, TrajectoryStep& out) {
+    if (out.nodes.empty()) out.nodes.push_back(accepted.front());
+    if (accepted.size() == 1) out.nodes.push_back(accepted.front());  // at rest
     std::size_t from = 0;
     while (from + 1 < accepted.size()) {
         std::size_t to = accepted.size() - 1;
-        for (; to > from + 1; to = from + 1 + (to - from - 1) / 2) {
-            const std::vector<PathSegment> segments = straight_segments(model, state, accepted[from], accepted[to]);
-            if (is_clear(segments)) break;
-        }
+        for (; to > from + 1; to = from + 1 + (to - from - 1) / 2)
+            if (is_clear(model, straight_segments(model, state, accepted[from], accepted[to]), workspace)) break;
         out.nodes.push_back(accepted[to]);
         from = to;
+    }
+}
+
+// The nodes of a stretch that ends at this fraction of the step, evenly over its time.
+void store_fractions(double end, TrajectoryStep& out) {
+    if (out.fractions.empty()) out.fractions.push_back(0);
+    const double begin = out.fractions.back();
+    const std::size_t first = out.fractions.size(), count = out.nodes.size() - first;
+    for (std::size_t k = 1; k < count; ++k)
+        out.fractions.push_back(begin + (end - begin) * static_cast<double>(k) / static_cast<double>(count));
+    out.fractions.push_back(end);
+}
+
+// Inertia and torques aim at this share of the step's way.
+energy::StepProblem towards(const energy::StepProblem& problem, double fraction) {
+    energy::StepProblem out = problem;
+    for (std::size_t i = 0; i < out.pose_hat.size(); ++i) {
+        const Matrix34 start = pose_matrix(problem.poses_t0[i]);
+        out.pose_hat[i] = start + fraction * (problem.pose_hat[i] - start);
+        out.torque[i] = fraction * problem.torque[i];
+    }
+    return out;
+}
+
+struct DrivenStep {
+    solver::NewtonResult solved;  ///< of the last stretch; iterations and friction rounds of all
+    TrajectoryStep path;
+};
+
+// Through the nodes of the prescribed path, the last of which is the step's end.
+DrivenStep drive(const model::Model& model, const StepState& state, const energy::StepProblem& problem,
+                 const std::vector<PrescribedNode>& way, solver::NewtonWorkspace& workspace, const solver::NewtonOptions& options) {
+    DrivenStep out;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        const bool last = k + 1 == way.size();
+        solver::NewtonOptions stretch = options;
+        if (k > 0) stretch.start = out.path.nodes.back();
+        stretch.to_rounding = options.to_rounding && last;
+        const int iterations = out.solved.iterations, rounds = out.solved.friction_rounds;
+        out.solved = solver::minimise(last ? problem : towards(problem, way[k].fraction), way[k].targets, workspace, stretch);
+        out.solved.iterations += iterations;
+        out.solved.friction_rounds += rounds;
+        if (out.solved.status != solver::NewtonStatus::converged) return out;
+        store_path(model, state, out.solved.path, workspace, out.path);
+        if (way.size() > 1) store_fractions(way[k].fraction, out.path);
     }
     return out;
 }
@@ -64,25 +110,6 @@ SimulationStatus simulation_status(solver::NewtonStatus status) {
             break;
     }
     return SimulationStatus::not_converged;
-}
-
-Vector6 curve_increments(const scene::PrescribedMotion& prescribed, double from, double to) {
-    Vector6 out = Vector6::Zero();
-    for (int k = 0; k < 6; ++k)
-        if (prescribed[k]) out[k] = scene::motion_value(*prescribed[k], to) - scene::motion_value(*prescribed[k], from);
-    return out;
-}
-
-// A script stops with its curves; what is left of the step after its last pose goes on with them.
-Vector6 scripted_target(const model::Body& body, const kinematics::Pose& pose, double from, double to) {
-    const auto& stop = body.prescribed[0] ? body.prescribed[0]->stop_time : std::nullopt;
-    const double stopped = stop ? std::min(to, std::max(from, *stop)) : to, end = std::min(stopped, body.script.times.back());
-    const kinematics::Pose target = model::scripted_pose(body, end);
-    const Vector6 rest = curve_increments(body.prescribed, end, to);
-    Vector6 out;
-    out << target.position + rest.head<3>(),
-        kinematics::rotation_vector(kinematics::rotation(rest.tail<3>()) * target.rotation * pose.rotation.transpose());
-    return out;
 }
 
 // With no gradient to keep smooth, contact may be stiffer: a two-level house of cards needs it, which falls over on soft contacts.
@@ -106,27 +133,15 @@ StepState start_state(const model::Model& model) {
     return state;
 }
 
-std::vector<Vector6> prescribed_targets(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time) {
-    std::vector<Vector6> targets(model.bodies.size(), Vector6::Zero());
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        const model::Body& body = model.bodies[i];
-        const bool scripted = !body.script.empty() && time < body.script.times.back();
-        targets[i] = scripted ? scripted_target(body, poses[i], time, time + model.timestep)
-                              : curve_increments(body.prescribed, time, time + model.timestep);
-        if (!scripted) targets[i].head<3>() += poses[i].position;
-    }
-    return targets;
-}
-
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options) {
     const energy::StepProblem problem = energy::step_problem(model, state.history, options.for_gradient ? model.kappa : state.kappa);
-    const std::vector<Vector6> targets = prescribed_targets(model, state.history.poses, state.time);
     solver::NewtonOptions newton;
     newton.velocity_tolerance = model.velocity_tolerance;
     newton.max_iterations = model.max_newton_iterations;
     newton.to_rounding = options.for_gradient;
     newton.should_stop = options.should_stop;
-    const solver::NewtonResult solved = solver::minimise(problem, targets, workspace, newton);
+    DrivenStep driven = drive(model, state, problem, prescribed_path(model, state.history.poses, state.time), workspace, newton);
+    const solver::NewtonResult& solved = driven.solved;
 
     StepResult result;
     result.status = simulation_status(solved.status);
@@ -134,7 +149,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual};
     result.state = state;
     if (result.status != SimulationStatus::ok) return result;
-    result.path = stored_path(model, state, solved.path, workspace);
+    result.path = std::move(driven.path);
     result.state.time = state.time + model.timestep;
     result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     std::vector<kinematics::Pose> end = solved.poses;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// One time step: from poses and velocities at t to poses at t + h and the intersection-free path between them.
+///
+/// Where a script or table has entries inside the step, its coordinates are driven through them in order (prescribed_path.hpp), each
+/// stretch a minimisation of its own that starts where the one before ended, so that line search, CCD and the stored path see the way as it
+/// is. The last one is the implicit step's, whose end knows nothing of the way; those before have its inertia aim at the share of the way
+/// that has passed. (Friction is lagged from where the last stretch starts.)
 #pragma once
-
-#include <vector>
 
 #include "fettle/core/solver/newton.hpp"
 #include "fettle/core/stepper/simulation.hpp"
@@ -22,9 +25,5 @@ struct StepResult {
 };
 
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options);
-
-/// Chart coordinates of the prescribed DOFs at the end of a step that starts at `time` from `poses`: by the curves' increments, or where
-/// the script has the body (and, after its end, on with the curves' increments).
-std::vector<Vector6> prescribed_targets(const model::Model& model, const std::vector<kinematics::Pose>& poses, double time);
 
 }  // namespace fettle::core::stepper

@@ -13,9 +13,10 @@ namespace fettle::core::stepper {
 /// One time step. Each body has a chart of its own, based at its rotation at the start of the step. The path visits
 /// `nodes[0]` (the start: rotation vector 0), `nodes[1]`, ..., `nodes.back()` (the end), straight in the chart in between.
 /// Usually there are two nodes; more where the straight path would have crossed something.
-/// In time, the k-th of n segments covers [time_t0 + h k/n, time_t0 + h (k+1)/n].
+/// In time, node k is reached after `fractions[k]` of the step.
 struct TrajectoryStep {
     std::vector<std::vector<kinematics::ChartPoint>> nodes;  ///< [node][body]
+    std::vector<double> fractions{};                         ///< [node], 0 to 1, never falling; empty: evenly, k/(number of segments)
 };
 
 struct Trajectory {
@@ -35,6 +36,13 @@ inline kinematics::PathSegment path_segment(const Trajectory& trajectory, int t,
 
 inline int segment_count(const Trajectory& trajectory, int t) { return static_cast<int>(trajectory.steps[t].nodes.size()) - 1; }
 
+/// Share of step `t` that has passed at s in [0, 1] of its segment `k`.
+inline double step_fraction(const Trajectory& trajectory, int t, int k, double s) {
+    const auto& fractions = trajectory.steps[t].fractions;
+    if (fractions.empty()) return (k + s) / segment_count(trajectory, t);
+    return fractions[k] + s * (fractions[k + 1] - fractions[k]);
+}
+
 /// Time of poses[t] [s].
 inline double time_at(const Trajectory& trajectory, int t) {
     return trajectory.times.empty() ? trajectory.time_start + t * trajectory.timestep : trajectory.times[t];
@@ -43,7 +51,7 @@ inline double time_at(const Trajectory& trajectory, int t) {
 /// Time at s in [0, 1] of segment `k` of step `t`; of the start if t is -1 (no step) [s].
 inline double time_at(const Trajectory& trajectory, int t, int k, double s) {
     if (t < 0) return time_at(trajectory, 0);
-    const double fraction = (k + s) / segment_count(trajectory, t);
+    const double fraction = step_fraction(trajectory, t, k, s);
     if (trajectory.times.empty()) return trajectory.time_start + trajectory.timestep * (t + fraction);
     return trajectory.times[t] + fraction * (trajectory.times[t + 1] - trajectory.times[t]);
 }

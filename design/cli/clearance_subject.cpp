@@ -11,6 +11,7 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 
@@ -49,6 +50,7 @@ Result<Subject> from_trajectory(const SubjectOptions& options) {
     subject.trajectory = std::move(stored->trajectory);
     subject.source = SubjectSource::trajectory;
     subject.scene_path = stored->scene_path;
+    subject.notes.insert(subject.notes.end(), stored->warnings.begin(), stored->warnings.end());
     return subject;
 }
 
@@ -123,7 +125,7 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
     const int steps = options.steps >= 0  ? options.steps
-                      : options.time >= 0 ? static_cast<int>(std::ceil(options.time / subject.model.timestep - 1e-9))
+                      : options.time >= 0 ? core::stepper::step_count(options.time, subject.model.timestep)
                                           : loaded->steps;
     if (!options.poses.empty()) {
         const Errors errors = take_poses(options, subject);

@@ -10,6 +10,7 @@
 
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"

@@ -64,10 +64,11 @@ def write_png(path, image):
 
 def main():
     with open(sys.argv[1]) as file:
-        trajectory = json.load(file)
+        header, *steps = (json.loads(line) for line in file)  # the bodies and their start, then a line for each step
+    poses = [line["poses"] for line in (header, *steps) if "poses" in line]
     step = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     view = camera()
-    parts = [(body, world_triangles(body, pose) @ view.T) for body, pose in zip(trajectory["bodies"], trajectory["poses"][step])]
+    parts = [(body, world_triangles(body, pose) @ view.T) for body, pose in zip(header["bodies"], poses[step])]
     points = np.concatenate([triangles.reshape(-1, 3) for _, triangles in parts])
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.array([WIDTH, HEIGHT]) * SAMPLES

@@ -45,7 +45,7 @@ std::size_t vertex_count(const model::Model& model) {
 
 /// Steps to run at least: the whole of a scene that is small, 200 of one that is not.
 int steps_of(const model::Model& model, int at_most) {
-    const int own = model.end_time >= 0 ? static_cast<int>(std::ceil(model.end_time / model.timestep - 1e-9)) : 1000;
+    const int own = stepper::step_count(model, {});
     return std::min(own, at_most);
 }
 

@@ -11,6 +11,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/records/trajectory_reader.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -147,39 +148,160 @@ TEST_CASE("A trajectory without steps is the assembly", "[stepper]") {
     CHECK(stored->trajectory.poses.size() == 1);
 }
 
-TEST_CASE("A trajectory file that was changed or cut is refused", "[stepper]") {
+TEST_CASE("A step's fractions and uneven times are kept", "[stepper]") {
     const Folder folder;
     const model::Model model = two_boxes();
+    Trajectory trajectory = random_path(model, 2);
+    trajectory.steps[1].fractions = {0, 1.0 / 3, 1};
+    trajectory.times = {0, 0.1, 0.3};
+    REQUIRE(write_trajectory(folder.path / "a.json", trajectory, model).empty());
+    const auto stored = read_trajectory(folder.path / "a.json");
+    REQUIRE(stored);
+    CHECK(stored->trajectory.steps[0].fractions.empty());
+    CHECK(stored->trajectory.steps[1].fractions == trajectory.steps[1].fractions);
+    CHECK(stored->trajectory.times == trajectory.times);
+    CHECK(path_hash(stored->trajectory) == path_hash(trajectory));
+}
+
+// A file, and what reading it says after a change of its text.
+struct ChangedFile {
+    const Folder folder;
     const fs::path path = folder.path / "a.json";
-    REQUIRE(write_trajectory(path, random_path(model, 3), model).empty());
-    const std::string text = files::read_file(path).value();
-    const auto errors_after = [&](const std::string& from, const std::string& to) {
+    std::string text;
+
+    ChangedFile() {
+        const model::Model model = two_boxes();
+        Trajectory trajectory = random_path(model, 3);
+        trajectory.steps[1].fractions = {0, 0.5, 1};
+        REQUIRE(write_trajectory(path, trajectory, model).empty());
+        text = files::read_file(path).value();
+    }
+    auto read(const std::string& changed) const {
+        std::ofstream(path) << changed;
+        return read_trajectory(path);
+    }
+    base::Errors errors_after(const std::string& from, const std::string& to) const {
         const auto place = text.find(from);
         REQUIRE(place != std::string::npos);
-        std::ofstream(path) << text.substr(0, place) << to << text.substr(place + from.size());
-        return read_trajectory(path).errors();
-    };
-    const auto code_after = [&](const std::string& from, const std::string& to) {
+        return read(text.substr(0, place) + to + text.substr(place + from.size())).errors();
+    }
+    ErrorCode code_after(const std::string& from, const std::string& to) const {
         const auto errors = errors_after(from, to);
         REQUIRE_FALSE(errors.empty());
         return errors.front().code;
-    };
-    CHECK(code_after("\"fettle_trajectory\": 1", "\"fettle_trajectory\": 2") == ErrorCode::out_of_range);
-    CHECK(code_after("\"fettle_trajectory\": 1,", "") == ErrorCode::missing_key);
+    }
+};
+
+TEST_CASE("A trajectory file that was changed is refused", "[stepper]") {
+    const ChangedFile file;
+    const auto code_after = [&](const std::string& from, const std::string& to) { return file.code_after(from, to); };
+    CHECK(code_after("\"fettle_trajectory\": 2", "\"fettle_trajectory\": 3") == ErrorCode::out_of_range);
+    CHECK(code_after("\"fettle_trajectory\": 2", "\"fettle_trajectory\": 1") == ErrorCode::out_of_range);
+    CHECK(code_after("\"fettle_trajectory\": 2,", "") == ErrorCode::missing_key);
     CHECK(code_after("\"timestep\": 0.01", "\"timestep\": 0") == ErrorCode::out_of_range);
+    CHECK(code_after("\"timestep\": 0.01", "\"timestep\": 0.02") == ErrorCode::inconsistent);  // the path's hash
     CHECK(code_after("\"timestep\": 0.01", "\"timestep\": 1e999") == ErrorCode::not_finite);
     CHECK(code_after("\"timestep\"", "\"timesteps\"") == ErrorCode::unknown_key);
     CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2,8") == ErrorCode::out_of_range);
+    CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2,2") == ErrorCode::inconsistent);
     CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2,4") == ErrorCode::inconsistent);  // the hash
     CHECK(code_after("\"triangles\": [0,2,3", "\"triangles\": [0,2") == ErrorCode::inconsistent);
-    CHECK(code_after("\"poses\": [[[1,0,0", "\"poses\": [[[1,0,1e-4") == ErrorCode::out_of_range);  // not a rotation
-    CHECK(code_after("\"poses\": [[[1,0,0,", "\"poses\": [[[1,0,") == ErrorCode::inconsistent);
-    CHECK(code_after("\"steps\": [[[[0.05", "\"steps\": [[[[0.06") == ErrorCode::inconsistent);  // a jump
-    CHECK(code_after("\"steps\": [", "\"steps\": [[],") == ErrorCode::inconsistent);
-    std::ofstream(path) << text.substr(0, text.size() / 2);
-    CHECK(read_trajectory(path).errors().front().code == ErrorCode::parse);
-    CHECK(read_trajectory(folder.path / "absent.json").errors().front().code == ErrorCode::file_not_found);
-    CHECK_FALSE(is_trajectory_file(folder.path / "absent.json"));
+    CHECK(code_after("\"poses\": [[1,0,0", "\"poses\": [[1,0,1e-12") == ErrorCode::out_of_range);  // not a rotation
+    CHECK(code_after("\"poses\": [[1,0,0,", "\"poses\": [[1,0,") == ErrorCode::inconsistent);
+    CHECK(code_after("\"nodes\": [[[0.05", "\"nodes\": [[[0.06") == ErrorCode::inconsistent);  // a jump
+    CHECK(code_after("\"nodes\": [[[", "\"nodes\": [[[1e31,") == ErrorCode::inconsistent);
+    CHECK(code_after("\"nodes\": [", "\"nodes\": [[],") == ErrorCode::inconsistent);
+    CHECK(code_after("\"fractions\": [0,0.5,1]", "\"fractions\": [0,0.5,0.75]") == ErrorCode::inconsistent);
+    CHECK(code_after("\"fractions\": [0,0.5,1]", "\"fractions\": [0,1.5,1]") == ErrorCode::inconsistent);
+    CHECK(code_after("\"fractions\": [0,0.5,1]", "\"fractions\": [0,0.6,1]") == ErrorCode::inconsistent);  // the hash
+    CHECK(file.errors_after("\"fractions\": [0,0.5,1]", "\"fractions\": [0,0.6,1]").front().where.find(":3#/hash") != std::string::npos);
+    CHECK(read_trajectory(file.folder.path / "absent.json").errors().front().code == ErrorCode::file_not_found);
+    CHECK_FALSE(is_trajectory_file(file.folder.path / "absent.json"));
+    CHECK_FALSE(file.read(""));
+    CHECK_FALSE(file.read("\n\n"));
+}
+
+TEST_CASE("A trajectory of the first format is refused by name", "[stepper]") {
+    const ChangedFile file;
+    const auto read = file.read("{\"fettle_trajectory\": 1,\n\"scene\": \"\", \"bodies\": []}\n");
+    REQUIRE_FALSE(read);
+    CHECK(read.errors().front().code == ErrorCode::unsupported);
+    CHECK(read.errors().front().message.find("version 1") != std::string::npos);
+}
+
+TEST_CASE("A trajectory whose last line is cut off is taken up to there, with a warning", "[stepper]") {
+    const ChangedFile file;
+    const std::size_t last_line = file.text.rfind('\n', file.text.size() - 2) + 1;
+    for (const std::size_t size : {file.text.size() - 2, file.text.size() - 40, last_line + 1}) {
+        const auto read = file.read(file.text.substr(0, size));
+        REQUIRE(read);
+        CHECK(read->trajectory.steps.size() == 2);
+        CHECK(read->trajectory.poses.size() == 3);
+        REQUIRE(read->warnings.size() == 1);
+        CHECK(read->warnings[0].find("2 steps") != std::string::npos);
+    }
+    CHECK(file.read(file.text.substr(0, last_line))->warnings.empty());
+    CHECK(file.read(file.text.substr(0, file.text.size() - 1))->trajectory.steps.size() == 3);  // only the line feed is missing
+    CHECK_FALSE(file.read(file.text.substr(0, file.text.find('\n') / 2)));                      // nothing usable
+    CHECK_FALSE(file.read(file.text.substr(0, last_line - 20) + "\n" + file.text.substr(last_line)));
+}
+
+TEST_CASE("A path may not jump from step to step, however far from the origin it is", "[stepper]") {
+    const Folder folder;
+    const model::Model model = two_boxes();
+    for (const double by : {1e-12, 1.7e-3}) {
+        Trajectory trajectory = random_path(model, 2);
+        const auto shift = [](auto& poses) { poses[0].position.x() += 1e6; };
+        for (auto& poses : trajectory.poses) shift(poses);
+        for (auto& step : trajectory.steps)
+            for (auto& node : step.nodes) shift(node);
+        REQUIRE(write_trajectory(folder.path / "a.json", trajectory, model).empty());
+        REQUIRE(read_trajectory(folder.path / "a.json"));
+        auto& place = by < 1e-6 ? trajectory.steps[1].nodes.back()[1].position : trajectory.steps[1].nodes.back()[0].position;
+        place.y() += by;
+        REQUIRE(write_trajectory(folder.path / "a.json", trajectory, model).empty());
+        CHECK_FALSE(read_trajectory(folder.path / "a.json"));
+    }
+    Trajectory turned = random_path(model, 2);
+    turned.steps[0].nodes.back()[0].rotation_vector.x() += 1e-13;
+    REQUIRE(write_trajectory(folder.path / "a.json", turned, model).empty());
+    CHECK_FALSE(read_trajectory(folder.path / "a.json"));
+}
+
+TEST_CASE("Whatever is done to a trajectory file, its reader answers", "[stepper]") {
+    const ChangedFile file;
+    std::mt19937_64 random(17);
+    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+    const std::vector<std::string> tokens{"1e308", "-1",    "0",  "1e-320",     "[]", "{}", "null",
+                                          "\"x\"", "[[1]]", "-0", "4294967296", ",",  "\n", "]"};
+    int refused = 0;
+    constexpr int changes = 4000;
+    for (int i = 0; i < changes; ++i) {
+        std::string text = file.text;
+        for (std::size_t n = 1 + below(3); n > 0; --n) {
+            const std::size_t at = below(text.size()), length = std::min(text.size() - at, 1 + below(30));
+            const std::size_t number = text.find_first_of("0123456789[\"", at), end = text.find_first_of(",]}", number);
+            switch (below(5)) {
+                case 0:
+                    text.erase(at, length);
+                    break;
+                case 1:
+                    text.insert(at, text.substr(below(text.size()), length));
+                    break;
+                case 2:
+                    text[at] = static_cast<char>('0' + below(10));
+                    break;
+                default:
+                    if (end != std::string::npos) text.replace(number, end - number, tokens[below(tokens.size())]);
+            }
+        }
+        const auto read = parse_trajectory("fuzz", text);  // no exception, no contract broken
+        if (!read) {
+            ++refused;
+            REQUIRE_FALSE(read.errors().empty());
+        }
+    }
+    CHECK(refused > changes / 2);
 }
 
 }  // namespace

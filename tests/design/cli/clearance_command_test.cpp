@@ -227,7 +227,10 @@ TEST_CASE("clearance --certificate writes a proof that validate accepts, and rej
 
     // Other programs write the keys in another order.
     const std::string sorted = folder.write("sorted.certificate.json", nlohmann::json::parse(contents(file)).dump());
-    folder.write("sorted.trajectory.json", nlohmann::json::parse(contents(folder.file("row.trajectory.json"))).dump());
+    std::istringstream lines(contents(folder.file("row.trajectory.json")));
+    std::string sorted_lines;
+    for (std::string line; std::getline(lines, line);) sorted_lines += nlohmann::json::parse(line).dump() + "\n";
+    folder.write("sorted.trajectory.json", sorted_lines);
     CHECK(run("validate " + sorted + " --json").json()["status"] == "accepted");
     CHECK(run("validate " + folder.file("sorted.trajectory.json") + " --json").json()["kind"] == "trajectory");
 

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/records/scene_parts.hpp"
+
+#include <cstdint>
+
+#include "fettle/core/files/hash.hpp"
+
+namespace fettle::core::records {
+namespace {
+
+// Numbers and matrices of them, each with its size where that may vary.
+class Part {
+public:
+    Part& add(double x) {
+        hash_.add(x);
+        return *this;
+    }
+    template <class Derived>
+    Part& add(const Eigen::MatrixBase<Derived>& values) {
+        hash_.add(static_cast<std::uint64_t>(values.size()));
+        for (Eigen::Index j = 0; j < values.cols(); ++j)
+            for (Eigen::Index i = 0; i < values.rows(); ++i) hash_.add(static_cast<double>(values(i, j)));
+        return *this;
+    }
+    Part& add(const std::vector<double>& values) {
+        hash_.add(static_cast<std::uint64_t>(values.size()));
+        for (const double x : values) hash_.add(x);
+        return *this;
+    }
+    Part& add(const kinematics::Pose& pose) { return add(pose.rotation).add(pose.position); }
+
+    std::string value() const { return files::hexadecimal(hash_.value()); }
+
+private:
+    files::Fnv1a hash_;
+};
+
+template <class Add>
+std::string of_bodies(const model::Model& model, const Add& add) {
+    Part part;
+    for (const model::Body& body : model.bodies) add(part, body);
+    return part.value();
+}
+
+void add_motion(Part& part, const model::Body& body) {
+    for (const auto& curve : body.prescribed) {
+        part.add(curve ? 1 : 0);
+        if (!curve) continue;
+        part.add(curve->rate).add(curve->times).add(curve->values).add(curve->stop_time ? 1 : 0).add(curve->stop_time.value_or(0));
+    }
+    part.add(body.script.times);
+    for (const kinematics::Pose& pose : body.script.poses) part.add(pose);
+}
+
+}  // namespace
+
+std::vector<ScenePart> scene_parts(const model::Model& model) {
+    const double integrator = static_cast<double>(model.integrator), adaptive = model.adaptive_kappa ? 1 : 0;
+    return {
+        {"time step", Part().add(model.timestep).value()},
+        {"integrator", Part().add(integrator).value()},
+        {"gravity", Part().add(model.gravity).value()},
+        {"contact model", Part().add(model.dhat).add(model.dmin).add(model.kappa).add(adaptive).add(model.area_weighted ? 1 : 0).value()},
+        {"friction", Part().add(model.friction.mu).add(model.friction.eps_v).add(model.friction.rounds).value()},
+        {"solver's tolerance", Part().add(model.velocity_tolerance).value()},
+        {"body types and groups", of_bodies(model, [](Part& p, const auto& b) { p.add(static_cast<double>(b.type)).add(b.group); })},
+        {"masses", of_bodies(model, [](Part& p, const auto& b) { p.add(b.moments); })},
+        {"materials", of_bodies(model, [](Part& p, const auto& b) { p.add(b.material); })},
+        {"start poses", of_bodies(model, [](Part& p, const auto& b) { p.add(b.pose_start); })},
+        {"start velocities", of_bodies(model, [](Part& p, const auto& b) { p.add(b.velocity_start); })},
+        {"motors and scripts", of_bodies(model, add_motion)},
+        {"loads", of_bodies(model, [](Part& p, const auto& b) { p.add(b.force).add(b.torque); })},
+    };
+}
+
+}  // namespace fettle::core::records
