@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/energy/inertia.hpp"
+#include "fettle/core/energy/mass_matrix.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -73,7 +73,7 @@ std::vector<Matrix6> shift_unit(const StepProblem& problem, const Iterate& at, c
     for (std::size_t i = 0; i < unit.size(); ++i) {
         Matrix6 to_tangent = Matrix6::Identity();
         to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
-        const Matrix6 inertia = energy::inertia_hessian(at.poses[i].rotation, problem.model->bodies[i].moments);
+        const Matrix6 inertia = energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
         unit[i] = to_tangent.transpose() * inertia * to_tangent;
         unit[i].diagonal() += rounding_share * d.hessian.diagonal[i].diagonal().cwiseAbs();
         largest = std::max(largest, unit[i].diagonal().maxCoeff());
@@ -180,6 +180,7 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
     measure_step(d, model, dofs, direction);
+    if (!std::isfinite(direction.residual + direction.rounding + direction.slope + direction.motion)) return std::nullopt;
     return direction;
 }
 
