@@ -114,7 +114,7 @@ private:
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         if (result_.iterations > 0) find_contacts();
         const std::optional<Direction> direction = find_direction();
-        if (!direction) return stop(NewtonStatus::not_converged, "the forces or their derivatives are not finite numbers");
+        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
@@ -123,10 +123,9 @@ private:
             return stop(failure(*direction), failure_message(*direction, "too many Newton iterations"));
         if (solved && is_stagnant(*direction)) {
             if (direction->residual <= usable_residual) return stop(NewtonStatus::converged);
-            if (direction->residual <= saddle_growth * std::max(least_residual_, escaping_residual_))
+            if (direction->residual <= saddle_growth * least_residual_)
                 return stop(NewtonStatus::not_converged,
                             failure_message(*direction, "rounding stops the solve before it is accurate enough for a gradient"));
-            escaping_residual_ = direction->residual;
             since_least_ = 0;  // leaving a saddle, whose first gains are below rounding
         }
         ++result_.iterations;
@@ -266,7 +265,6 @@ private:
     int projected_iterations_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
     int since_least_ = 0;
-    double escaping_residual_ = 0;  // when a saddle was last taken for the reason of no progress
     NewtonResult result_;
 };
 

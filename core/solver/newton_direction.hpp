@@ -38,7 +38,7 @@ struct Direction {
 ///                 until it is.
 /// @param targets  as for minimise.
 /// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
-/// @return nullopt if gradient or Hessian are not finite: nothing else stops it.
+/// @return nullopt if gradient, Hessian or what follows from them are not finite: nothing else stops it.
 std::optional<Direction> newton_direction(const energy::StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
                                           contact::HessianKind kind, double drive, NewtonWorkspace& workspace);
 
