@@ -5,7 +5,7 @@
 /// linear in P_hat and in M, so that the maps are a product each.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "fettle/adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 
@@ -23,5 +23,8 @@ inline Matrix34 inertia_gradient_tangent(const Matrix34& pose_minus_hat, const M
                                          const Matrix4& moments_dot) {
     return pose_minus_hat_dot * moments + pose_minus_hat * moments_dot;
 }
+
+/// Refuses a body that moves freely whose moments are not density * solid_moments(vertices).
+extern const TermAdjoint inertia_term_adjoint;
 
 }  // namespace fettle::adjoint::energy

@@ -4,12 +4,10 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::stepper {
@@ -37,7 +35,8 @@ public:
         out_.assign(seeds.size(), zero_model_gradient(model, steps));
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
-        moments_bar_.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
+        step_bar_.pose_hat_bar = end_;
+        step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
         lambda_ = motion_ = y_bar_;
         left_jacobian_.resize(bodies);
@@ -72,15 +71,16 @@ private:
         const LinearisedStep step = linearise_step(model_, trajectory_, t);
         if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
         solve(step);
+        for (auto& bodies : step_bar_.pose_hat_bar)
+            for (Matrix34& bar : bodies) bar.setZero();
+        energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             const std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 prescribed_back(t, s, i, step, h_lambda[i]);
-                inertia_back(t, s, i, step);
+                pose_hat_back(t, s, i);
             }
         }
-        const contact::ContactsAtPose at{model_, step.contacts, step.poses, step.problem.barrier};
-        contact::subtract_contact_vertices_adjoint(at, motion_, out_);
         return {};
     }
 
@@ -127,14 +127,10 @@ private:
         start_[s][i].leftCols<3>() += 0.5 * cross_matrix(base_bar) * trajectory_.poses[t][i].rotation;
     }
 
-    // The residual is linear in P_hat, in M and in the force.
-    void inertia_back(int t, std::size_t s, std::size_t i, const LinearisedStep& step) {
+    // P_hat of implicit Euler, from the two configurations before.
+    void pose_hat_back(int t, std::size_t s, std::size_t i) {
         const double h = model_.timestep;
-        Matrix34 v;
-        v << cross_matrix(motion_[s][i].tail<3>()) * step.poses[i].rotation, motion_[s][i].head<3>();
-        const Matrix34 pose_hat_bar = -energy::inertia_pose_hat_adjoint(v, model_.bodies[i].moments);
-        moments_bar_[s][i] -= energy::inertia_moments_adjoint(v, pose_matrix(step.poses[i]) - step.problem.pose_hat[i]);
-        out_[s].bodies[i].force_bar += step.problem.weight * motion_[s][i].head<3>();
+        const Matrix34& pose_hat_bar = step_bar_.pose_hat_bar[s][i];
         out_[s].gravity_bar += h * h * pose_hat_bar.col(3);
         if (t > 0) {
             start_[s][i] += 2 * pose_hat_bar;
@@ -153,9 +149,9 @@ private:
             for (std::size_t s = 0; s < seeds_.size(); ++s) {
                 BodyGradient& bar = out_[s].bodies[i];
                 bar.pose_start_bar = end_[s][i];
-                if (moments_bar_[s][i].isZero(0)) continue;
-                bar.density_bar = moments_bar_[s][i].cwiseProduct(solid).sum();
-                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[s][i],
+                if (step_bar_.moments_bar[s][i].isZero(0)) continue;
+                bar.density_bar = step_bar_.moments_bar[s][i].cwiseProduct(solid).sum();
+                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * step_bar_.moments_bar[s][i],
                                                 bar.vertices_bar);
             }
         }
@@ -168,7 +164,7 @@ private:
     core::solver::LinearSolver solver_;
     std::vector<ModelGradient> out_;
     std::vector<std::vector<Matrix34>> end_, start_, before_;  // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
-    std::vector<std::vector<Matrix4>> moments_bar_;            // [seed][body]
+    energy::StepGradient step_bar_;                            // P_hat's of the step at hand; the moments' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
     std::vector<Matrix3> left_jacobian_;
 };

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {
@@ -20,53 +20,21 @@ std::vector<Matrix34> velocities_at(const core::model::Model& model, const core:
     return velocities;
 }
 
-bool has_free_dof(const core::model::Body& body) {
-    for (int k = 0; k < 6; ++k)
-        if (is_free(body, k)) return true;
-    return false;
-}
-
-core::base::Error refusal(const std::string& where, const std::string& what) {
-    return {core::base::ErrorCode::unsupported, where, what + " cannot be differentiated"};
-}
-
-/// Settings of the whole model that the sweeps know no derivative of.
-Errors check_settings(const core::model::Model& model) {
+Errors check_integrator(const core::model::Model& model) {
     using core::scene::Integrator;
-    Errors errors;
-    if (model.integrator != Integrator::implicit_euler) {
-        const std::string name = model.integrator == Integrator::bdf2 ? "bdf2" : "newmark";
-        errors.push_back(refusal("integrator", "a simulation by `" + name + "`"));
-        errors.back().message += "; `implicit_euler` can";
-    }
-    if (model.area_weighted) {
-        errors.push_back(refusal("contact/area_weighted", "the area-weighted barrier"));
-        errors.back().message += "; switch `area_weighted` off";
-    }
-    const int count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a) {
-        for (int b = a + 1; b < count; ++b) {
-            if (!may_collide(model, a, b) || friction_coefficient(model, a, b) == 0) continue;
-            errors.push_back(refusal("friction", "friction between '" + model.bodies[a].name + "' and '" + model.bodies[b].name + "'"));
-            errors.back().message += " yet; a gradient needs coefficients of 0";
-            return errors;  // one pair says enough
-        }
-    }
+    if (model.integrator == Integrator::implicit_euler) return {};
+    const std::string name = model.integrator == Integrator::bdf2 ? "bdf2" : "newmark";
+    Errors errors{energy::refusal("integrator", "a simulation by `" + name + "`")};
+    errors.back().message += "; `implicit_euler` can";
     return errors;
 }
 
-Errors check_body(const core::model::Body& body) {
+Errors check_scripts(const core::model::Model& model) {
     Errors errors;
-    if (!body.script.empty()) {
-        errors.push_back(refusal(body.name, "'" + body.name + "' follows a script of poses, which"));
+    for (const core::model::Body& body : model.bodies) {
+        if (body.script.empty()) continue;
+        errors.push_back(energy::refusal(body.name, "'" + body.name + "' follows a script of poses, which"));
         errors.back().message += "; prescribed coordinates can";
-    }
-    if (!has_free_dof(body)) return errors;
-    if (body.torque != Vector3::Zero()) errors.push_back(refusal(body.name, "the torque on '" + body.name + "'"));
-    const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-    if (!((body.moments - solid).norm() <= 1e-9 * solid.norm())) {
-        errors.push_back(refusal(body.name, "'" + body.name + "'"));
-        errors.back().message += ": its mass is not that of a solid of its density";
     }
     return errors;
 }
@@ -113,10 +81,8 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
     FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "a trajectory has a pose before and after each step");
     FETTLE_ASSERT(trajectory.poses[0].size() == model.bodies.size(), "the trajectory is of another model");
     FETTLE_ASSERT(trajectory.timestep == model.timestep, "the trajectory was simulated with another time step");
-    Errors errors = check_settings(model);
-    for (const core::model::Body& body : model.bodies) {
-        for (const auto& error : check_body(body)) errors.push_back(error);
-    }
+    Errors errors = check_integrator(model);
+    for (const Errors& more : {energy::check_terms(model), check_scripts(model)}) errors.insert(errors.end(), more.begin(), more.end());
     for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const double angle = trajectory.steps[t].nodes.back()[i].rotation_vector.norm();

@@ -16,6 +16,7 @@ struct LinearisedStep {
     std::vector<core::kinematics::ChartPoint> points;  ///< the same in the step's chart
     core::contact::ContactSet contacts;                ///< at the step's end
     core::energy::ChartDerivatives derivatives;        ///< gradient and true Hessian in the chart (q, theta)
+    core::energy::DerivativesAt end() const { return {problem, poses, contacts, core::contact::HessianKind::exact}; }
 };
 
 /// Step t, which leads from trajectory.poses[t] to poses[t + 1].
@@ -28,11 +29,10 @@ Errors factorise(const core::stepper::Trajectory& trajectory, int t, const Linea
 MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
                       const core::kinematics::BlockHessian& hessian, const MatrixX& rhs);
 
-/// What the sweeps cannot differentiate, by name: integrators other than implicit Euler, the area-weighted barrier, friction (a coefficient
-/// above 0 between two bodies that may touch), torques, scripts of poses, and a body that moves freely whose moments are not
-/// density * solid_moments(vertices): a shell, a wire, points, a solid with capped openings (all unsupported); a step that turns a body by
-/// a full revolution or more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies,
-/// time step).
+/// What the sweeps cannot differentiate, by name: integrators other than implicit Euler, what the terms refuse (adjoint/energy: shells,
+/// wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of poses (all unsupported); a step
+/// that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the
+/// model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

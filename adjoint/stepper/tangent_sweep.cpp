@@ -4,8 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
@@ -121,18 +120,14 @@ private:
         const std::size_t n = model_.bodies.size();
         std::vector<RotationDerivatives> r(n);
         std::vector<Matrix34> end_dot(n);
-        contact::PoseGradientTangent energy{std::vector<Matrix34>(n, Matrix34::Zero()), std::vector<Matrix34>(n, Matrix34::Zero())};
+        std::vector<Matrix34> pose_hat_dot(n);
         for (std::size_t i = 0; i < n; ++i) {
             r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
             end_dot[i] = known_change(t, i, r[i]);
-            const Matrix34 minus_hat = pose_matrix(step.poses[i]) - step.problem.pose_hat[i];
-            const Matrix4& moments = model_.bodies[i].moments;
-            energy.value[i] = minus_hat * moments;
-            energy.value[i].col(3) -= step.problem.weight * model_.bodies[i].force;
-            energy.dot[i] = adjoint::energy::inertia_gradient_tangent(minus_hat, moments, end_dot[i] - pose_hat_change(i), moments_dot_[i]);
-            energy.dot[i].col(3) -= step.problem.weight * direction_.bodies[i].force_dot;
+            pose_hat_dot[i] = pose_hat_change(i);
         }
-        contact::add_contact_gradient_tangent({model_, step.contacts, step.poses, step.problem.barrier}, end_dot, direction_, energy);
+        const contact::PoseGradientTangent energy =
+            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, moments_dot_}, direction_);
         std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);

@@ -1,7 +1,51 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/energy/inertia.hpp"
 
+#include <algorithm>
+
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/energy/mass_matrix.hpp"
+
 namespace fettle::core::energy {
+namespace {
+
+constexpr int bodies_a_piece = 16;  // that a thread takes at a time
+
+void add_value(const ValueAt& at, TermValues& values) {
+    for (std::size_t i = 0; i < at.poses.size(); ++i) {
+        const model::Body& body = at.problem.model->bodies[i];
+        if (has_free_dof(body)) values.bodies[i] += inertia_potential(pose_matrix(at.poses[i]), at.problem.pose_hat[i], body.moments);
+    }
+}
+
+void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+    base::parallel_for(static_cast<int>(at.poses.size()), bodies_a_piece, [&](int i) {
+        const model::Body& body = at.problem.model->bodies[i];
+        if (!has_free_dof(body)) return;
+        kinematics::PoseGradient gradient;
+        add_inertia_gradient(at.poses[i], at.problem.pose_hat[i], body.moments, gradient);
+        d.own[i].force += gradient.force;
+        d.own[i].arm += gradient.arm;
+        d.own_hessian[i] += mass_matrix(at.poses[i].rotation, body.moments);
+        d.own_magnitude[i] += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
+    });
+}
+
+// Momenta: with M = integral rho [X;1][X;1]^T, integral rho x v^T = P M V^T.
+void add_report(const SolvedStep& step, TermReport& report) {
+    for (std::size_t i = 0; i < step.poses.size(); ++i) {
+        const Matrix4& moments = step.problem.model->bodies[i].moments;
+        if (!(moments(3, 3) > 0)) continue;
+        const Matrix34& velocity = step.end.velocities[i];
+        const Matrix34 momentum = velocity * moments;
+        report.kinetic_energy += 0.5 * momentum.cwiseProduct(velocity).sum();
+        report.linear_momentum += momentum.col(3);
+        const Matrix3 l = pose_matrix(step.end.poses[i]) * momentum.transpose();  // integral rho x v^T
+        report.angular_momentum += Vector3(l(1, 2) - l(2, 1), l(2, 0) - l(0, 2), l(0, 1) - l(1, 0));
+    }
+}
+
+}  // namespace
 
 double inertia_potential(const Matrix34& pose, const Matrix34& pose_hat, const Matrix4& moments) {
     const Matrix34 d = pose - pose_hat;
@@ -15,18 +59,6 @@ void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat
     gradient.arm += g.leftCols<3>() * pose.rotation.transpose();
 }
 
-Matrix6 inertia_hessian(const Matrix3& rotation, const Matrix4& moments) {
-    const Matrix3 second = rotation * moments.topLeftCorner<3, 3>() * rotation.transpose();
-    const Matrix3 first = cross_matrix(rotation * moments.topRightCorner<3, 1>());
-    Matrix6 h;
-    h << moments(3, 3) * Matrix3::Identity(), -first, first, second.trace() * Matrix3::Identity() - second;
-    return h;
-}
-
-Matrix34 implicit_euler_pose_hat(const Matrix34& pose_t0, const Matrix34& velocity_t0, const Vector3& acceleration, double h) {
-    Matrix34 hat = pose_t0 + h * velocity_t0;
-    hat.col(3) += h * h * acceleration;
-    return hat;
-}
+const Term inertia_term{"inertia", add_value, add_derivatives, add_report};
 
 }  // namespace fettle::core::energy

@@ -3,7 +3,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "fettle/core/energy/inertia.hpp"
+#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -29,7 +30,7 @@ Vector6 force_of(const Matrix34& pddot, const Matrix4& moments, const Matrix3& R
 Vector6 rigid_acceleration(const model::Body& body, const Matrix3& R, const Vector3& omega, const Vector6& force, const Vector6& held) {
     Matrix34 bias = Matrix34::Zero();
     bias.leftCols<3>() = cross_matrix(omega) * cross_matrix(omega) * R;
-    Matrix6 h = inertia_hessian(R, body.moments);
+    Matrix6 h = mass_matrix(R, body.moments);
     Vector6 rhs = force - force_of(bias, body.moments, R);
     for (int k = 0; k < 6; ++k)
         if (!is_free(body, k)) rhs -= held[k] * h.col(k);
@@ -133,7 +134,8 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
             hat.col(3) += step.weight * model.gravity;
         } else {
             slip = pose;
-            hat = implicit_euler_pose_hat(pose, velocity, model.gravity, h);
+            hat = pose + h * velocity;
+            hat.col(3) += h * h * model.gravity;
         }
         const model::Body& body = model.bodies[i];
         const bool second_order = model.integrator != Integrator::implicit_euler && !body.torque.isZero(0);

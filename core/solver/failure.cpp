@@ -52,9 +52,12 @@ std::string describe_failure(const FailedStep& step) {
     if (const Closest closest = closest_of(step.contacts); closest.pair)
         out << "; closest pair '" << bodies[closest.pair->first].name << "' and '" << bodies[closest.pair->second].name << "' at "
             << std::sqrt(closest.distance_squared) << " m";
-    out << "; residual " << step.residual << ", kappa " << step.problem.kappa << " N/m";
+    const char* unit = step.problem.model->area_weighted ? " N/m^3" : " N/m";
+    out << "; residual " << step.residual;
+    if (step.shift > 0) out << ", Hessian shifted by " << step.shift << " times the inertia";
+    out << ", kappa " << step.problem.kappa << unit;
     const double wanted = sufficient_kappa(step);
-    if (wanted > step.problem.kappa) out << " (with kappa " << wanted << " N/m the same forces would leave half of dhat)";
+    if (wanted > step.problem.kappa) out << " (with kappa " << wanted << unit << " the same forces would leave half of dhat)";
     return out.str();
 }
 

@@ -16,6 +16,7 @@ struct FailedStep {
     const std::vector<Vector6>& remaining;  ///< of the prescribed coordinates, per body
     const contact::SafeStep& limiting;      ///< of the last search
     double residual = 0;
+    double shift = 0;  ///< of the last Hessian (newton_direction.hpp)
     const std::string& cause;
 };
 

@@ -27,9 +27,11 @@ constexpr int careful_iterations = 4;
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
+constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
+constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
 constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
 constexpr double friction_resolution = 0.1;  // of eps_v
-constexpr double usable_residual = 1e-8;     // of a solve to rounding that stagnates: the adjoint's accuracy
+constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjoint's accuracy
 
 class Minimiser {
 public:
@@ -118,16 +120,19 @@ private:
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         if (result_.iterations > 0) find_contacts();
         const std::optional<Direction> direction = find_direction();
-        if (!direction) return stop(NewtonStatus::not_converged, "the Newton matrix could not be made positive definite");
+        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
         result_.residual = direction->residual;
+        result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
         if (solved && !options_.to_rounding) return stop(NewtonStatus::converged);
         if (result_.iterations >= options_.max_iterations)
             return stop(failure(*direction), failure_message(*direction, "too many Newton iterations"));
         if (solved && is_stagnant(*direction)) {
             if (direction->residual <= usable_residual) return stop(NewtonStatus::converged);
-            return stop(NewtonStatus::not_converged,
-                        failure_message(*direction, "rounding stops the solve before it is accurate enough for a gradient"));
+            if (direction->residual <= saddle_growth * least_residual_)
+                return stop(NewtonStatus::not_converged,
+                            failure_message(*direction, "rounding stops the solve before it is accurate enough for a gradient"));
+            since_least_ = 0;  // leaving a saddle, whose first gains are below rounding
         }
         ++result_.iterations;
         const double fraction = search(*direction);
@@ -154,15 +159,15 @@ private:
             projected_iterations_ = 3;
             return true;
         }
-        if (is_near_enough(direction) && is_slow(direction)) return stop(NewtonStatus::converged);
+        if (is_near_enough(direction) && is_slow(direction) && is_accurate_enough(direction.residual)) return stop(NewtonStatus::converged);
         return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
     }
 
     bool go_on_from_step(const Direction& direction, double fraction) {
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
         if (!has_arrived(direction) && drive_.is_stalled()) {
-            if (is_near_enough(direction)) return stop(NewtonStatus::converged);
-            return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
+            if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
+            if (is_slow(direction) && is_accurate_enough(direction.residual)) return stop(NewtonStatus::converged);
         }
         // A full exact step this small leaves an error of its square over the gap: rounding.
         const double rounding_motion = 1e-7 * std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin);
@@ -170,7 +175,7 @@ private:
         if (!options_.to_rounding || !exact || direction.motion > rounding_motion) return true;
         find_contacts();  // the residual that is reported belongs to the final point
         result_.residual = residual_at(problem_, at_, workspace_);
-        return stop(NewtonStatus::converged);
+        return is_accurate_enough(result_.residual) ? stop(NewtonStatus::converged) : true;
     }
 
     // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the
@@ -234,7 +239,13 @@ private:
 
     bool has_arrived(const Direction& direction) const { return direction.remaining_norm == 0; }
 
-    bool is_slow(const Direction& direction) const { return direction.motion <= velocity_tolerance() * model_.timestep; }
+    // A step that a large shift has shortened says nothing of how far the solution is.
+    bool is_slow(const Direction& direction) const {
+        const bool telling = direction.shift <= telling_shift || direction.residual <= usable_residual;
+        return telling && direction.motion <= velocity_tolerance() * model_.timestep;
+    }
+
+    bool is_accurate_enough(double residual) const { return !options_.to_rounding || residual <= usable_residual; }
 
     // Prescribed coordinates are met to this where contact leaves no more (a gap that closes altogether).
     bool is_near_enough(const Direction& direction) const { return direction.remaining_norm <= prescribed_tolerance * model_.diagonal; }
@@ -244,7 +255,7 @@ private:
     }
 
     std::string failure_message(const Direction& direction, const std::string& cause) const {
-        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, cause});
+        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, direction.shift, cause});
     }
 
     energy::StepProblem problem_;  // the friction lag changes from round to round

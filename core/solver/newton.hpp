@@ -5,7 +5,8 @@
 /// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution. Each iteration moves them by what remains,
 /// and the free ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact
 /// stops larger ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and
-/// Wright, Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere.
+/// Wright, Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere,
+/// shifted by a multiple of the inertia where that is not definite either: a matrix of finite numbers is always factorised.
 ///
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
 /// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from
@@ -26,7 +27,7 @@ enum class NewtonStatus { converged, blocked, not_converged, interrupted };
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
-    bool to_rounding = false;                   ///< go on with exact steps until the residual is at rounding level
+    bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level: "converged" has at most 1e-8
     std::vector<kinematics::ChartPoint> start;  ///< where to begin; empty: where the step starts
     std::function<bool()> should_stop;
 };
@@ -40,7 +41,8 @@ struct NewtonResult {
     int friction_rounds = 0;
     contact::ContactSet contacts;   ///< at the end of the path
     contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
-    double residual = 0;            ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
+    double shift = 0;     ///< largest that made a Hessian definite, in units of the bodies' inertia (newton_direction.hpp); 0: none needed
+    double residual = 0;  ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
 };
 
 /// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/energy/mass_matrix.hpp"
+
 namespace fettle::core::solver {
 namespace {
 
@@ -13,8 +15,11 @@ using energy::ChartDerivatives;
 using energy::StepProblem;
 using kinematics::ChartPoint;
 
-constexpr double largest_turn = 0.3;   // of one iteration [rad], or twice what the body turns in a step as it goes
-constexpr double largest_shift = 0.1;  // of the scene's size, or twice what the body moves
+constexpr double largest_turn = 0.3;             // of one iteration [rad], or twice what the body turns in a step as it goes
+constexpr double largest_shift = 0.1;            // of the scene's size, or twice what the body moves
+constexpr double rounding_shift = 1e-12;         // of the diagonal
+constexpr double smallest_hessian_shift = 1e-2;  // of the body's inertia
+constexpr double rounding_share = 1e-10;         // of the diagonal, for one of the inertia
 
 Vector6 coordinates(const ChartPoint& p) {
     Vector6 y;
@@ -51,24 +56,60 @@ double rounding_of(const ChartDerivatives& d, const model::Model& model, const s
     return sum;
 }
 
-// Leaves the linear solver with a factor of d's Hessian, made definite. @return false if it could not be.
-bool factorise(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d, HessianKind& kind) {
+bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
+    for (std::size_t i = 0; i < d.gradient.size(); ++i)
+        for (int k = 0; k < 6; ++k)
+            if (dofs.index[i][k] >= 0 && !(std::isfinite(d.gradient[i][k]) && d.hessian.diagonal[i].col(k).allFinite())) return false;
+    for (const kinematics::OffDiagonalBlock& b : d.hessian.off_diagonal)
+        if (!b.block.allFinite()) return false;
+    return true;
+}
+
+// What the shift is measured in: each body's inertia, which is definite whatever contact makes of the rest, and a share of the diagonal, as
+// rounding is a share of it. A diagonal entry that is exactly zero, as of a spike balanced on an edge, cannot be raised by a factor.
+std::vector<Matrix6> shift_unit(const StepProblem& problem, const Iterate& at, const ChartDerivatives& d) {
+    std::vector<Matrix6> unit(d.hessian.diagonal.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+        Matrix6 to_tangent = Matrix6::Identity();
+        to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
+        const Matrix6 inertia = energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
+        unit[i] = to_tangent.transpose() * inertia * to_tangent;
+        unit[i].diagonal() += rounding_share * d.hessian.diagonal[i].diagonal().cwiseAbs();
+        largest = std::max(largest, unit[i].diagonal().maxCoeff());
+    }
+    for (Matrix6& block : unit)  // a body without mass that nothing holds
+        for (int k = 0; k < 6; ++k)
+            if (!(block(k, k) > 0)) block(k, k) = largest > 0 ? largest : 1;
+    return unit;
+}
+
+// Leaves the linear solver with a factor of d's Hessian, made definite. A matrix that is finite is always made so: each unit is positive on
+// its diagonal, and grows until it outweighs everything else.
+// @return the shift; nullopt if numbers are not finite.
+std::optional<double> factorise(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d,
+                                HessianKind& kind) {
     const auto is_definite = [&] {
         const auto span = workspace.clock.charge(SolvePhase::linear_solve);
         return workspace.linear.factorise(d.hessian);
     };
-    if (workspace.dofs.count == 0) return true;
-    bool definite = is_definite();
-    if (!definite && kind == HessianKind::exact) {
+    if (!is_finite(d, workspace.dofs)) return std::nullopt;
+    if (workspace.dofs.count == 0 || is_definite()) return 0;
+    if (kind == HessianKind::exact) {
         kind = HessianKind::projected;
         d = derivatives(problem, at, kind, workspace);
-        definite = is_definite();
+        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        if (is_definite()) return 0;
     }
-    for (double shift = 1e-12; !definite && shift < 1e3; shift *= 100) {
-        for (Matrix6& block : d.hessian.diagonal) block.diagonal() *= 1 + shift;
-        definite = is_definite();
+    const std::vector<Matrix6> unit = shift_unit(problem, at, d);
+    const std::vector<Matrix6> unshifted = d.hessian.diagonal;
+    for (Matrix6& block : d.hessian.diagonal) block.diagonal() *= 1 + rounding_shift;
+    if (is_definite()) return 0;
+    for (double shift = smallest_hessian_shift;; shift *= 100) {
+        for (std::size_t i = 0; i < unit.size(); ++i) d.hessian.diagonal[i] = unshifted[i] + shift * unit[i];
+        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        if (is_definite()) return shift;
     }
-    return definite;
 }
 
 void measure_remaining(const std::vector<Vector6>& targets, const std::vector<ChartPoint>& points, const model::Model& model,
@@ -128,8 +169,10 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     const FreeDofs& dofs = workspace.dofs;
     Direction direction;
     ChartDerivatives d = derivatives(problem, at, kind, workspace);
-    if (!factorise(problem, at, workspace, d, kind)) return std::nullopt;
+    const std::optional<double> shift = factorise(problem, at, workspace, d, kind);
+    if (!shift) return std::nullopt;
     direction.kind = kind;
+    direction.shift = *shift;
     direction.residual = residual_of(d, model, dofs);
     direction.rounding = rounding_of(d, model, at.points);
     measure_remaining(targets, at.points, model, dofs, direction);
@@ -137,6 +180,7 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
     measure_step(d, model, dofs, direction);
+    if (!std::isfinite(direction.residual + direction.rounding + direction.slope + direction.motion)) return std::nullopt;
     return direction;
 }
 

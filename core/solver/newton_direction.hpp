@@ -28,14 +28,17 @@ struct Direction {
     double motion = 0;               ///< bound on the largest motion of a point of a body that is solved for [m]
     double residual = 0;             ///< NewtonResult::residual, here
     double rounding = 0;             ///< of the potential's value here: what a difference of two values may be wrong by
+    double shift = 0;                ///< added to the projected Hessian to make it definite, in units of the bodies' inertia; 0: none
     contact::HessianKind kind = contact::HessianKind::exact;
 };
 
-/// @param kind     the Hessian to try first; where the exact one is not positive definite the projected one is taken, and its diagonal
-///                 raised if rounding asks for it.
+/// @param kind     the Hessian to try first; where the exact one is not positive definite the projected one is taken. Where that is not
+///                 definite either (a body in unstable balance is left without stiffness in a direction; rounding), it is shifted by
+///                   shift * (inertia of each body + 1e-10 |diagonal|),   shift = 1e-2, 1, 100, ...
+///                 until it is.
 /// @param targets  as for minimise.
 /// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
-/// @return nullopt if no matrix could be made positive definite.
+/// @return nullopt if gradient, Hessian or what follows from them are not finite: nothing else stops it.
 std::optional<Direction> newton_direction(const energy::StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
                                           contact::HessianKind kind, double drive, NewtonWorkspace& workspace);
 

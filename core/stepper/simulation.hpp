@@ -50,6 +50,7 @@ struct StepReport {
     int contacts = 0;             ///< active pairs at the end of the step
     double minimum_distance = 0;  ///< of the active pairs at the end of the step [m]; infinity if there are none
     double residual = 0;          ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp)
+    double shift = 0;             ///< largest that made a Hessian of the step definite (solver/newton_direction.hpp); 0: none was needed
 };
 
 struct SimulationReport {

@@ -146,7 +146,8 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     StepResult result;
     result.status = simulation_status(solved.status);
     result.message = solved.message;
-    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual};
+    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual,
+                     solved.shift};
     result.state = state;
     if (result.status != SimulationStatus::ok) return result;
     result.path = std::move(driven.path);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+
+#include "fettle/core/geometry/mass_moments.hpp"
+
+namespace fettle::adjoint::energy {
+namespace {
+
+Errors check(const core::model::Model& model) {
+    Errors errors;
+    for (const core::model::Body& body : model.bodies) {
+        if (!core::energy::has_free_dof(body)) continue;
+        const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+        if ((body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
+        errors.push_back(refusal(body.name, "'" + body.name + "'"));
+        errors.back().message += ": its mass is not that of a solid of its density";
+    }
+    return errors;
+}
+
+void subtract_reverse(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
+                      std::vector<ModelGradient>&) {
+    for (std::size_t s = 0; s < motion.size(); ++s)
+        for (std::size_t i = 0; i < at.poses.size(); ++i) {
+            Matrix34 v;
+            v << cross_matrix(motion[s][i].tail<3>()) * at.poses[i].rotation, motion[s][i].head<3>();
+            step_bar.pose_hat_bar[s][i] -= inertia_pose_hat_adjoint(v, at.problem.model->bodies[i].moments);
+            step_bar.moments_bar[s][i] -= inertia_moments_adjoint(v, pose_matrix(at.poses[i]) - at.problem.pose_hat[i]);
+        }
+}
+
+void add_tangent(const StepEnd& at, const StepTangent& step, const ModelTangent&, contact::PoseGradientTangent& out) {
+    for (std::size_t i = 0; i < at.poses.size(); ++i) {
+        const Matrix34 minus_hat = pose_matrix(at.poses[i]) - at.problem.pose_hat[i];
+        const Matrix4& moments = at.problem.model->bodies[i].moments;
+        out.value[i] += minus_hat * moments;
+        out.dot[i] += inertia_gradient_tangent(minus_hat, moments, step.poses_dot[i] - step.pose_hat_dot[i], step.moments_dot[i]);
+    }
+}
+
+}  // namespace
+
+const TermAdjoint inertia_term_adjoint{"inertia", check, subtract_reverse, add_tangent};
+
+}  // namespace fettle::adjoint::energy

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+/// One term of the incremental potential (core/energy/term.hpp) as the sweeps need it: what it cannot differentiate, and the derivative of
+/// its gradient in what a step holds constant, backwards and forwards. Each term is one file here, and an entry in the list of
+/// incremental_potential_adjoint.cpp. Its Hessian in the poses is core's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "fettle/adjoint/model_gradient.hpp"
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/energy/term.hpp"
+
+namespace fettle::adjoint::energy {
+
+/// Where a step ended: the gradient is zero over the free coordinates.
+using StepEnd = core::energy::DerivativesAt;
+
+/// Gradients in the constants of one step that follow from the steps before it and from the shapes, by seed and body.
+struct StepGradient {
+    std::vector<std::vector<Matrix34>> pose_hat_bar;
+    std::vector<std::vector<Matrix4>> moments_bar;
+};
+
+/// Changes of the end poses and of the same constants, by body.
+struct StepTangent {
+    const std::vector<Matrix34>& poses_dot;
+    const std::vector<Matrix34>& pose_hat_dot;
+    const std::vector<Matrix4>& moments_dot;
+};
+
+struct TermAdjoint {
+    const char* name;  ///< that of core's term
+    /// Errors (unsupported) for what the term has in this model that the sweeps know no derivative of.
+    Errors (*check)(const core::model::Model& model);
+    /// With r the term's gradient along motion[seed][body] = (dq, phi) of the adjoint variable: subtracts dr/d(constants) from the step's
+    /// and the model's gradients.
+    void (*subtract_reverse)(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
+                             std::vector<ModelGradient>& model_bar);
+    /// Adds the term's dE/dP (3 x 4 per body) and its change.
+    void (*add_tangent)(const StepEnd& at, const StepTangent& step, const ModelTangent& direction, contact::PoseGradientTangent& out);
+};
+
+/// "`what` cannot be differentiated".
+core::base::Error refusal(const std::string& where, const std::string& what);
+
+}  // namespace fettle::adjoint::energy

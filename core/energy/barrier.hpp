@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+/// The barrier between bodies (contact/contact_set.hpp) as a term of the incremental potential. Reports the energy and the forces that it
+/// puts between bodies. docs/method.md section 4.
+#pragma once
+
+#include "fettle/core/energy/term.hpp"
+
+namespace fettle::core::energy {
+
+extern const Term barrier_term;
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/energy/friction.hpp"
+
+namespace fettle::core::energy {
+namespace {
+
+void add_value(const ValueAt& at, TermValues& values) {
+    values.couplings.push_back(contact::friction_potential(at.problem.friction, at.poses));
+}
+
+void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+    contact::add_friction_derivatives(at.problem.friction, at.poses, at.kind, d.coupling, d.coupling_hessian);
+}
+
+void add_report(const SolvedStep& step, TermReport& report) {
+    const contact::FrictionSet& set = step.problem.friction;
+    for (const contact::BodyPairFriction& pair : set.pairs)
+        for (const contact::FrictionContact& c : pair.contacts) {
+            ContactForce& f = force_between(report, pair.first, pair.second);
+            const bool first = pair.first == f.a;
+            const Vector3 force = (first ? 1.0 : -1.0) / step.problem.weight * friction_force(set, pair, c, step.poses);
+            const Vector3 at = world_position(step.poses[f.a], first ? c.point_first : c.point_second);
+            f.force += force;
+            f.friction += force;
+            f.torque += at.cross(force);
+        }
+}
+
+}  // namespace
+
+const Term friction_term{"friction", add_value, add_derivatives, add_report};
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+/// What is constant while a step's incremental potential is minimised, and the coordinates that it is minimised over: each body's
+/// (q, theta) in the chart of the step, R = exp([theta]) R_t0.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/contact/barrier.hpp"
+#include "fettle/core/contact/friction.hpp"
+#include "fettle/core/energy/time_integration.hpp"
+#include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::energy {
+
+struct StepProblem : IntegrationStep {
+    const model::Model* model = nullptr;
+    std::vector<kinematics::Pose> poses_t0;
+    double kappa = 0;  ///< [N/m], or [N/m^3] if area-weighted
+    contact::BarrierParameters barrier;
+    contact::FrictionSet friction;  ///< empty: none
+};
+
+/// The step that follows `history`, without friction until it is lagged (contact/friction.hpp).
+StepProblem step_problem(const model::Model& model, const History& history, double kappa);
+
+/// The barrier's stiffness from here on.
+void set_kappa(StepProblem& problem, double kappa);
+
+/// The implicit Euler step from `poses` with velocities Pdot, with the model's kappa.
+StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinematics::Pose> poses_t0,
+                                   const std::vector<Matrix34>& velocities_t0);
+
+std::vector<kinematics::Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points);
+
+/// Is anything of this body solved for? Terms of one body leave out those of which nothing is.
+bool has_free_dof(const model::Body& body);
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// One solve: known answers, what is promised of its result, and what it says when it fails. Physics: stepper/*_physics_test.cpp.
+#include "fettle/core/solver/newton.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/solver/failure.hpp"
+#include "fettle/core/solver/newton_direction.hpp"
+#include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+using namespace fettle;
+using namespace fettle::core;
+using namespace fettle::core::solver;
+using namespace fettle::tests::support;
+using Catch::Contains;
+
+namespace {
+
+geometry::Mesh cube() { return box_mesh(Vector3::Constant(-0.1), Vector3::Constant(0.1)); }
+
+model::Model world(std::vector<model::Body> bodies) {
+    model::Model model;
+    model.bodies = std::move(bodies);
+    model.gravity = {0, 0, -10};
+    model.timestep = 0.01;
+    model.velocity_tolerance = 1e-3;
+    model.diagonal = 1;
+    model.kappa = model::choose_kappa(model);
+    return model;
+}
+
+// A cube at rest dhat / 2 above the ground.
+model::Model resting() { return world({make_body("cube", cube(), make_pose(Vector3::Zero(), {0.03, 0.02, 0.1005})), ground_plate()}); }
+
+// A cube that a kinematic one is to push by `push` against a wall.
+model::Model squeezed(double push) {
+    model::Body hand = make_body("hand", cube(), make_pose(Vector3::Zero(), {-0.22, 0, 0}), scene::BodyType::kinematic_body);
+    prescribe(hand, 0, push / 0.01);
+    model::Model model = world({hand, make_body("cube", cube(), make_pose(Vector3::Zero(), Vector3::Zero())),
+                                make_body("wall", cube(), make_pose(Vector3::Zero(), {0.22, 0, 0}), scene::BodyType::static_body)});
+    model.gravity.setZero();
+    return model;
+}
+
+std::vector<Vector6> targets_of(const model::Model& model) {
+    std::vector<Vector6> targets(model.bodies.size(), Vector6::Zero());
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        targets[i].head<3>() = model.bodies[i].pose_start.position;
+        for (int k = 0; k < 6; ++k)
+            if (const auto& curve = model.bodies[i].prescribed[k]) targets[i][k] += curve->rate * model.timestep;
+    }
+    return targets;
+}
+
+NewtonResult solve(const model::Model& model, NewtonOptions options = {}) {
+    if (options.velocity_tolerance == 0) options.velocity_tolerance = model.velocity_tolerance;
+    NewtonWorkspace workspace(model);
+    return minimise(energy::step_problem(model, energy::start_history(model), model.kappa), targets_of(model), workspace, options);
+}
+
+}  // namespace
+
+TEST_CASE("without contact the solution is P_hat", "[newton]") {
+    model::Model model = world({make_body("cube", cube(), make_pose({0.1, 0.2, 0.3}, {0, 0, 5}))});
+    set_velocity(model.bodies[0], {1, 2, 3}, Vector3::Zero());
+    NewtonOptions options;
+    options.to_rounding = true;
+    const NewtonResult result = solve(model, options);
+    REQUIRE(result.status == NewtonStatus::converged);
+    CHECK((result.poses[0].position - Vector3(0.01, 0.02, 5.03 - 1e-3)).norm() < 1e-14);
+    CHECK((result.poses[0].rotation - model.bodies[0].pose_start.rotation).norm() < 1e-12);
+    CHECK(result.residual < 1e-12);
+    CHECK(result.shift == 0);
+    CHECK(result.path.size() == static_cast<std::size_t>(result.iterations) + 1);
+    CHECK(result.path.front()[0].position == model.bodies[0].pose_start.position);
+    CHECK(result.path.back()[0].position == result.poses[0].position);
+}
+
+TEST_CASE("a solve to rounding balances the forces", "[newton]") {
+    const model::Model model = resting();
+    NewtonOptions options;
+    options.to_rounding = true;
+    const NewtonResult result = solve(model, options);
+    REQUIRE(result.status == NewtonStatus::converged);
+    CHECK(result.residual <= 1e-8);
+    CHECK(result.contacts.count > 0);
+    // Its residual is that of the potential's differences.
+    const auto problem = energy::step_problem(model, energy::start_history(model), model.kappa);
+    const contact::Candidates candidates = contact::find_candidates(model, result.poses, model.dhat);
+    const auto value = [&](const VectorX& d) {
+        auto points = result.path.back();
+        points[0].position += d.head<3>();
+        points[0].rotation_vector += d.tail<3>();
+        return energy::incremental_potential(problem, points, poses_of(problem, points), candidates);
+    };
+    const double weight = model.bodies[0].moments(3, 3) * 10 * problem.weight, step = 1e-8;
+    for (int k = 0; k < 6; ++k) {
+        const VectorX d = step * VectorX::Unit(6, k);
+        CHECK(std::abs(value(d) - value(-d)) / (2 * step) < 1e-5 * weight);
+    }
+}
+
+TEST_CASE("prescribed coordinates are met bit for bit", "[newton]") {
+    const model::Model model = squeezed(0.005);
+    const NewtonResult result = solve(model);
+    INFO(result.message);
+    REQUIRE(result.status == NewtonStatus::converged);
+    CHECK(result.poses[0].position.x() == targets_of(model)[0][0]);
+    CHECK(result.poses[2].position == model.bodies[2].pose_start.position);
+}
+
+TEST_CASE("what cannot be followed is told with names and what would do", "[newton]") {
+    const model::Model model = squeezed(0.1);  // 6 cm more than there is
+    const NewtonResult result = solve(model);
+    CHECK(result.status == NewtonStatus::blocked);
+    CHECK_THAT(result.message, Contains("body 'hand' cannot follow its script") && Contains("'cube'") && Contains("closest pair") &&
+                                   Contains("N/m") && !Contains("N/m^3"));
+}
+
+TEST_CASE("a failure tells kappa in the unit that it has", "[newton]") {
+    model::Model model = resting();
+    const NewtonResult result = solve(model);
+    const std::vector<Vector6> nothing(2, Vector6::Zero());
+    const std::string cause = "a reason";
+    const auto told = [&] {
+        const auto problem = energy::step_problem(model, energy::start_history(model), 7);
+        return describe_failure({problem, result.contacts, nothing, {}, 0.5, 100, cause});
+    };
+    CHECK_THAT(told(), Contains("a reason") && Contains("kappa 7 N/m") && !Contains("N/m^3") && Contains("residual 0.5") &&
+                           Contains("shifted by 100 times the inertia"));
+    model.area_weighted = true;
+    CHECK_THAT(told(), Contains("kappa 7 N/m^3"));
+}
+
+TEST_CASE("limits and stop signals are obeyed and told", "[newton]") {
+    const model::Model model = resting();
+    NewtonOptions options;
+    options.max_iterations = 0;
+    const NewtonResult none = solve(model, options);
+    CHECK(none.status == NewtonStatus::not_converged);
+    CHECK_THAT(none.message, Contains("too many Newton iterations"));
+    CHECK(none.iterations == 0);
+    CHECK(none.path.size() == 1);
+    options.max_iterations = 100;
+    options.should_stop = [] { return true; };
+    CHECK(solve(model, options).status == NewtonStatus::interrupted);
+}
+
+TEST_CASE("forces that are not finite are told, not followed", "[newton]") {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e308}) {
+        model::Model model = resting();
+        model.bodies[0].force = {0, 0, bad};
+        const NewtonResult result = solve(model);
+        INFO(bad);
+        CHECK(result.status == NewtonStatus::not_converged);
+        CHECK_FALSE(result.message.empty());
+        CHECK(result.poses[0].position.allFinite());
+    }
+}
+
+TEST_CASE("a model without anything to solve for is solved", "[newton]") {
+    const model::Model model = world({ground_plate()});
+    const NewtonResult result = solve(model);
+    CHECK(result.status == NewtonStatus::converged);
+    CHECK(result.poses[0].position == model.bodies[0].pose_start.position);
+}
+
+TEST_CASE("the direction solves the Newton system and descends", "[newton]") {
+    const model::Model model = resting();
+    const auto problem = energy::step_problem(model, energy::start_history(model), model.kappa);
+    NewtonWorkspace workspace(model);
+    Iterate at;
+    for (const auto& pose : problem.poses_t0) at.points.push_back({pose.position, Vector3(Vector3::Zero())});
+    at.poses = problem.poses_t0;
+    at.contacts = contact::find_contacts(model, contact::find_candidates(model, at.poses, model.dhat), at.poses);
+    REQUIRE(at.contacts.count > 0);
+    const auto direction = newton_direction(problem, at, targets_of(model), contact::HessianKind::projected, 1, workspace);
+    REQUIRE(direction);
+    const auto d = energy::chart_derivatives(problem, at.points, at.poses, at.contacts, contact::HessianKind::projected);
+    CHECK((d.hessian.diagonal[0] * direction->step[0] + d.gradient[0]).norm() < 1e-9 * d.gradient[0].norm());
+    CHECK(direction->step[1] == Vector6::Zero());
+    CHECK(direction->slope < 0);
+    CHECK(direction->slope == Approx(d.gradient[0].dot(direction->step[0])));
+    CHECK(direction->residual == residual_at(problem, at, workspace));
+}
