@@ -75,7 +75,9 @@ double deviation(const std::array<PathSegment, 2>& from, const PathSegment& a, c
     for (const double t : {0.0, 1.0}) {
         const PairPoint off = difference(pair_point(a, b, t, radius_a, radius_b), start);
         const double nearest = square > 0 ? std::clamp(off.dot(step) / square, 0.0, 1.0) : 0.0;
-        largest = std::max(largest, difference(off, step, nearest).norm());
+        const double distance = difference(off, step, nearest).norm();
+        if (!(distance <= largest)) largest = distance;
+        if (std::isnan(largest)) break;
     }
     return slack * largest;
 }
@@ -92,6 +94,8 @@ geometry::Box swept_box(const SweptBody& s, double margin) {
         margin += search_rounding * (pose.position.norm() + root.radius);
     }
     margin += s.deviation(root.radius);
+    constexpr double everywhere = 1e300;
+    if (!std::isfinite(margin)) return {Vector3::Constant(-everywhere), Vector3::Constant(everywhere)};
     box.low.array() -= margin;
     box.high.array() += margin;
     return box;

@@ -31,6 +31,7 @@ struct Candidates {
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
 /// dmin + dhat. Pairs of bodies that are covered already are left alone, the others are searched along the segments.
 /// The bodies may then be anywhere on the segments, the same fraction for all; say with settle() where they went.
+/// A body whose segment is not finite is near all others, with all primitives.
 /// @param allowance  how much more the points of two bodies may approach one another than they do along the segments before the two need
 ///                   another search, [m]. Dear where large: this one must look that much farther.
 void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance, Candidates& candidates);

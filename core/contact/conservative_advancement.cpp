@@ -60,7 +60,7 @@ private:
         const Differences r = motion_.at(t);
         const ClosestDirection c = closest_direction(motion_.type, r);
         SeparatingPlane best = separating_plane(motion_, c.direction, dmin_, t);
-        if (best.gap > threshold_ || c.distance_squared <= square(dmin_ + threshold_)) return best;
+        if (best.gap > threshold_ ? c.is_attained_by(best.gap + dmin_) : c.distance_squared <= square(dmin_ + threshold_)) return best;
         const CandidateDirections all = candidate_directions(motion_.type, r);
         for (int i = 0; i < all.count; ++i) best = better(best, separating_plane(motion_, all.direction[i], dmin_, t));
         return best;
@@ -117,9 +117,9 @@ double distance_lower_bound(PairType type, const PairVertices& x) {
     const Differences r = differences(type, x);
     const Vector3 largest = r.abs().colwise().maxCoeff().matrix().transpose();
     if (!((r - r).sum() == 0 && largest.maxCoeff() < 1e150)) return 0;
-    const double gap = separating_plane_at_rest(r, largest, closest_direction(type, r).direction, 0).gap;
-    if (gap > 0) return gap;
-    double best = 0;
+    const ClosestDirection closest = closest_direction(type, r);
+    double best = std::max(0.0, separating_plane_at_rest(r, largest, closest.direction, 0).gap);
+    if (best > 0 && closest.is_attained_by(best)) return best;
     const CandidateDirections all = candidate_directions(type, r);
     for (int i = 0; i < all.count; ++i) best = std::max(best, separating_plane_at_rest(r, largest, all.direction[i], 0).gap);
     return best;

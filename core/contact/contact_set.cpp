@@ -2,6 +2,7 @@
 #include "fettle/core/contact/contact_set.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -54,6 +55,14 @@ void for_each_pair(const model::Model& model, const BodyPairCandidates& list, co
     }
 }
 
+// Surely at least so far apart. Not so what is not finite: that stays a contact, of infinite potential.
+bool is_beyond(double distance_squared, double limit_squared) {
+    return distance_squared >= limit_squared && distance_squared <= std::numeric_limits<double>::max();
+}
+
+// The lesser; what is not a number wins.
+double least_of(double a, double b) { return a <= b || std::isnan(a) ? a : b; }
+
 // Where a pair stands in the order of its bodies' primitives.
 using Key = std::array<int, 5>;
 Key key_of(const ContactPair& pair) {
@@ -83,8 +92,8 @@ ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& li
     ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
     for_each_pair(model, list, poses, activation, [&](int first, int, ContactPair& pair) {
         pair.closest = closest_points(pair.type, pair.x);
-        if (pair.closest.distance_squared >= activation * activation) return;
-        out.least = std::min(out.least, pair.closest.distance_squared);
+        if (is_beyond(pair.closest.distance_squared, activation * activation)) return;
+        out.least = least_of(out.least, pair.closest.distance_squared);
         (first == list.a ? out.forward : out.backward).contacts.push_back(pair);
     });
     for (BodyPairContacts* contacts : {&out.forward, &out.backward})
@@ -100,9 +109,9 @@ double potential_of(const model::Model& model, const BodyPairCandidates& list, c
     std::vector<std::tuple<int, Key, double>> terms;
     for_each_pair(model, list, poses, parameters.activation, [&](int first, int, ContactPair& pair) {
         pair.closest = closest_points(pair.type, pair.x);
-        if (pair.closest.distance_squared >= activation_squared) return;
-        const double value =
-            pair.closest.distance_squared > dmin_squared ? pair_potential(pair, parameters) : std::numeric_limits<double>::infinity();
+        if (is_beyond(pair.closest.distance_squared, activation_squared)) return;
+        const bool apart = pair.closest.distance_squared > dmin_squared && std::isfinite(pair.closest.distance_squared);
+        const double value = apart ? pair_potential(pair, parameters) : std::numeric_limits<double>::infinity();
         terms.emplace_back(first, key_of(pair), value);
     });
     std::sort(terms.begin(), terms.end());
@@ -125,7 +134,7 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
     ContactSet set;
     double least = std::numeric_limits<double>::infinity();
     for (ListContacts& list : found) {
-        least = std::min(least, list.least);
+        least = least_of(least, list.least);
         for (BodyPairContacts* contacts : {&list.forward, &list.backward}) {
             set.count += static_cast<int>(contacts->contacts.size());
             if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));

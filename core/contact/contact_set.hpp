@@ -21,13 +21,13 @@ struct BodyPairContacts {
 struct ContactSet {
     std::vector<BodyPairContacts> pairs;  ///< in the candidates' order; vertices on the higher body come as a pair of their own
     int count = 0;
-    double minimum_distance = 0;  ///< of the contacts [m]; infinity if there are none
+    double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
 
 /// Contacts among the candidates at `poses`. Contract: candidates cover `poses`; no pair at or below dmin.
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
-/// Sum of the barrier potential over the candidates; infinity where a pair is at or below dmin.
+/// Sum of the barrier potential over the candidates; infinity where a pair is at or below dmin, or its distance is not finite.
 double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses,
                          const BarrierParameters& parameters);
 

@@ -28,6 +28,9 @@ constexpr double piece_share = 0.125;
 /// A hit is reported at this share of the first gap, or at the linear tolerance if that is less: as in conservative advancement.
 constexpr double gap_share = 0.1;
 
+/// The larger deviation; one that is not a number counts as infinite.
+double worse(double a, double b) { return a >= b ? a : (b > a ? b : INFINITY); }
+
 /// One body's turning arms: x_i(s) = R(theta + s w) Y_i without the translation.
 class TurningArms {
 public:
@@ -36,7 +39,7 @@ public:
         double radius_squared = 0;
         for (std::size_t i = 0; i < count; ++i) {
             arms_[i] = segment.base * X[i];
-            radius_squared = std::max({radius_squared, X[i].squaredNorm(), arms_[i].squaredNorm()});
+            radius_squared = worse(worse(radius_squared, X[i].squaredNorm()), arms_[i].squaredNorm());
         }
         radius_ = std::sqrt(radius_squared) * inflate;
         theta_norm_ = theta_.norm();
@@ -65,7 +68,7 @@ public:
     double deviation_rate() const {
         double largest = 0;
         if (speed_ > 0) {
-            for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc_deviation(theta_, w_, arms_[i]));
+            for (std::size_t i = 0; i < count_; ++i) largest = worse(largest, arc_deviation(theta_, w_, arms_[i]));
         }
         return largest * inflate;
     }
@@ -75,7 +78,7 @@ public:
         if (speed_ == 0) return 0;
         const IntervalArc arc(theta_ + s * w_, h * w_);
         double largest = 0;
-        for (std::size_t i = 0; i < count_; ++i) largest = std::max(largest, arc.deviation(arms_[i]));
+        for (std::size_t i = 0; i < count_; ++i) largest = worse(largest, arc.deviation(arms_[i]));
         return largest * inflate;
     }
 
@@ -143,7 +146,7 @@ private:
     double advance(double s, PairVertices& x, double gap) {
         double end = std::min(1.0, s + 4 * piece_), charge = deviation(s, end - s);
         double allowed = whole_share * gap;
-        while (charge > allowed) {
+        while (!(charge <= allowed)) {
             allowed = piece_share * gap;
             // The closed form grows with the square of the piece, the interval bound with its length, and far out not at all.
             const double ratio =

@@ -174,7 +174,9 @@ double first_possible_contact(PairType type, const PairVertices& t0, const PairV
     for (std::size_t i = 0; i < first_count; ++i) {
         for (std::size_t j = first_count; j < 4; ++j) {
             const Vector3 d = t0[i] - t0[j], e = t1[i] - t1[j];
-            speed = std::max(speed, (e - d).norm() + 0x1p-50 * (d.norm() + e.norm()));
+            const double way = (e - d).norm() + 0x1p-50 * (d.norm() + e.norm());
+            if (!std::isfinite(way)) return 0;
+            speed = std::max(speed, way);
         }
     }
     return speed > gap ? gap / speed * (1 - 0x1p-50) : 1;

@@ -2,9 +2,9 @@
 #include "fettle/core/contact/leaf_search.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
-#include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/contact/separating_plane.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -91,7 +91,7 @@ public:
 
     void visit(const NodePair& leaves) {
         const geometry::HierarchyNode &na = body_a_.nodes()[leaves[0]], &nb = body_b_.nodes()[leaves[1]];
-        lost_ = pair_.deviation(na.radius, nb.radius) + search_rounding * pair_.world_size;
+        lost_ = pair_.deviation(na.radius, nb.radius) + search_rounding * (pair_.world_size + pair_.reach);
         margin_ = pair_.margin + lost_;
         const int first_a = placed_a_.place(leaves[0]), first_b = placed_b_.place(leaves[1]);
         for (int i = 0; i < na.count; ++i)
@@ -120,32 +120,25 @@ private:
         return b0.low - a0.high > margin_ && along(n, b, 1).low - along(n, a, 1).high > margin_;
     }
 
-    // Least separation, at the other end, along the direction of the closest points at this one.
-    static double separation(const Vector3& n, const std::array<Ends, 4>& x, int first_count, int end) {
-        double low = n.dot(x[0][end]), high = n.dot(x[3][end]);
-        for (int i = 1; i < first_count; ++i) low = std::min(low, n.dot(x[i][end]));
-        for (int i = first_count; i < 3; ++i) high = std::max(high, n.dot(x[i][end]));
-        return low - high;
-    }
-
-    // Lower bound of the distance over the segments, deviations included.
-    double least_distance(PairType type, const std::array<Ends, 4>& x) const {
+    // Lower bound of the distance of the chords: the better of the planes between the closest points at each end.
+    double least_separation(PairType type, const std::array<Ends, 4>& x) const {
+        const RelativeMotion motion = relative_motion(type, {x[0][0], x[1][0], x[2][0], x[3][0]}, {x[0][1], x[1][1], x[2][1], x[3][1]});
         double best = 0;
-        const int n = first_count(type);
         const bool still = pair_.a->still && pair_.b->still;
         for (int end = 0; end < (still ? 1 : 2); ++end) {
-            const geometry::ClosestPoints c = closest_points(type, {x[0][end], x[1][end], x[2][end], x[3][end]});
-            const double d = std::sqrt(c.distance_squared);
-            if (still || d == 0) return d - lost_;
-            best = std::max(best, std::min(d, separation(c.difference / d, x, n, 1 - end)));
-            if (best - lost_ > margin_) break;
+            const ClosestDirection c = closest_direction(type, end == 0 ? motion.d : motion.e);
+            const SeparatingPlane s = separating_plane(motion, c.direction, 0, end);
+            best = std::max(best, std::min(s.p.minCoeff(), s.q.minCoeff()) - s.limit);
+            if (best > margin_) break;
         }
-        return best - lost_;
+        return motion.usable ? best : 0;
     }
 
     void add(std::vector<PrimitivePair>& list, int i, int j, PairType type, const std::array<Ends, 4>& x) const {
-        const double d = least_distance(type, x);
-        if (d + lost_ <= margin_) list.push_back({i, j, d});
+        const double separation = least_separation(type, x);
+        if (separation > margin_) return;
+        // In this order: what is not a number loses.
+        list.push_back({i, j, std::max(-std::numeric_limits<double>::infinity(), separation - lost_)});
     }
 
     // A box of one or two vertices at both ends against an element's.

@@ -10,7 +10,8 @@
 namespace fettle::core::contact {
 
 /// Appends to the lists of `out` every pair of primitives of the given pairs of leaves that may come within pair.margin along the
-/// segments, with lower bounds of their distances. Contract: no pair of leaves comes twice.
+/// segments, with lower bounds of their distances: proven ones, by a plane that separates the pair at both ends (separating_plane.hpp);
+/// -infinity where nothing is finite. Contract: no pair of leaves comes twice.
 void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, PrimitivePairs& out);
 
 }  // namespace fettle::core::contact

@@ -18,7 +18,7 @@ using PairVertices = std::array<Vector3, 4>;
 /// those by less, the pair needs no second look.
 struct PrimitivePair {
     int a = 0, b = 0;
-    double distance = 0;  ///< [m]
+    double distance = 0;  ///< proven [m]; never NaN
 };
 
 /// Primitives of two bodies, by kind. Each list is sorted by distance.

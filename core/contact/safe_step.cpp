@@ -21,8 +21,25 @@ struct Limits {
     double kept_most;      // and never has to keep more than this [m]
 };
 
-constexpr double rounding = 1e-14;  // of world positions, relative to their size
-constexpr int pairs_a_piece = 8;    // pairs of bodies that a thread takes at a time
+constexpr double u = 0x1p-53;
+constexpr int pairs_a_piece = 8;  // pairs of bodies that a thread takes at a time
+
+// Charged to world positions at least, relative to their size: more than their rounding, but where a body's position and its points'
+// cancel near the world's origin.
+constexpr double usual_rounding = 1e-14;
+
+// Of a body's points at the start: per metre from its reference point, and for its position.
+struct PlaceRounding {
+    double rate, constant;
+    double of(double radius) const { return (rate * radius + constant) * (1 + 1e-12); }
+};
+
+// As rotated_rounding (chord_deviation.hpp), where the rotation vector is exact. For one of at most 1 the cosine is off by 3u, sinc(x) and
+// (1 - cos x)/x^2 by 4u of their values at most 1 and 1/2, so R by u (4 + 15 |theta| + 10 |theta|^2); 12u for the products with base and X.
+PlaceRounding place_rounding(const PathSegment& s) {
+    const double theta = s.rotation_vector_t0.norm();
+    return {theta <= 1 ? u * (17 + 32 * theta) : rotated_rounding(theta, 0, 0, 1) + u, 2 * u * s.position_t0.norm()};
+}
 
 // What is common to all pairs of bodies. Each pair of primitives has a fraction of its own, proven free, and the least of all is wanted;
 // which pairs are looked at closely depends on how far the search has come, on all threads, but none of those passed over has the least.
@@ -30,7 +47,10 @@ class StepSearch {
 public:
     StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits)
         : model_(model), segments_(segments), limits_(limits) {
-        for (const PathSegment& s : segments_) starts_.push_back(pose_at(s, 0));
+        for (const PathSegment& s : segments_) {
+            starts_.push_back(pose_at(s, 0));
+            start_roundings_.push_back(place_rounding(s));
+        }
     }
 
     SafeStep longest(const Candidates& candidates) {
@@ -93,17 +113,20 @@ private:
             radius = std::max(radius, X[i].squaredNorm());
         }
         // A proven lower bound of the distance at the start, and of what the pair can lose: most pairs need no more.
-        const double distance = distance_lower_bound(type, x) - rounding * (x[0].norm() + x[3].norm());
+        radius_a = std::sqrt(radius_a);
+        radius_b = std::sqrt(radius_b);
+        const double seen = distance_lower_bound(type, x);
+        const double needed = 8 * u * seen + start_roundings_[first].of(radius_a) + start_roundings_[second].of(radius_b);
+        const double distance = seen - std::max(usual_rounding * (x[0].norm() + x[3].norm()), needed);
         const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
-        const double travel =
-            (1 + 1e-12) * ((sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * std::sqrt(radius_a) +
-                           sb.rotation_vector_step.norm() * std::sqrt(radius_b));
+        const double travel = (1 + 1e-12) * ((sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * radius_a +
+                                             sb.rotation_vector_step.norm() * radius_b);
         if (distance > kept + travel) return 1;
         const double surely_free = distance > kept ? (1 - 1e-12) * (distance - kept) / travel : 0;
         if (surely_free > least_) return 1;
         // Always the whole segment: a part of it would be another path, by rounding.
         const CurvedCcdResult ccd = curved_ccd(type, sa, sb, X, kept);
-        const double fraction = ccd.hit ? std::max(ccd.toi, surely_free) : 1;
+        const double fraction = ccd.hit ? std::max(ccd.toi, surely_free) : 1;  // in this order: what is not a number loses
         for (double least = least_; fraction < least && !least_.compare_exchange_weak(least, fraction);) {
         }
         return fraction;
@@ -113,6 +136,7 @@ private:
     const std::vector<PathSegment>& segments_;
     const Limits limits_;
     std::vector<Pose> starts_;
+    std::vector<PlaceRounding> start_roundings_;
     std::atomic<double> least_ = 1;  // so far, on all threads
 };
 

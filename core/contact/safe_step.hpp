@@ -14,9 +14,9 @@ struct SafeStep {
     int limiting_a = -1, limiting_b = -1;  ///< bodies of the pair that limits it; -1: nothing does
 };
 
-/// Longest safe fraction of the segments. A pair may lose at most nine tenths of its distance (or come to a quarter of dhat, whichever is
-/// less), so that the barrier stays finite and the next step has room.
-/// Contract: the candidates cover the segments (candidates.hpp).
+/// Longest safe fraction of the segments; 0 where a pair's path is not finite. A pair may lose at most nine tenths of its distance (or come
+/// to a quarter of dhat, whichever is less), so that the barrier stays finite and the next step has room. Contract: the candidates cover
+/// the segments (candidates.hpp).
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
 /// Is the whole of each segment free of pairs at or below dmin? Contract: as above.

@@ -5,11 +5,18 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fettle/core/geometry/accurate_cross.hpp"
+
 namespace fettle::core::contact {
+
+using geometry::accurate_cross;
 
 namespace {
 
 constexpr double u = 0x1p-53;
+
+/// Squares of sines: below the first directions are parallel as far as rounding lets see, below the second cross products cancel.
+constexpr double parallel = 64 * u * u, nearly_parallel = 1e-10;
 constexpr double largest_usable = 1e150;
 
 /// Squares of lengths between these neither overflow nor lose bits.
@@ -94,6 +101,35 @@ ClosestDirection closest_point_edge(PairType type, const Differences& r) {
     return {direction, least};
 }
 
+/// Where the closest points may lie within both primitives, by normals a x b of a face or two edges.
+struct Inside {
+    Vector3 w, a, b;
+};
+Inside inside_case(PairType type, const Differences& r) {
+    // Triangle: the two shorter edges, and the point, from the vertex they share (in a sliver the longer ones are parallel to rounding).
+    // Edges: both, and the difference of their starts.
+    const bool face = type == PairType::point_triangle;
+    const Eigen::Index c = face ? corner_of_shorter_edges(r) : 0;
+    const Vector3 w = row(r, c);
+    return {w, face ? w - row(r, (c + 1) % 3) : row(r, 2) - w, face ? w - row(r, (c + 2) % 3) : w - row(r, 1)};
+}
+
+/// @param first, second  (w x b) . n and (a x w) . n
+bool lies_inside(PairType type, double first, double second, double nn) {
+    if (type == PairType::point_triangle) return first > 0 && second > 0 && nn - first - second > 0;
+    return -first > 0 && -first < nn && second > 0 && second < nn;
+}
+
+/// For slivers and nearly parallel edges.
+ClosestDirection closest_nearly_parallel(PairType type, const Differences& r, const Inside& i) {
+    const Vector3 n = accurate_cross(i.a, i.b);
+    const double nn = n.squaredNorm();
+    const ClosestDirection boundary = closest_point_edge(type, r);
+    if (!(nn > parallel * (i.a.squaredNorm() * i.b.squaredNorm()))) return boundary;
+    if (!lies_inside(type, accurate_cross(i.w, i.b).dot(n), accurate_cross(i.a, i.w).dot(n), nn)) return boundary;
+    return {n, boundary.distance_squared};
+}
+
 }  // namespace
 
 Differences differences(PairType type, const PairVertices& x) {
@@ -144,21 +180,14 @@ SeparatingPlane separating_plane_at_rest(const Differences& r, const Vector3& la
 }
 
 ClosestDirection closest_direction(PairType type, const Differences& r) {
-    const bool face = type == PairType::point_triangle;
-    // Triangle: the two shorter edges, and the point, from the vertex they share (in a sliver the longer ones are parallel to rounding).
-    // Edges: both, and the difference of their starts.
-    const Eigen::Index c = face ? corner_of_shorter_edges(r) : 0;
-    const Vector3 w = row(r, c), a = face ? w - row(r, (c + 1) % 3) : row(r, 2) - w, b = face ? w - row(r, (c + 2) % 3) : w - row(r, 1);
-    const Vector3 n = a.cross(b);
+    const Inside i = inside_case(type, r);
+    const Vector3 n = i.a.cross(i.b);
     const double nn = n.squaredNorm();
+    if (!(nn > nearly_parallel * (i.a.squaredNorm() * i.b.squaredNorm()))) return closest_nearly_parallel(type, r, i);
     // By cross products rather than sums of products of lengths: resolves angles down to rounding instead of its square root.
-    const double first = w.cross(b).dot(n), second = a.cross(w).dot(n);
-    const bool inside = face ? first > 0 && second > 0 && nn - first - second > 0 : -first > 0 && -first < nn && second > 0 && second < nn;
-    if (nn > 0 && inside) {
-        const double height = n.dot(w);
-        return {n, height * height / nn};
-    }
-    return closest_point_edge(type, r);
+    if (!lies_inside(type, i.w.cross(i.b).dot(n), i.a.cross(i.w).dot(n), nn)) return closest_point_edge(type, r);
+    const double height = n.dot(i.w);
+    return {n, height * height / nn};
 }
 
 CandidateDirections candidate_directions(PairType type, const Differences& r) {
@@ -168,13 +197,13 @@ CandidateDirections candidate_directions(PairType type, const Differences& r) {
     const bool face = type == PairType::point_triangle;
     for (Eigen::Index i = 0; i < (face ? 3 : 4); ++i) {
         const Vector3 w = row(pe.to_start, i), e = row(pe.edge, i);
-        if (face) add(e.cross(row(pe.edge, (i + 1) % 3)));
+        if (face) add(accurate_cross(e, row(pe.edge, (i + 1) % 3)));
         const double ee = e.squaredNorm();
         add(w - (ee > 0 ? std::clamp(w.dot(e) / ee, 0.0, 1.0) : 0.0) * e);
-        add(e.cross(w).cross(e));
+        add(accurate_cross(accurate_cross(e, w), e));
         add(w);
     }
-    if (!face) add(row(pe.edge, 0).cross(row(pe.edge, 2)));
+    if (!face) add(accurate_cross(row(pe.edge, 0), row(pe.edge, 2)));
     for (int k = 0; k < 3; ++k) add(Vector3::Unit(k));
     return c;
 }

@@ -2,6 +2,9 @@
 #include "fettle/core/contact/swept_pair.hpp"
 
 #include <cmath>
+#include <limits>
+
+#include "fettle/core/contact/chord_deviation.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -37,7 +40,13 @@ bool are_separated(const SweptPair& pair, const geometry::HierarchyNode& a, cons
 
 SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& segment) {
     const double turn = segment.rotation_vector_step.norm();
-    return {&body, {pose_at(segment, 0), pose_at(segment, 1)}, turn, turn == 0 && segment.position_step.isZero(0)};
+    SweptBody s{&body, {pose_at(segment, 0), pose_at(segment, 1)}, 0, turn == 0 && segment.position_step.isZero(0)};
+    // At the ends and in between.
+    s.loss = 0.125 * turn * turn * (1 + 1e-12) + 2 * rotated_rounding(segment.rotation_vector_t0.norm(), turn, 1, 1);
+    double all = s.loss;
+    for (const kinematics::Pose& pose : s.ends) all += pose.rotation.sum() + pose.position.sum();
+    if (!std::isfinite(all)) s.loss = std::numeric_limits<double>::infinity();
+    return s;
 }
 
 SweptPair swept_pair(const SweptBody& a, const SweptBody& b, double margin) {

@@ -4,7 +4,7 @@
 /// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
 /// (docs/method.md section 7, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that move straight
 /// is concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay
-/// apart.
+/// apart. Nothing is told apart where a pose or a step is not finite.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ inline constexpr double search_rounding = 1e-14;
 struct SweptBody {
     const model::Body* body = nullptr;
     std::array<kinematics::Pose, 2> ends;
-    double turn = 0;     ///< |w| [rad]
+    double loss = 0;     ///< per metre of radius: B0, and the rounding of placed points (chord_deviation.hpp); infinite if not finite
     bool still = false;  ///< the two ends are the same
-    /// How far its points within `radius` may leave their chords in between, [m].
-    double deviation(double radius) const { return 0.125 * turn * turn * radius * (1 + 1e-12); }
+    /// How far its points within `radius` may leave the chords of their computed places in between, besides the rounding of positions, [m].
+    double deviation(double radius) const { return loss * radius; }
 };
 
 SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& segment);
@@ -42,7 +42,7 @@ struct SweptPair {
     const SweptBody *a = nullptr, *b = nullptr;
     double margin = 0;                 ///< nodes and primitives farther apart than this, besides deviations, do not matter [m]
     std::array<SweptAxis, 6> axes;     ///< of both bodies' boxes at the start
-    double reach = 0, world_size = 0;  ///< [m], for rounding
+    double reach = 0, world_size = 0;  ///< of positions [m], for rounding: relative to one another, with radii; in the world
     double deviation(double radius_a, double radius_b) const { return a->deviation(radius_a) + b->deviation(radius_b); }
 };
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/geometry/distance.hpp"
 
+#include "fettle/core/geometry/accurate_cross.hpp"
+
 namespace fettle::core::geometry {
 namespace {
+
+constexpr double unit_roundoff = 0x1p-53;
+
+using Vertices = std::array<const Vector3*, 4>;
 
 // Closest point of vertex `p` (weight sign, index) to the segment of the vertices (i0, i1), whose weights carry the other sign.
 struct PointEdge {
@@ -27,7 +33,7 @@ OnSegment closest_on_segment(const Vector3& p, const Vector3& e0, const Vector3&
     return {t, true, (w - t * e).squaredNorm()};
 }
 
-void finish(const std::array<const Vector3*, 4>& x, ClosestPoints& c) {
+void finish(const Vertices& x, ClosestPoints& c) {
     // Differences to one vertex first: r stays accurate far from the origin because the weights sum to zero.
     c.difference = c.weight[0] * (*x[0] - *x[3]) + c.weight[1] * (*x[1] - *x[3]) + c.weight[2] * (*x[2] - *x[3]);
     c.distance_squared = c.difference.squaredNorm();
@@ -35,7 +41,7 @@ void finish(const std::array<const Vector3*, 4>& x, ClosestPoints& c) {
 
 // The least of the cases; only that one is worked out.
 template <std::size_t N>
-ClosestPoints best_of(const std::array<const Vector3*, 4>& x, const std::array<PointEdge, N>& cases) {
+ClosestPoints best_of(const Vertices& x, const std::array<PointEdge, N>& cases) {
     std::size_t best = 0;
     OnSegment on{};
     for (std::size_t i = 0; i < N; ++i) {
@@ -58,6 +64,41 @@ ClosestPoints best_of(const std::array<const Vector3*, 4>& x, const std::array<P
     return c;
 }
 
+// w = along_u u + along_v v + something normal to both.
+struct InPlane {
+    double along_u, along_v;
+};
+
+// For nearly parallel u and v.
+InPlane accurate_in_plane(const Vector3& u, const Vector3& v, const Vector3& w) {
+    const Vector3 n = accurate_cross(u, v);
+    const double nn = n.squaredNorm();
+    return {accurate_cross(w, v).dot(n) / nn, accurate_cross(u, w).dot(n) / nn};
+}
+
+// The optimum of a convex function over the square or the triangle of parameters lies on its boundary when it is not inside.
+// @param interior  what the coordinates of w make of the closest points; nothing if they are not strictly inside.
+template <class Interior, std::size_t N>
+ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, const Vector3& w, const Interior& interior,
+                      const std::array<PointEdge, N>& boundary) {
+    // By cross products rather than a e - b^2: resolves angles down to rounding instead of its square root.
+    const Vector3 n = u.cross(v);
+    const double nn = n.squaredNorm(), uu = u.squaredNorm(), vv = v.squaredNorm();
+    // Bounds and why they suffice: see the header. What is not a number goes to the boundary.
+    constexpr double parallel = 64 * unit_roundoff * unit_roundoff, least_square = 1e-290;
+    if (!(nn > parallel * (uu * vv) + least_square)) return best_of(x, boundary);
+    ClosestPoints c;
+    if (!interior({w.cross(v).dot(n) / nn, u.cross(w).dot(n) / nn}, c)) return best_of(x, boundary);
+    finish(x, c);
+    const double sine_squared = nn / (uu * vv);
+    constexpr double trusted = 1024 * unit_roundoff;
+    if (c.distance_squared * (sine_squared * sine_squared) >= trusted * trusted * (uu + vv + w.squaredNorm())) return c;
+    const ClosestPoints best = best_of(x, boundary);
+    if (!interior(accurate_in_plane(u, v, w), c)) return best;
+    finish(x, c);
+    return c.distance_squared <= best.distance_squared ? c : best;
+}
+
 // Indices 1, 2, 3 of a triangle's vertices, in order round it, the one across from the longest edge first.
 std::array<int, 3> across_from_longest_edge(const Vector3& t0, const Vector3& t1, const Vector3& t2) {
     const double e01 = (t1 - t0).squaredNorm(), e12 = (t2 - t1).squaredNorm(), e20 = (t0 - t2).squaredNorm();
@@ -68,54 +109,39 @@ std::array<int, 3> across_from_longest_edge(const Vector3& t0, const Vector3& t1
 }  // namespace
 
 ClosestPoints point_triangle_closest(const Vector3& p, const Vector3& t0, const Vector3& t1, const Vector3& t2) {
-    const std::array<const Vector3*, 4> x{&p, &t0, &t1, &t2};
+    const Vertices x{&p, &t0, &t1, &t2};
     // From the vertex that the two shorter edges share: in a sliver the longer ones are parallel to rounding.
     const std::array<int, 3> corner = across_from_longest_edge(t0, t1, t2);
     const Vector3& c0 = *x[corner[0]];
-    const Vector3 u = *x[corner[1]] - c0, v = *x[corner[2]] - c0, w = p - c0;
-    const Vector3 n = u.cross(v);
-    const double nn = n.squaredNorm();
-    if (nn > 0) {
-        const double b1 = w.cross(v).dot(n) / nn;
-        const double b2 = u.cross(w).dot(n) / nn;
-        const double b0 = 1 - b1 - b2;
-        if (b0 > 0 && b1 > 0 && b2 > 0) {
-            ClosestPoints c;
-            c.weight[0] = 1;
-            c.weight[corner[0]] = -b0;
-            c.weight[corner[1]] = -b1;
-            c.weight[corner[2]] = -b2;
-            c.free_count = 2;
-            c.free_weight[0] = {0, 1, -1, 0};
-            c.free_weight[1] = {0, 1, 0, -1};
-            finish(x, c);
-            return c;
-        }
-    }
-    return best_of<3>(x, {{{0, 1, 2, 1.0}, {0, 2, 3, 1.0}, {0, 3, 1, 1.0}}});
+    const auto interior = [&corner](const InPlane& b, ClosestPoints& c) {
+        const double b0 = 1 - b.along_u - b.along_v;
+        if (!(b0 > 0 && b.along_u > 0 && b.along_v > 0)) return false;
+        c.weight[0] = 1;
+        c.weight[corner[0]] = -b0;
+        c.weight[corner[1]] = -b.along_u;
+        c.weight[corner[2]] = -b.along_v;
+        c.free_count = 2;
+        c.free_weight[0] = {0, 1, -1, 0};
+        c.free_weight[1] = {0, 1, 0, -1};
+        return true;
+    };
+    return closest<decltype(interior), 3>(x, *x[corner[1]] - c0, *x[corner[2]] - c0, p - c0, interior,
+                                          {{{0, 1, 2, 1.0}, {0, 2, 3, 1.0}, {0, 3, 1, 1.0}}});
 }
 
 ClosestPoints edge_edge_closest(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {
-    const std::array<const Vector3*, 4> x{&ea0, &ea1, &eb0, &eb1};
-    const Vector3 u = ea1 - ea0, v = eb1 - eb0, w = eb0 - ea0;
-    // By cross products rather than a e - b^2: resolves angles down to rounding instead of its square root.
-    const Vector3 n = u.cross(v);
-    const double nn = n.squaredNorm();
-    if (nn > 0) {
-        const double s = w.cross(v).dot(n) / nn;
-        const double t = w.cross(u).dot(n) / nn;
-        if (s > 0 && s < 1 && t > 0 && t < 1) {
-            ClosestPoints c;
-            c.weight = {1 - s, s, -(1 - t), -t};
-            c.free_count = 2;
-            c.free_weight[0] = {-1, 1, 0, 0};
-            c.free_weight[1] = {0, 0, 1, -1};
-            finish(x, c);
-            return c;
-        }
-    }
-    // The optimum of a convex function over the square lies on its boundary when it is not inside.
-    return best_of<4>(x, {{{0, 2, 3, 1.0}, {1, 2, 3, 1.0}, {2, 0, 1, -1.0}, {3, 0, 1, -1.0}}});
+    const Vertices x{&ea0, &ea1, &eb0, &eb1};
+    const auto interior = [](const InPlane& b, ClosestPoints& c) {
+        const double s = b.along_u, t = -b.along_v;
+        if (!(s > 0 && s < 1 && t > 0 && t < 1)) return false;
+        c.weight = {1 - s, s, -(1 - t), -t};
+        c.free_count = 2;
+        c.free_weight[0] = {-1, 1, 0, 0};
+        c.free_weight[1] = {0, 0, 1, -1};
+        return true;
+    };
+    return closest<decltype(interior), 4>(x, ea1 - ea0, eb1 - eb0, eb0 - ea0, interior,
+                                          {{{0, 2, 3, 1.0}, {1, 2, 3, 1.0}, {2, 0, 1, -1.0}, {3, 0, 1, -1.0}}});
 }
 
 }  // namespace fettle::core::geometry
