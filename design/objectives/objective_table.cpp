@@ -73,6 +73,9 @@ std::unique_ptr<Objective> read_mass(const JsonNode& node, const ReadContext& co
         const auto body = context.body(entry);
         if (!body) continue;
         bodies.push_back(*body);
+        if (!context.scene.bodies[static_cast<size_t>(*body)].density_given)
+            entry.fail(ErrorCode::missing_key,
+                       "body " + entry.shown() + " has no density in its scene, so it has no mass; give it a `density`");
         if (!is_closed(context.scene.bodies[static_cast<size_t>(*body)].mesh)) {
             entry.fail(ErrorCode::mesh_invalid,
                        "the mesh of body " + entry.shown() + " is open, so it has no volume and no mass by density");
