@@ -5,9 +5,11 @@
 #include <cstdio>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/geometry/shells.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -62,39 +64,12 @@ private:
     Errors& errors_;
 };
 
-/// One side of a triangle: its undirected edge, whether it runs from the smaller index to the larger, and whose it is.
-struct HalfEdge {
-    int low, high;
-    bool forward;
-    int triangle;
-
-    bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
-};
-
-std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
-    std::vector<HalfEdge> halves;
-    halves.reserve(3 * mesh.triangles.size());
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-        for (int k = 0; k < 3; ++k) {
-            const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-            halves.push_back({std::min(a, b), std::max(a, b), a < b, t});
-        }
-    }
-    std::sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
-    });
-    return halves;
-}
-
 /// Calls visit(first, last) with the half edges of each edge that is not in exactly two triangles, once in each direction.
 template <class Visit>
-void visit_faulty_edges(const std::vector<HalfEdge>& halves, Visit visit) {
-    for (std::size_t first = 0, last = 0; first < halves.size(); first = last) {
-        for (last = first + 1; last < halves.size() && halves[last].same_edge(halves[first]);) ++last;
-        const bool sound =
-            last - first == 2 && halves[first].forward != halves[first + 1].forward && halves[first].low != halves[first].high;
-        if (!sound) visit(first, last);
-    }
+void visit_faulty_edges(const std::vector<HalfEdge>& halves, const Visit& visit) {
+    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        if (!is_sound_edge(halves, first, last)) visit(first, last);
+    });
 }
 
 bool check_numbers(const Mesh& mesh, Faults& faults) {
@@ -202,53 +177,13 @@ bool check_self_intersections(const Mesh& mesh, int max_per_kind, Errors& errors
     return pairs.empty();
 }
 
-struct Shell {
-    std::vector<Triangle> triangles;
-    std::vector<int> vertices;  ///< sorted, distinct
-    Box box;
-};
-
-std::vector<Shell> shells_of(const Mesh& mesh) {
-    FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "validate_mesh needs a mesh with connectivity (build_connectivity)");
-    std::vector<Shell> shells(mesh.shell_names.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) shells.at(mesh.triangle_shell[t]).triangles.push_back(mesh.triangles[t]);
-    for (Shell& shell : shells) {
-        shell.box = box_of(corners_of(mesh.vertices, shell.triangles.front()));
-        for (const Triangle& t : shell.triangles) {
-            const Box box = box_of(corners_of(mesh.vertices, t));
-            shell.box = {shell.box.low.cwiseMin(box.low), shell.box.high.cwiseMax(box.high)};
-            shell.vertices.insert(shell.vertices.end(), t.begin(), t.end());
-        }
-        std::sort(shell.vertices.begin(), shell.vertices.end());
-        shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
-    }
-    return shells;
-}
-
-/// Of two shells that do not cross: is `inner` within `outer`? Asked of a vertex that is not on `outer`; all others are on the same side.
-bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertices) {
-    for (const int vertex : inner.vertices) {
-        if (std::binary_search(outer.vertices.begin(), outer.vertices.end(), vertex)) continue;
-        const Vector3 x = vertices.col(vertex);
-        return outer.box.contains(x) && point_in_solid(x, vertices, outer.triangles);
-    }
-    return false;
-}
-
 /// Each shell of a closed mesh without self-intersections: a solid (positive volume) within an even number of others, a cavity
 /// (negative volume) within an odd number.
 void check_orientation(const Mesh& mesh, Faults& faults) {
-    const std::vector<Shell> shells = shells_of(mesh);
-    for (std::size_t s = 0; s < shells.size(); ++s) {
-        int depth = 0;
-        std::string around;
-        for (std::size_t other = 0; other < shells.size(); ++other) {
-            if (other == s || !lies_within(shells[s], shells[other], mesh.vertices)) continue;
-            ++depth;
-            around = mesh.shell_names[other];
-        }
-        const int sign = volume_sign(mesh.vertices, shells[s].triangles);
-        const std::string where = "shell \"" + mesh.shell_names[s] + "\"";
+    for (const Shell& shell : shells_of(mesh)) {
+        const std::string around = shell.around < 0 ? "" : mesh.shell_names[static_cast<std::size_t>(shell.around)];
+        const int sign = shell.volume_sign, depth = shell.depth;
+        const std::string where = "shell \"" + mesh.shell_names[static_cast<std::size_t>(shell.index)] + "\"";
         if (sign == 0) {
             faults.add(ErrorCode::mesh_invalid, where, "encloses no volume");
         } else if (sign < 0 && depth % 2 == 0) {
@@ -300,18 +235,6 @@ bool intersect_improperly(const Matrix3X& vertices, Triangle t, Triangle u) {
         return side(a[2]) == side(b[2]);
     }
     return true;
-}
-
-/// Sign of orient2d(a, b, p') with p' = p + (epsilon, epsilon^2) for every small enough epsilon > 0: never 0 unless a = b.
-int orient2d_perturbed(const Vector2& a, const Vector2& b, const Vector2& p) {
-    const int sign = orient2d(a, b, p);
-    if (sign != 0) return sign;
-    if (a.y() != b.y()) return b.y() < a.y() ? 1 : -1;
-    return (b.x() > a.x()) - (b.x() < a.x());
-}
-
-bool point_on_triangle(const Vector3& point, const Corners& triangle) {
-    return box_of(triangle).contains(point) && segment_intersects_triangle(point, point, triangle);
 }
 
 }  // namespace
@@ -368,26 +291,6 @@ bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vecto
         if (segment_intersects_triangle(a[k], a[(k + 1) % 3], b) || segment_intersects_triangle(b[k], b[(k + 1) % 3], a)) return true;
     }
     return false;
-}
-
-bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
-    // Ray in direction +x, moved by (epsilon, epsilon^2) in y and z so that it meets no edge and no vertex. A point in the plane of a
-    // triangle that the moved ray crosses is on the triangle (it is in its closed projection), which the first test has excluded.
-    const Vector2 p = projected(point, 0);
-    bool inside = false;
-    for (const Triangle& triangle : triangles) {
-        const Corners x = corners_of(vertices, triangle);
-        const Box box = box_of(x);
-        const bool in_projection = (box.low.tail<2>().array() <= p.array()).all() && (p.array() <= box.high.tail<2>().array()).all();
-        if (!in_projection || box.high.x() < point.x()) continue;
-        if (point_on_triangle(point, x)) return false;
-        const Vector2 a = projected(x[0], 0), b = projected(x[1], 0), c = projected(x[2], 0);
-        const int side = orient2d_perturbed(a, b, p);
-        if (side == 0 || orient2d_perturbed(b, c, p) != side || orient2d_perturbed(c, a, p) != side) continue;
-        // Crossed; ahead if the point is on the side from which the +x direction goes through the plane.
-        if (orient3d(x[0], x[1], x[2], point) == -side) inside = !inside;
-    }
-    return inside;
 }
 
 }  // namespace fettle::core::geometry

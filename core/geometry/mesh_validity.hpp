@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/geometry/point_in_solid.hpp"
 
 namespace fettle::core::geometry {
 
@@ -29,8 +30,5 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, int max_co
 
 /// Exact test of two triangles in space (touching counts as intersecting).
 bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b);
-
-/// Is the point strictly inside the solid bounded by closed triangles? (exact parity along a ray; for containment of whole bodies)
-bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::vector<Triangle>& triangles);
 
 }  // namespace fettle::core::geometry

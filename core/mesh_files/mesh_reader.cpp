@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
@@ -41,16 +42,17 @@ Errors checked_file(const std::string& path) {
 
 Result<RawMesh> read_raw(const std::string& path) {
     const std::string extension = lower_case_extension(path);
-    const bool own = extension == ".obj" || extension == ".off",
-               foreign = extension == ".stl" || extension == ".ply" || extension == ".3mf";
+    const bool own = extension == ".obj" || extension == ".off" || extension == ".3mf",
+               foreign = extension == ".stl" || extension == ".ply";
     if (!own && !foreign) {
         return Error{ErrorCode::unsupported, path, "extension `" + extension + "` is not a mesh format; allowed: .stl .obj .off .ply .3mf"};
     }
     if (Errors errors = checked_file(path); !errors.empty()) return errors;
     if (foreign) return read_by_assimp(path);
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return extension == ".obj" ? parse_obj(text.str(), path) : parse_off(text.str(), path);
+    const auto text = files::read_file(path);
+    if (!text) return text.errors();
+    if (extension == ".3mf") return parse_3mf(*text, path);
+    return extension == ".obj" ? parse_obj(*text, path) : parse_off(*text, path);
 }
 
 Errors check_numbers(const RawMesh& raw, const std::string& path) {

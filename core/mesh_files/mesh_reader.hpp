@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// Reads a mesh file into a geometry::Mesh in metres: STL, OBJ, OFF, PLY, 3MF.
 ///
-/// Precision. OBJ and OFF are read by own readers in full double precision: another program's design may have parts that touch, and
-/// rounding to float could make them intersect. STL (binary: float by definition), PLY and 3MF come through assimp, which keeps
-/// coordinates in float32: 100.123456789 becomes 100.123459. Where more is needed, export OBJ.
+/// Precision. OBJ, OFF and 3MF are read by own readers in full double precision: another program's design may have parts that touch, and
+/// rounding to float could make them intersect. STL (binary: float by definition) and PLY come through assimp, which keeps coordinates
+/// in float32: 100.123456789 becomes 100.123459. Where more is needed, export 3MF or OBJ.
 ///
 /// What is kept: positions, faces (polygons are cut into triangles), OBJ polylines and two-vertex faces as codimensional edges, vertices
 /// that nothing uses as codimensional points. What is dropped: normals, colours, texture coordinates, materials, STL attributes. All
-/// objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ, `solid` in
-/// STL, "Object_<id>" in 3MF, whose names assimp passes over): "name", or "name/0",
-/// "name/1", ... where one object has several shells.
+/// objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ, `solid` in STL, in 3MF the object's name,
+/// else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells. Of a 3MF all that its build places is read,
+/// except support.
 ///
 /// Validity as a solid is geometry/mesh_validity.hpp; which part of a scene the mesh is for, scene_reader.hpp.
 #pragma once

@@ -25,7 +25,10 @@ struct RawMesh {
 Result<RawMesh> parse_obj(std::string_view text, const std::string& where);
 Result<RawMesh> parse_off(std::string_view text, const std::string& where);
 
-/// STL, PLY and 3MF through assimp; for 3MF with the unit that the file states.
+/// `bytes`: the whole file. Sizes are bounded, and nothing that a file says about itself is taken on trust.
+Result<RawMesh> parse_3mf(std::string_view bytes, const std::string& where);
+
+/// STL and PLY through assimp.
 Result<RawMesh> read_by_assimp(const std::string& path);
 
 /// Cuts a simple polygon into triangles with the same orientation (ear clipping, exact decisions in the projection along the largest

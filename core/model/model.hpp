@@ -15,7 +15,8 @@
 namespace fettle::core::model {
 
 /// A body's frame is its mesh file's frame, shifted to the reference point c: X = x_file - c. c is the centre of mass of the
-/// first design (of the bounding box, for surfaces) unless the scene names one, and never follows a parameter; neither do the axes.
+/// first design (volume, shell, wires or points, as its MassKind says; the middle of the box where there is no such mass) unless the scene
+/// names one, and never follows a parameter; neither do the axes.
 struct Body {
     std::string name;
     scene::BodyType type = scene::BodyType::dynamic_body;
@@ -60,8 +61,9 @@ struct Model {
     scene::Integrator integrator = scene::Integrator::implicit_euler;
     double velocity_tolerance = 0;  ///< [m/s]
     int max_newton_iterations = 3000;
-    double diagonal = 1;     ///< of the bounding box of everything at the start [m]
-    double length_unit = 1;  ///< of the scene file [m], for reports
+    double diagonal = 1;                ///< of the bounding box of everything at the start [m]
+    double length_unit = 1;             ///< of the scene file [m], for reports
+    std::vector<std::string> warnings;  ///< what build_model took with a doubt; for people, no part of a stored model
 };
 
 inline double friction_coefficient(const Model& model, int a, int b) {
@@ -71,8 +73,9 @@ inline double friction_coefficient(const Model& model, int a, int b) {
 /// Where a kinematic body's script has c's frame at `time`: its start pose before, the last pose after (scene::scripted_pose).
 kinematics::Pose scripted_pose(const Body& body, double time);
 
-/// May these two bodies touch? Not a body with itself, nor bodies of one group, nor two bodies without any free degree of freedom
-/// and without prescribed motion relative to each other by contact: static and kinematic bodies do not collide with each other.
+/// Does contact act between these two? Not on a body with itself, nor within a group (>= 0), nor where neither is dynamic: static and
+/// kinematic bodies never push each other. By type alone: a dynamic body all of whose coordinates are held or driven still meets static
+/// ones, and is stopped by them.
 bool may_collide(const Model& model, int a, int b);
 
 }  // namespace fettle::core::model

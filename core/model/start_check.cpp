@@ -10,6 +10,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/geometry/predicates.hpp"
 
@@ -172,7 +173,7 @@ std::vector<int> samples(const geometry::Mesh& mesh) {
     return out;
 }
 
-/// A point of `inner` in the material of `outer`, if there is one. Contract: their surfaces do not cross; `outer` is closed.
+/// A point of `inner` in the material of `outer`, if there is one. Contract: their surfaces do not cross; `outer` bounds a solid.
 std::optional<Vector3> point_inside(const PlacedBody& inner, const PlacedBody& outer) {
     for (const int v : samples(inner.body->mesh)) {
         const Vector3 point = inner.vertices.col(v);
@@ -209,19 +210,19 @@ private:
     std::string unit_ = "m";
 };
 
-std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, const Model& model, const Messages& messages) {
-    if (gap_squared(a.box, b.box) > model.dmin * model.dmin) return std::nullopt;
-    if (const auto fault = PairSearch(a, b, model.dmin).run()) {
+std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, double dmin, const Messages& messages) {
+    if (gap_squared(a.box, b.box) > dmin * dmin) return std::nullopt;
+    if (const auto fault = PairSearch(a, b, dmin).run()) {
         const std::string elements = shown(*fault->a) + " of `" + a.body->name + "` and " + shown(*fault->b) + " of `" + b.body->name + "`";
         const std::string what = fault->intersects
                                      ? "intersect or touch at the start: " + elements
                                      : "are " + messages.length(fault->distance) + " apart at the start, the minimum separation is " +
-                                           messages.length(model.dmin) + ": " + elements;
+                                           messages.length(dmin) + ": " + elements;
         return messages.error(*a.body, *b.body, what, fault->place);
     }
     for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
         // Whether a mesh is closed is worth finding out only when something lies within its box.
-        if (outer->body->mesh.triangles.empty() || !geometry::is_closed(outer->body->mesh)) continue;
+        if (outer->body->mesh.triangles.empty() || !geometry::bounds_a_solid(outer->body->mesh)) continue;
         if (const auto point = point_inside(*inner, *outer)) {
             return messages.error(*inner->body, *outer->body, "overlap at the start: the first lies inside the second's material", *point);
         }
@@ -229,26 +230,60 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
     return std::nullopt;
 }
 
+/// Might one lie inside the other, where "inside" is not defined? Only of meshes that are meant to be closed: a sheet has no inside.
+std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBody& b) {
+    if (gap_squared(a.box, b.box) > 0) return std::nullopt;
+    for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+        const geometry::Mesh& mesh = outer->body->mesh;
+        if (mesh.triangles.empty()) continue;
+        const auto within = [&](int v) {
+            return ((inner->vertices.col(v) - outer->box.center).cwiseAbs() - outer->box.half).maxCoeff() <= 0;
+        };
+        const std::vector<int> tried = samples(inner->body->mesh);
+        if (std::none_of(tried.begin(), tried.end(), within)) continue;
+        if (geometry::bounds_a_solid(mesh) || !geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) continue;
+        return "whether `" + inner->body->name + "` lies inside `" + outer->body->name +
+               "` at the start cannot be verified: the mesh of `" + outer->body->name + "` is not closed";
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<base::Error> check_start_pair(const Model& model, int a, int b) {
-    return check_pair(place(model.bodies[static_cast<std::size_t>(a)]), place(model.bodies[static_cast<std::size_t>(b)]), model,
+    return check_pair(place(model.bodies[static_cast<std::size_t>(a)]), place(model.bodies[static_cast<std::size_t>(b)]), model.dmin,
                       Messages(model));
 }
 
-base::Errors check_start(const Model& model) {
+StartReport report_start(const Model& model) {
     std::vector<PlacedBody> bodies;
     for (const Body& body : model.bodies) bodies.push_back(place(body));
     const Messages messages(model);
-    base::Errors errors;
+    StartReport report;
     const int count = static_cast<int>(bodies.size());
     for (int i = 0; i < count; ++i) {
         for (int j = i + 1; j < count; ++j) {
-            if (!may_collide(model, i, j)) continue;
-            if (auto error = check_pair(bodies[i], bodies[j], model, messages)) errors.push_back(std::move(*error));
+            const PlacedBody &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
+            const bool grouped = a.body->group >= 0 && a.body->group == b.body->group;
+            if (!may_collide(model, i, j) && grouped) continue;
+            auto error = check_pair(a, b, may_collide(model, i, j) ? model.dmin : 0, messages);
+            if (may_collide(model, i, j)) {
+                const auto doubt = error ? std::nullopt : containment_doubt(a, b);
+                if (doubt) report.warnings.push_back(*doubt);
+                if (error) report.errors.push_back(std::move(*error));
+            } else if (error) {
+                report.warnings.push_back(error->message + " (contact never acts between them: neither is dynamic)");
+            }
         }
     }
-    return errors;
+    constexpr std::size_t most = 20;
+    if (const std::size_t all = report.warnings.size(); all > most) {
+        report.warnings.resize(most);
+        report.warnings.push_back("and " + std::to_string(all - most) + " more pairs of bodies as these");
+    }
+    return report;
 }
+
+base::Errors check_start(const Model& model) { return report_start(model).errors; }
 
 }  // namespace fettle::core::model

@@ -3,20 +3,34 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
 
 namespace fettle::core::model {
 
+struct StartReport {
+    base::Errors errors;                ///< why a simulation cannot start here
+    std::vector<std::string> warnings;  ///< what it starts with all the same
+};
+
 /// For every pair of bodies that may collide: no two elements intersect or touch, none come as close as dmin (judged in floating point),
 /// and neither body lies wholly inside the other's material.
-/// @return one bodies_intersect error per pair at fault, which names the bodies, two elements (the first intersecting ones found, else the
-///         closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
+///   errors: one bodies_intersect error per pair at fault, which names the bodies, two elements (the first intersecting ones found, else
+///           the closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
+///   warnings: pairs that contact never acts on, because neither is dynamic, and that intersect or lie one in the other (bodies of one
+///   group
+///           are meant to); and pairs of which one may lie inside the other, which cannot be verified where the outer mesh is not closed
+///           though meant to be (geometry::is_nearly_closed). At most 20, then a count.
 /// Contract: hierarchies built.
+StartReport report_start(const Model& model);
+
+/// The errors alone.
 base::Errors check_start(const Model& model);
 
-/// The same of one pair, whether the model lets it collide or not; nothing if there is no fault.
+/// The error of one pair, whether the model lets it collide or not; nothing if there is no fault.
 std::optional<base::Error> check_start_pair(const Model& model, int a, int b);
 
 }  // namespace fettle::core::model

@@ -229,6 +229,7 @@ std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timest
     body.type = body_type(node["type"].unless_null(), fixed);
     const files::JsonNode density = node["density"].unless_null();
     body.density = (body.type == BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
+    body.density_given = density.exists() || body.type == BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
     std::vector<Body> bodies;
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
     for (geometry::Mesh& mesh : split ? geometry::split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {

@@ -132,7 +132,8 @@ private:
         if (absolute || diagonal > 0) scene_.velocity_tolerance = absolute ? tolerance : tolerance * diagonal;
     }
 
-    /// All bodies that are not dynamic are one group, which a dynamic body joins when it carries the explicit id of one of them.
+    /// All bodies that are not dynamic are one group, which a dynamic body joins when it carries the explicit id of one of them. Where none
+    /// does they need no number: contact never acts between them anyway, and a start check may speak of them.
     void merge_groups() {
         std::set<int> fixed_ids;
         int highest = -1;
@@ -141,8 +142,11 @@ private:
             highest = std::max(highest, body.group);
         }
         fixed_ids.erase(-1);
+        const bool joined = std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [&](const Body& body) {
+            return body.type == BodyType::dynamic_body && fixed_ids.contains(body.group);
+        });
         for (Body& body : scene_.bodies) {
-            if (body.type != BodyType::dynamic_body || fixed_ids.contains(body.group)) body.group = highest + 1;
+            if (body.type != BodyType::dynamic_body || fixed_ids.contains(body.group)) body.group = joined ? highest + 1 : -1;
         }
     }
 

@@ -17,6 +17,7 @@ using ShapeGenerator = std::function<base::Result<geometry::Mesh>(const ShapeSpe
 struct ReadOptions {
     std::vector<std::string> mesh_dirs;  ///< also looked in for meshes; see find_mesh_file in mesh_files/find_mesh_file.hpp
     ShapeGenerator shape_generator;      ///< empty: a body with `shape` is an error that says so
+    bool strict_meshes = false;  ///< meshes of our own format: MeshPolicy::strict, and nothing is repaired (geometry/mesh_repair.hpp)
 };
 
 }  // namespace fettle::core::scene

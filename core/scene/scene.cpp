@@ -19,6 +19,21 @@ double table_value(const MotionCurve& curve, double time) {
     return curve.values[i - 1] + fraction * (curve.values[i] - curve.values[i - 1]);
 }
 
+template <class Counts>
+double diagonal_of(const Scene& scene, const Counts& counts) {
+    Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
+    Vector3 high = -low;
+    for (const Body& body : scene.bodies) {
+        if (!counts(body)) continue;
+        for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
+            const Vector3 x = kinematics::world_position(body.pose, body.mesh.vertices.col(i));
+            low = low.cwiseMin(x);
+            high = high.cwiseMax(x);
+        }
+    }
+    return low.x() <= high.x() ? (high - low).norm() : 0;
+}
+
 }  // namespace
 
 double motion_value(const MotionCurve& curve, double time) {
@@ -42,16 +57,11 @@ kinematics::Pose scripted_pose(const PoseScript& script, const kinematics::Pose&
 }
 
 double bounding_diagonal(const Scene& scene) {
-    Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
-    Vector3 high = -low;
-    for (const Body& body : scene.bodies) {
-        for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
-            const Vector3 x = kinematics::world_position(body.pose, body.mesh.vertices.col(i));
-            low = low.cwiseMin(x);
-            high = high.cwiseMax(x);
-        }
-    }
-    return low.x() <= high.x() ? (high - low).norm() : 0;
+    return diagonal_of(scene, [](const Body&) { return true; });
+}
+
+double moving_diagonal(const Scene& scene) {
+    return diagonal_of(scene, [](const Body& body) { return body.type != BodyType::static_body; });
 }
 
 }  // namespace fettle::core::scene

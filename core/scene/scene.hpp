@@ -65,8 +65,12 @@ struct Friction {
 /// Time integration (docs/method.md section 3). First order and dissipative; second order; second order and energy keeping.
 enum class Integrator { implicit_euler, bdf2, newmark };
 
-/// How strictly meshes are taken: our own files refuse what a printable part cannot be; the paper's files load with warnings.
-enum class MeshPolicy { strict, lenient };
+/// How strictly a mesh is taken (model/check_scene.hpp).
+enum class MeshPolicy {
+    strict,    ///< a perfect solid or nothing: what generators make, and everything on request
+    tolerant,  ///< what does no harm to a rigid body is a warning: meshes of our own format
+    lenient    ///< as the source paper's program: the reader has said what there is to say
+};
 
 /// A part that a generator makes (design/shapes/); core knows none of them, see ReadOptions in scene_reader.hpp.
 struct ShapeSpec {
@@ -82,7 +86,8 @@ struct Body {
     geometry::Mesh mesh;             ///< vertices in the file's frame, scaled, [m]
     std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if a generator made it
     MeshPolicy mesh_policy = MeshPolicy::strict;
-    double density = 1000;  ///< per what `mass_kind` says
+    double density = 1000;      ///< per what `mass_kind` says
+    bool density_given = true;  ///< false: the file names none, and `density` stands for nothing (a static or kinematic body)
     MassKind mass_kind = MassKind::volume;
     std::string material;                        ///< for friction; empty: none named
     std::optional<double> mu;                    ///< its own friction coefficient
@@ -104,18 +109,21 @@ struct Scene {
     Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
     double timestep = 0.01;             ///< h [s]
     std::optional<double> end_time;     ///< [s]
-    std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of the scene's diagonal
+    std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of moving_diagonal
     double dmin = 0;                    ///< minimum separation [m]
     std::optional<double> kappa;        ///< barrier stiffness [N/m]; default chosen by choose_kappa, and raised as steps need it
     bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
     Friction friction;
     Integrator integrator = Integrator::implicit_euler;
-    std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 diagonal / s
+    std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s
     int max_newton_iterations = 3000;
     std::vector<std::string> warnings;  ///< what a lenient reader accepted
 };
 
 /// Diagonal of the bounding box of everything at the start [m]; 0 for an empty scene.
 double bounding_diagonal(const Scene& scene);
+
+/// The same of the bodies that are not static; 0 if there are none.
+double moving_diagonal(const Scene& scene);
 
 }  // namespace fettle::core::scene

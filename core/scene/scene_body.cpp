@@ -6,6 +6,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
@@ -61,6 +62,7 @@ std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
     if (!node.is_object()) return {body};
     read_name(node.require("name"), body);
     read_geometry(node, body);
+    settle_mesh(node, body);
     body.pose = read_pose(node, unit_, {});
     body.reference_point = node["reference_point"].length3(unit_);
     const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
@@ -107,6 +109,14 @@ void SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
         factors *= scale.number(files::positive).value_or(1);
     }
     geometry::scale_mesh(body.mesh, factors);
+}
+
+/// Files from elsewhere have small faults: what has one answer is mended, and told.
+void SceneBodies::settle_mesh(const files::JsonNode& node, Body& body) {
+    if (body.shape || options_.strict_meshes) return;
+    body.mesh_policy = MeshPolicy::tolerant;
+    if (body.mesh.vertices.cols() == 0 || !body.mesh.vertices.allFinite()) return;
+    for (const std::string& done : geometry::repair_mesh(body.mesh)) node.warn("body `" + body.name + "`: " + done);
 }
 
 void SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
@@ -177,6 +187,7 @@ void SceneBodies::read_mass(const files::JsonNode& node, Body& body) {
     if (!given && known != densities_.end() && body.mass_kind == MassKind::volume) density = known->second;
     if (body.type == BodyType::dynamic_body && !given && !density) node.require("density");
     body.density = density.value_or(body.density);
+    body.density_given = density.has_value();
 }
 
 void SceneBodies::read_group(const files::JsonNode& node, Body& body) {

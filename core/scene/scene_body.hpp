@@ -33,6 +33,7 @@ public:
 private:
     void read_name(const files::JsonNode& node, Body& body);
     void read_geometry(const files::JsonNode& node, Body& body);
+    void settle_mesh(const files::JsonNode& node, Body& body);
     void read_mesh_file(const files::JsonNode& node, Body& body);
     void make_shape(const files::JsonNode& node, Body& body);
     void read_inline(const files::JsonNode& node, Body& body);

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 
 #include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
@@ -16,35 +20,74 @@
 
 namespace fettle::design::cli {
 
-FileKind file_kind(const std::string& path) {
+namespace {
+
+constexpr const char* read_here = "scenes and designs are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf";
+
+std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const char* mesh : {".stl", ".obj", ".off", ".ply", ".3mf"}) {
-        if (extension == mesh) return FileKind::mesh;
-    }
-    if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
-    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
-    return reading::is_design_file(path) ? FileKind::design : FileKind::scene;
+    return extension;
 }
 
-Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
-    LoadedModel loaded;
-    if (reading::is_design_file(path)) {
-        Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
-        if (!file) return file.errors();
-        loaded.scene_path = file->scene_path;
-        loaded.steps = file->design.steps;
-        loaded.warnings = file->warnings;
-        const VectorX values = description::values_of(file->design.parameters);
-        const auto problem = problem::DesignProblem::create(std::move(file->design));
-        if (!problem) return problem.errors();
-        Result<core::model::Model> model = problem->model_at(values);
-        if (!model) return model.errors();
-        loaded.model = std::move(model).value();
-        return loaded;
-    }
-    const Result<core::scene::Scene> scene = core::scene::read_scene(path, reading::scene_read_options(common.mesh_dirs));
+bool is_mesh_extension(const std::string& extension) {
+    const auto meshes = {".stl", ".obj", ".off", ".ply", ".3mf"};
+    return std::find(meshes.begin(), meshes.end(), extension) != meshes.end();
+}
+
+/// A file that is no JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
+bool is_foreign(const std::string& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".json" || extension.empty()) return false;
+    std::ifstream file(path);
+    char first = 0;
+    return static_cast<bool>(file >> first) && first != '{';
+}
+
+Errors foreign_error(const std::string& path) {
+    const std::string extension = extension_of(path);
+    const std::string what = is_mesh_extension(extension)
+                                 ? "is a mesh, not a scene or design; write a scene that names it, or ask fettle validate"
+                                 : "a file of kind `" + extension + "` is not read";
+    return {{ErrorCode::unsupported, path, what + "; " + read_here}};
+}
+
+/// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
+Errors strict_faults(const std::string& scene_path, const CommonOptions& common) {
+    core::scene::ReadOptions options = reading::scene_read_options(common.mesh_dirs);
+    options.strict_meshes = true;
+    const Result<core::scene::Scene> scene = core::scene::read_scene(scene_path, options);
     if (!scene) return scene.errors();
+    return core::model::check_scene(*scene, true).errors;
+}
+
+Result<LoadedModel> load_design(const std::string& path, const CommonOptions& common) {
+    Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+    if (!file) return file.errors();
+    LoadedModel loaded;
+    loaded.kind = FileKind::design;
+    loaded.scene_path = file->scene_path;
+    loaded.steps = file->design.steps;
+    loaded.warnings = file->warnings;
+    if (common.strict) {
+        if (Errors errors = strict_faults(loaded.scene_path, common); !errors.empty()) return errors;
+    }
+    const VectorX values = description::values_of(file->design.parameters);
+    Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
+    if (!problem) return problem.errors();
+    Result<core::model::Model> model = problem->model_at(values);
+    if (!model) return model.errors();
+    loaded.model = std::move(model).value();
+    loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
+    return loaded;
+}
+
+Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& common, bool check_start) {
+    core::scene::ReadOptions read_options = reading::scene_read_options(common.mesh_dirs);
+    read_options.strict_meshes = common.strict;
+    const Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
+    if (!scene) return scene.errors();
+    LoadedModel loaded;
     loaded.scene_path = path;
     loaded.warnings = scene->warnings;
     core::model::BuildOptions options;
@@ -52,6 +95,25 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
     Result<core::model::Model> model = core::model::build_model(*scene, options);
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
+    return loaded;
+}
+
+}  // namespace
+
+FileKind file_kind(const std::string& path) {
+    if (is_mesh_extension(extension_of(path))) return FileKind::mesh;
+    if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
+    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
+    return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;
+}
+
+Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
+    if (is_foreign(path)) return foreign_error(path);
+    const bool design = core::files::has_top_level_key(path, "fettle_design");
+    Result<LoadedModel> loaded = design ? load_design(path, common) : load_scene(path, common, check_start);
+    if (!loaded) return loaded.errors();
+    const auto& more = loaded->model.warnings;
+    loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
     return loaded;
 }
 

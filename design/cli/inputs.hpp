@@ -2,12 +2,14 @@
 /// The files that commands take: which kind a file is, and a model from a scene or a design.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/design/cli/session.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 
 namespace fettle::design::cli {
 
@@ -15,14 +17,17 @@ enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);
 
-/// A model to simulate, and for how many steps (negative: the model's own end time).
+/// A scene or a design, opened once: a model to simulate, and for how many steps (negative: the model's own end time).
 struct LoadedModel {
+    FileKind kind = FileKind::scene;
     core::model::Model model;
     std::string scene_path;
     int steps = -1;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings;                      ///< of the files, the meshes and the start
+    std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
-/// From a scene, or from a design at its parameters' values.
+/// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
+/// what is read instead.
 /// @param check_start  false: a scene whose bodies intersect at the start is taken all the same.
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start = true);
 

@@ -17,6 +17,7 @@ namespace fettle::design::cli {
 struct CommonOptions {
     int threads = 0;  ///< 0: all of the machine's
     bool json = false, quiet = false;
+    bool strict = false;  ///< faults of meshes that are warnings else are errors
     std::vector<std::string> mesh_dirs;
 };
 

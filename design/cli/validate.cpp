@@ -3,11 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/body_facts.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/validate_certificate.hpp"
 #include "fettle/design/problem/design_problem.hpp"
@@ -23,19 +28,47 @@ struct Verdict {
     Errors errors;
     std::vector<std::string> warnings;
     Json facts = Json::object();
+    std::string text;  ///< of the facts
 };
 
-Verdict validate_mesh_file(const std::string& path) {
+// A mesh file without a unit: its places are numbers, not metres.
+std::string without_metres(std::string text) {
+    for (std::size_t at = text.find(") m"); at != std::string::npos; at = text.find(") m", at + 1)) {
+        if (at + 3 == text.size() || std::isalnum(static_cast<unsigned char>(text[at + 3])) == 0) text.erase(at + 1, 2);
+    }
+    return text;
+}
+
+Verdict validate_mesh_file(const std::string& path, bool strict) {
     Verdict verdict;
-    const Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path);
+    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path);
     if (!mesh) {
         verdict.errors = mesh.errors();
         return verdict;
     }
-    verdict.errors = core::geometry::validate_mesh(*mesh, {});
+    if (strict) {
+        verdict.errors = core::geometry::validate_mesh(*mesh, {});
+    } else {
+        verdict.warnings = core::geometry::repair_mesh(*mesh);
+        core::geometry::MeshFindings found = core::geometry::judge_mesh(*mesh, true);
+        verdict.errors = std::move(found.errors);
+        verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
+    }
+    const bool has_unit = path.size() > 4 && (path.ends_with(".3mf") || path.ends_with(".3MF"));
+    if (!has_unit) {
+        for (std::string& warning : verdict.warnings) warning = without_metres(warning);
+        for (Error& error : verdict.errors) error.message = without_metres(error.message);
+    }
+    const Vector3 size = (has_unit ? 1000 : 1) * (mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff());
+    const double volume = (has_unit ? 1e9 : 1) * core::geometry::capped_solid_moments(mesh->vertices, mesh->triangles)(3, 3);
     verdict.facts["vertices"] = mesh->vertices.cols();
     verdict.facts["triangles"] = mesh->triangles.size();
     verdict.facts["shells"] = mesh->shell_names;
+    verdict.facts["unit"] = has_unit ? Json("mm") : Json(nullptr);
+    verdict.facts["size"] = {size.x(), size.y(), size.z()};
+    verdict.facts["volume"] = volume;
+    verdict.text = formatted("  size %.6g x %.6g x %.6g%s, volume %.6g%s\n", size.x(), size.y(), size.z(), has_unit ? " mm" : "", volume,
+                             has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`");
     return verdict;
 }
 
@@ -51,7 +84,7 @@ Verdict validate_trajectory(const std::string& path) {
     return verdict;
 }
 
-Verdict validate_model(const std::string& path, FileKind kind, const CommonOptions& common) {
+Verdict validate_model(const std::string& path, const CommonOptions& common) {
     Verdict verdict;
     const Result<LoadedModel> loaded = load_model(path, common);
     if (!loaded) {
@@ -59,13 +92,16 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
         return verdict;
     }
     verdict.warnings = loaded->warnings;
+    const std::vector<std::string> doubts = doubts_of(loaded->model);
+    verdict.warnings.insert(verdict.warnings.end(), doubts.begin(), doubts.end());
     verdict.facts["bodies"] = body_names(loaded->model);
-    if (kind != FileKind::design) return verdict;
-    const Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
-    if (!file) return verdict;
-    verdict.facts["parameters"] = parameters_json(file->design, description::values_of(file->design.parameters));
+    verdict.facts["parts"] = parts_json(loaded->model);
+    verdict.text = parts_text(loaded->model);
+    if (loaded->problem == nullptr) return verdict;
+    const description::Design& design = loaded->problem->design();
+    verdict.facts["parameters"] = parameters_json(design, description::values_of(design.parameters));
     Json names = Json::array();
-    for (const auto& constraint : file->design.constraints) names.push_back(constraint.name);
+    for (const auto& constraint : design.constraints) names.push_back(constraint.name);
     verdict.facts["constraints"] = names;
     return verdict;
 }
@@ -81,9 +117,9 @@ int run_validate(const Options& options, const CommonOptions& common, Console& c
     if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
-    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path)
+    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path, common.strict)
                             : kind == FileKind::trajectory ? validate_trajectory(path)
-                                                           : validate_model(path, kind, common);
+                                                           : validate_model(path, common);
     if (!verdict.errors.empty()) return console.input_errors(verdict.errors);
     const char* kinds[] = {"scene", "design", "trajectory", "mesh"};
     Json json;
@@ -92,7 +128,7 @@ int run_validate(const Options& options, const CommonOptions& common, Console& c
     json.update(verdict.facts);
     json["warnings"] = verdict.warnings;
     tell_warnings(console, verdict.warnings);
-    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + "\n");
+    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + "\n" + verdict.text);
     return exit_done;
 }
 

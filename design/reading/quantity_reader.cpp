@@ -74,6 +74,10 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
         if (!index) continue;
         bodies.push_back(*index);
         const core::scene::Body& body = context.scene.bodies[static_cast<size_t>(*index)];
+        if (!body.density_given) {
+            entry.fail(ErrorCode::missing_key,
+                       "body " + entry.shown() + " has no density in its scene, so it has no mass; give it a `density`");
+        }
         if (core::scene::centre_of_mass(body.mesh, body.mass_kind)) continue;
         entry.fail(ErrorCode::mesh_invalid, "the mesh of body " + entry.shown() + " has nothing for a density in " +
                                                 core::scene::density_unit(body.mass_kind) + " (of an open mesh there is no volume)");

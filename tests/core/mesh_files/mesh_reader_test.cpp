@@ -229,7 +229,7 @@ TEST_CASE("3MF: its own unit, its build transform") {
         CHECK(mesh.vertices.row(0).minCoeff() == Approx(10 * metres));
         CHECK(mesh.vertices.row(0).maxCoeff() == Approx(12 * metres));
         CHECK(core::geometry::validate_mesh(mesh, {}).empty());
-        CHECK(mesh.shell_names == std::vector<std::string>{"Object_1"});
+        CHECK(mesh.shell_names == std::vector<std::string>{"wheel"});
     }
     const Error unknown = only_error(folder.file_3mf("u.3mf", model_3mf("unit=\"furlong\"")));
     CHECK(unknown.code == ErrorCode::out_of_range);
@@ -284,7 +284,7 @@ TEST_CASE("3MF: components are placed, objects outside the build are left out") 
     CHECK(mesh.vertices.cols() == 12);
     CHECK(mesh.vertices.row(1).maxCoeff() == Approx(0.052));
     CHECK(mesh.vertices.row(0).maxCoeff() == Approx(0.022));
-    CHECK(mesh.shell_names == std::vector<std::string>{"Object_1/0", "Object_1/1", "Object_1/2"});
+    CHECK(mesh.shell_names == std::vector<std::string>{"wheel/0", "wheel/1", "wheel/2"});
 }
 
 TEST_CASE("every mesh of the paper's scenes loads, and is judged as CGAL judges it", "[slow]") {

@@ -396,5 +396,44 @@ TEST_CASE("Stiffness follows mass, step, load and activation distance", "[model]
     CHECK(build_model(scene, options)->kappa == 6);
 }
 
+TEST_CASE("Defaults of size follow what moves", "[model]") {
+    scene::Body cube = box_body("cube", {0, 0, 0.1}, {1, 1, 1.1});
+    scene::Body ground = box_body("ground", {-50, -50, -1}, {50, 50, 0});
+    ground.type = scene::BodyType::static_body;
+    const auto on_ground = build_model(scene_of({cube, ground})), alone = build_model(scene_of({cube}));
+    REQUIRE(on_ground);
+    REQUIRE(alone);
+    CHECK(on_ground->dhat == alone->dhat);
+    CHECK(on_ground->dhat == 1e-3 * alone->diagonal);
+    CHECK(on_ground->velocity_tolerance == alone->velocity_tolerance);
+    CHECK(on_ground->diagonal > 100);
+    // Nothing moves: the size of everything is all there is.
+    cube.type = scene::BodyType::static_body;
+    const auto at_rest = build_model(scene_of({cube, ground}));
+    CHECK(at_rest->dhat == 1e-3 * at_rest->diagonal);
+}
+
+TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
+    scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
+    cube.linear_velocity.x() = 1e150;
+    CHECK(contains(only_error(build_model(scene_of({cube}))).message, "beyond 1e30"));
+    cube.linear_velocity.x() = 0;
+    cube.prescribed[5] = scene::MotionCurve{};
+    cube.prescribed[5]->rate = 1e150;
+    CHECK(contains(only_error(build_model(scene_of({cube}))).where, "/prescribed"));
+}
+
+TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {
+    scene::Body twins = box_body("twins", {0, 0, 0}, {1, 1, 1});
+    twins.mesh = tests::joined(twins.mesh, tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+    CHECK(build_model(scene_of({twins})).errors().size() > 0);
+    twins.mesh_policy = scene::MeshPolicy::tolerant;
+    const auto model = build_model(scene_of({twins}));
+    REQUIRE(model);
+    REQUIRE(model->warnings.size() == 1);
+    CHECK(contains(model->warnings[0], "body `twins`"));
+    CHECK(contains(model->warnings[0], "triangles intersect"));
+}
+
 }  // namespace
 }  // namespace fettle::core::model

@@ -134,5 +134,46 @@ TEST_CASE("Rotated bodies are checked where they are", "[model]") {
     CHECK(errors_of({torus, link}).size() == 1);
 }
 
+TEST_CASE("Pairs that contact never acts on are told, not refused", "[model]") {
+    scene::Body wall = body_of("wall", tests::box_mesh({0, 0, 0}, {4, 4, 4}));
+    wall.type = scene::BodyType::static_body;
+    scene::Body hand = body_of("hand", tests::box_mesh({3, 1, 1}, {6, 2, 2}));
+    hand.type = scene::BodyType::kinematic_body;
+    scene::Body core = body_of("core", tests::box_mesh({1, 1, 1}, {2, 2, 2}));
+    core.type = scene::BodyType::static_body;
+    scene::Scene scene;
+    scene.dmin = 0.1;
+    scene.dhat = 1e-3;
+    scene.bodies = {wall, hand, core};
+    const auto model = build_model(scene);
+    REQUIRE(model);
+    REQUIRE(model->warnings.size() == 2);
+    CHECK(contains(model->warnings[0], "`wall` and `hand` intersect"));
+    CHECK(contains(model->warnings[0], "contact never acts between them"));
+    CHECK(contains(model->warnings[1], "`core` and `wall` overlap at the start: the first lies inside the second's material"));
+    scene.bodies[1].group = scene.bodies[0].group = scene.bodies[2].group = 3;  // said to be meant
+    CHECK(build_model(scene)->warnings.empty());
+    // A dynamic body that is inside stays an error.
+    scene.bodies = {wall, core};
+    scene.bodies[1].type = scene::BodyType::dynamic_body;
+    CHECK(build_model(scene).errors().size() == 1);
+}
+
+TEST_CASE("Where a mesh is not closed, containment is not claimed", "[model]") {
+    scene::Body shell = body_of("shell", tests::ellipsoid_mesh({2, 2, 2}, 8));
+    shell.mesh.triangles.pop_back();
+    shell.mesh.shell_names.clear();
+    geometry::build_connectivity(shell.mesh);
+    shell.type = scene::BodyType::static_body;
+    shell.mesh_policy = scene::MeshPolicy::tolerant;
+    scene::Scene scene;
+    scene.dhat = 1e-3;
+    scene.bodies = {shell, body_of("ball", tests::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}))};
+    const auto model = build_model(scene);
+    REQUIRE(model);
+    REQUIRE(model->warnings.size() == 1);
+    CHECK(contains(model->warnings[0], "whether `ball` lies inside `shell` at the start cannot be verified"));
+}
+
 }  // namespace
 }  // namespace fettle::core::model

@@ -16,6 +16,48 @@ struct Wrong {
     std::string where, message;
 };
 
+TEST_CASE("Numbers beyond any mechanism are refused in both formats", "[scene]") {
+    const Workshop shop;
+    const auto code = [&](const json& scene) {
+        const auto result = shop.read(scene);
+        REQUIRE(result.errors().size() == 1);
+        CHECK(contains(result.errors()[0].message, "at most 1e30"));
+        return result.errors()[0].where;
+    };
+    CHECK(contains(code(with("/bodies/0/position", {1e158, 0, 0})), "#/bodies/0/position/0"));
+    CHECK(contains(code(with("/bodies/0/prescribed", {{"rz", {{"rate", 1e150}}}})), "#/bodies/0/prescribed/rz/rate"));
+    CHECK(contains(code(with("/bodies/0/rotation", {0, 0, 1e160})), "#/bodies/0/rotation/2"));
+    const json fixture = {{"rigid_body_problem", {{"rigid_bodies", {{{"mesh", "near.obj"}, {"position", {0, 1e158, 0}}}}}}}};
+    CHECK(contains(code(fixture), "#/rigid_body_problem/rigid_bodies/0/position/1"));
+}
+
+TEST_CASE("Meshes from elsewhere are mended with a warning, or refused when strict", "[scene]") {
+    const Workshop shop;
+    const auto first = tests::support::box_mesh({0, 0, 0}, {1, 2, 3}).triangles[0];
+    shop.write("scenes/copied.obj",
+               "f " + std::to_string(first[1] + 1) + " " + std::to_string(first[2] + 1) + " " + std::to_string(first[0] + 1) + "\n");
+    const json scene = with("/bodies/0/mesh", "copied.obj");
+    const auto read = shop.read(scene);
+    REQUIRE(read);
+    REQUIRE(read->warnings.size() == 1);
+    CHECK(contains(read->warnings[0], "left out"));
+    ReadOptions strict;
+    strict.strict_meshes = true;
+    const auto untouched = shop.read(scene, strict);
+    REQUIRE(untouched);
+    CHECK(untouched->warnings.empty());
+    CHECK(untouched->bodies[0].mesh_policy == MeshPolicy::strict);
+    CHECK(untouched->bodies[0].mesh.triangles.size() > read->bodies[0].mesh.triangles.size());
+}
+
+TEST_CASE("A static body without a density has none", "[scene]") {
+    const Workshop shop;
+    json scene = with("/bodies/0/type", "static");
+    CHECK(shop.read(scene)->bodies[0].density_given);
+    scene["bodies"][0].erase("density");
+    CHECK_FALSE(shop.read(scene)->bodies[0].density_given);
+}
+
 TEST_CASE("Each wrong input gives its message and its place", "[scene]") {
     const Workshop shop;
     json twice = plain();

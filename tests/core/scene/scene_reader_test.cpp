@@ -36,7 +36,7 @@ TEST_CASE("A plain scene needs no tuning", "[scene]") {
     REQUIRE(scene->bodies.size() == 1);
     const Body& body = scene->bodies[0];
     CHECK(body.type == BodyType::dynamic_body);
-    CHECK(body.mesh_policy == MeshPolicy::strict);
+    CHECK(body.mesh_policy == MeshPolicy::tolerant);
     CHECK(contains(body.where, "a.scene.json#/bodies/0"));
     CHECK((body.mesh.vertices.rowwise().maxCoeff() - Vector3(0.001, 0.002, 0.003)).norm() < 1e-17);
     for (const auto& dof : body.prescribed) CHECK_FALSE(dof);

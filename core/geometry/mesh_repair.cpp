@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/geometry/mesh_repair.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "fettle/core/geometry/half_edges.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/geometry/shells.hpp"
+
+namespace fettle::core::geometry {
+namespace {
+
+std::string place_of(const Mesh& mesh, std::size_t triangle) {
+    char text[160];
+    const Vector3 x = mesh.vertices.col(mesh.triangles[triangle][0]);
+    std::snprintf(text, sizeof text, "triangle %zu at (%.6g, %.6g, %.6g) m", triangle, x.x(), x.y(), x.z());
+    return text;
+}
+
+std::string counted(std::size_t count, const std::string& what, const std::string& several) {
+    return std::to_string(count) + " " + (count == 1 ? what : several);
+}
+
+/// The same corners in the same direction, whichever is first.
+Triangle from_smallest(Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+}
+
+void drop_copies(Mesh& mesh, std::vector<std::string>& done) {
+    std::set<Triangle> seen;
+    std::vector<Triangle> kept;
+    std::size_t first = mesh.triangles.size();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (seen.insert(from_smallest(mesh.triangles[t])).second) {
+            kept.push_back(mesh.triangles[t]);
+        } else {
+            first = std::min(first, t);
+        }
+    }
+    const std::size_t count = mesh.triangles.size() - kept.size();
+    if (count == 0) return;
+    done.push_back(counted(count, "copy of a triangle is", "copies of triangles are") + " left out, first " + place_of(mesh, first) +
+                   ": no effect on the mass");
+    mesh.triangles = std::move(kept);
+    const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
+    build_connectivity(mesh, edges);
+}
+
+/// For every triangle whether it is to be turned, so that each shell is oriented within itself; shells that cannot be are left as they are.
+std::vector<bool> turns_within_shells(const Mesh& mesh) {
+    struct Link {
+        int other;
+        bool same_way;  ///< both run the edge in one direction: one of them is turned over
+    };
+    std::vector<std::vector<Link>> links(mesh.triangles.size());
+    std::vector<bool> orientable(mesh.shell_names.size(), true);
+    const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        const HalfEdge &a = halves[first], &b = halves[last - 1];
+        if (last - first != 2 || a.low == a.high) {
+            orientable[static_cast<std::size_t>(mesh.triangle_shell[static_cast<std::size_t>(a.triangle)])] = false;
+            return;
+        }
+        links[static_cast<std::size_t>(a.triangle)].push_back({b.triangle, a.forward == b.forward});
+        links[static_cast<std::size_t>(b.triangle)].push_back({a.triangle, a.forward == b.forward});
+    });
+    std::vector<int> turn(mesh.triangles.size(), -1);
+    std::vector<bool> out(mesh.triangles.size(), false);
+    for (std::size_t start = 0; start < mesh.triangles.size(); ++start) {
+        const auto shell = static_cast<std::size_t>(mesh.triangle_shell[start]);
+        if (turn[start] >= 0 || !orientable[shell]) continue;
+        std::vector<std::size_t> reached{start};
+        turn[start] = 0;
+        std::size_t turned = 0;
+        for (std::size_t i = 0; i < reached.size() && orientable[shell]; ++i) {
+            for (const Link& link : links[reached[i]]) {
+                const int wanted = turn[reached[i]] ^ static_cast<int>(link.same_way);
+                int& other = turn[static_cast<std::size_t>(link.other)];
+                if (other >= 0 && other != wanted) orientable[shell] = false;  // as on a Moebius strip
+                if (other >= 0) continue;
+                other = wanted;
+                turned += static_cast<std::size_t>(wanted);
+                reached.push_back(static_cast<std::size_t>(link.other));
+            }
+        }
+        if (!orientable[shell]) continue;
+        const int minority = 2 * turned <= reached.size() ? 1 : 0;
+        for (const std::size_t t : reached) out[t] = turn[t] == minority;
+    }
+    return out;
+}
+
+void turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& what, std::vector<std::string>& done) {
+    const auto count = static_cast<std::size_t>(std::count(turns.begin(), turns.end(), true));
+    if (count == 0) return;
+    const auto first = static_cast<std::size_t>(std::find(turns.begin(), turns.end(), true) - turns.begin());
+    done.push_back(what + ": " + counted(count, "triangle is", "triangles are") + " turned, first " + place_of(mesh, first));
+    for (std::size_t t = 0; t < turns.size(); ++t) {
+        if (turns[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    }
+    const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
+    build_connectivity(mesh, edges);
+}
+
+/// Which triangles of a closed mesh belong to shells that are inside out.
+std::vector<bool> turns_of_shells(const Mesh& mesh) {
+    std::vector<bool> out(mesh.triangles.size(), false);
+    const std::vector<Shell> shells = shells_of(mesh);
+    const bool sound = std::all_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.is_oriented(); });
+    if (sound) return out;
+    if (!self_intersections(mesh, 1).empty()) {  // then which is within which has no answer
+        out.assign(out.size(), volume_sign(mesh.vertices, mesh.triangles) < 0);
+        return out;
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Shell& shell = shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
+        // A solid within a solid may be meant: it is told, not turned.
+        out[t] = shell.volume_sign < 0 && shell.depth % 2 == 0;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<std::string> repair_mesh(Mesh& mesh) {
+    std::vector<std::string> done;
+    if (mesh.triangles.empty()) return done;
+    drop_copies(mesh, done);
+    turn_over(mesh, turns_within_shells(mesh), "triangles of one surface were turned over", done);
+    if (bounds_a_solid(mesh)) turn_over(mesh, turns_of_shells(mesh), "the solid was inside out", done);
+    return done;
+}
+
+}  // namespace fettle::core::geometry

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/body_mass.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/geometry/mass_moments.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+constexpr double least_inertia = 1e-8;  ///< of a wire or points, about any axis, in mass times radius squared
+
+}  // namespace
+
+std::optional<Vector3> BodyMeasure::centre() const {
+    if (!closed_enough) return std::nullopt;
+    const Vector3 centre = unit_moments.col(3).head<3>() / unit_moments(3, 3);
+    if (!(std::abs(unit_moments(3, 3)) > 0) || !centre.allFinite()) return std::nullopt;
+    return centre;
+}
+
+BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind) {
+    const bool closed = kind != scene::MassKind::volume || geometry::is_nearly_closed(mesh.vertices, mesh.triangles);
+    return {scene::unit_moments(mesh, kind), closed};
+}
+
+Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure) {
+    if (body.reference_point) return *body.reference_point;
+    if (const auto centre = measure.centre()) return *centre;
+    return 0.5 * (body.mesh.vertices.rowwise().minCoeff() + body.mesh.vertices.rowwise().maxCoeff());
+}
+
+Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat) {
+    Matrix4 moments = body.density * scene::unit_moments(body.mesh, kind);
+    if (kind != scene::MassKind::length && kind != scene::MassKind::vertex) return moments;
+    const double mass = moments(3, 3);
+    const Vector3 first = moments.col(3).head<3>();
+    const Matrix3 central = moments.topLeftCorner<3, 3>() - first * first.transpose() / mass;
+    const Vector3 second = Eigen::SelfAdjointEigenSolver<Matrix3>(central, Eigen::EigenvaluesOnly).eigenvalues();
+    const double radius = std::max(body.radius, dhat);
+    const double lacking = least_inertia * mass * radius * radius - (second[0] + second[1]);
+    if (lacking > 0) moments.topLeftCorner<3, 3>().diagonal().array() += 0.5 * lacking;
+    return moments;
+}
+
+}  // namespace fettle::core::model

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/check_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "fettle/core/base/limits.hpp"
+#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+using base::Error;
+using base::ErrorCode;
+using base::Errors;
+using scene::BodyType;
+using scene::MassKind;
+using scene::MeshPolicy;
+
+std::string place_of(const scene::Scene& scene, const scene::Body& body) {
+    return body.where.empty() ? (scene.path.empty() ? "" : scene.path + ": ") + "body `" + body.name + "`" : body.where;
+}
+
+/// What every mesh must have, whatever the policy: the rest of the program indexes and divides by it.
+Errors check_usable(const scene::Body& body, const std::string& where) {
+    const geometry::Mesh& mesh = body.mesh;
+    const auto count = static_cast<int>(mesh.vertices.cols());
+    if (count == 0) return {{ErrorCode::mesh_invalid, where, "body `" + body.name + "`: the mesh has no vertices"}};
+    for (int i = 0; i < count; ++i) {
+        if (mesh.vertices.col(i).allFinite()) continue;
+        return {{ErrorCode::not_finite, where, "body `" + body.name + "`: vertex " + std::to_string(i) + " of its mesh is not finite"}};
+    }
+    const auto outside = [&](int v) { return v < 0 || v >= count; };
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        if (std::none_of(mesh.edges[e].begin(), mesh.edges[e].end(), outside)) continue;
+        return {
+            {ErrorCode::mesh_invalid, where, "body `" + body.name + "`: edge " + std::to_string(e) + " names a vertex that is not there"}};
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (std::none_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), outside)) continue;
+        return {{ErrorCode::mesh_invalid, where,
+                 "body `" + body.name + "`: triangle " + std::to_string(t) + " names a vertex that is not there"}};
+    }
+    return {};
+}
+
+bool must_be_closed(const scene::Body& body) { return body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume; }
+
+Error at_body(Error error, const scene::Body& body, const std::string& where) {
+    return {error.code, where, "body `" + body.name + "`: " + (error.where.empty() ? "" : error.where + ": ") + error.message};
+}
+
+Errors check_strictly(const scene::Body& body, const std::string& where) {
+    geometry::MeshRequirements requirements;
+    requirements.closed = must_be_closed(body);
+    Errors errors = geometry::validate_mesh(body.mesh, requirements);
+    for (Error& error : errors) error = at_body(std::move(error), body, where);
+    return errors;
+}
+
+Errors check_mass(const scene::Body& body, const BodyMeasure& measure, const std::string& where) {
+    if (body.type != BodyType::dynamic_body) return {};
+    const std::string name = "body `" + body.name + "`: ", unit = scene::density_unit(body.mass_kind);
+    if (!std::isfinite(body.density)) return {{ErrorCode::not_finite, where + "/density", name + "the density is not finite"}};
+    if (!(body.density > 0)) {
+        return {{ErrorCode::out_of_range, where + "/density",
+                 name + "the density is " + std::to_string(body.density) + " " + unit + ", it must be greater than 0"}};
+    }
+    const bool strict = body.mesh_policy == MeshPolicy::strict;
+    if (body.mass_kind == MassKind::volume && !(strict ? geometry::is_closed(body.mesh) : measure.closed_enough)) {
+        return {
+            {ErrorCode::mesh_invalid, where + "/mesh",
+             name +
+                 "its mesh is not closed, so that a density per volume gives it no mass; close it, make it static, or say with `mass_per` "
+                 "what its density is per"}};
+    }
+    const double amount = measure.amount();
+    if (amount > 0 && std::isfinite(amount)) return {};
+    if (body.mass_kind == MassKind::volume) {
+        return {
+            {ErrorCode::mesh_invalid, where + "/mesh",
+             name + "its mesh encloses a volume of " + std::to_string(amount) + " m^3; triangles are counter-clockwise seen from outside"}};
+    }
+    return {{ErrorCode::mesh_invalid, where + "/mesh",
+             name + "its mesh has nothing for a density in " + unit + ": no " +
+                 (body.mass_kind == MassKind::area ? "triangle of any area" : "edge of any length")}};
+}
+
+Errors check_friction(const scene::Scene& scene) {
+    Errors errors;
+    const auto want = [&](double mu, const std::string& pointer, const std::string& of) {
+        if (!(mu >= 0) || !std::isfinite(mu))
+            errors.push_back({ErrorCode::out_of_range, pointer, "the friction coefficient" + of + " must be at least 0 and finite"});
+    };
+    const std::string top = scene.path + "#";
+    want(scene.friction.mu, top + "/friction/mu", "");
+    for (const auto& [name, mu] : scene.friction.materials) want(mu, top + "/materials/" + name, " of `" + name + "`");
+    for (const auto& pair : scene.friction.pairs)
+        want(pair.mu, top + "/friction/pairs", " of `" + pair.material_a + "` and `" + pair.material_b + "`");
+    for (const scene::Body& body : scene.bodies) {
+        if (body.mu) want(*body.mu, place_of(scene, body) + "/mu", " of body `" + body.name + "`");
+    }
+    if (!(scene.friction.eps_v > 0) || !std::isfinite(scene.friction.eps_v))
+        errors.push_back({ErrorCode::out_of_range, top + "/friction/eps_v", "the static speed bound must be greater than 0 and finite"});
+    return errors;
+}
+
+/// Of a script: as many poses as times, times that increase from 0, everything finite.
+bool is_usable(const scene::PoseScript& script) {
+    if (script.times.size() != script.poses.size()) return false;
+    double before = 0;
+    for (std::size_t k = 0; k < script.times.size(); ++k) {
+        if (!(script.times[k] > before) || !std::isfinite(script.times[k])) return false;
+        if (!script.poses[k].position.allFinite() || !script.poses[k].rotation.allFinite()) return false;
+        before = script.times[k];
+    }
+    return true;
+}
+
+Errors check_numbers(const scene::Scene& scene) {
+    Errors errors;
+    const auto want = [&](bool good, const char* pointer, const std::string& message) {
+        if (!good) errors.push_back({ErrorCode::out_of_range, scene.path + "#" + pointer, message});
+    };
+    const auto positive = [](const std::optional<double>& x) { return !x || (*x > 0 && std::isfinite(*x)); };
+    want(positive(scene.timestep), "/timestep", "the time step must be greater than 0 and finite");
+    want(positive(scene.dhat), "/contact/dhat", "the activation distance must be greater than 0 and finite");
+    want(scene.dmin >= 0 && std::isfinite(scene.dmin), "/contact/dmin", "the minimum separation must be at least 0 and finite");
+    want(positive(scene.kappa), "/contact/kappa", "the barrier stiffness must be greater than 0 and finite");
+    want(positive(scene.velocity_tolerance), "/contact/velocity_tolerance", "the tolerance must be greater than 0 and finite");
+    want(scene.gravity.allFinite(), "/gravity", "gravity must be finite");
+    want(!scene.bodies.empty(), "/bodies", "a scene needs a body");
+    return errors;
+}
+
+/// A mesh by its policy. Warnings name the body.
+Errors check_mesh(const scene::Body& body, const std::string& where, std::vector<std::string>& warnings) {
+    if (body.mesh_policy == MeshPolicy::lenient) return {};
+    if (body.mesh_policy == MeshPolicy::strict) return check_strictly(body, where);
+    geometry::MeshFindings found = geometry::judge_mesh(body.mesh, must_be_closed(body));
+    for (const std::string& warning : found.warnings) warnings.push_back(where + ": body `" + body.name + "`: " + warning);
+    for (Error& error : found.errors) error = at_body(std::move(error), body, where);
+    return found.errors;
+}
+
+Errors check_motion(const scene::Body& body, const std::string& where) {
+    Errors found;
+    const std::string name = "body `" + body.name + "`: ";
+    const auto usable = [](const auto& values) {
+        return values.array().isFinite().all() && !(values.cwiseAbs().maxCoeff() > base::largest_magnitude);
+    };
+    if (!usable(body.pose.position) || !body.pose.rotation.allFinite() || !usable(body.linear_velocity) || !usable(body.angular_velocity) ||
+        !usable(body.force) || !usable(body.torque)) {
+        found.push_back({ErrorCode::not_finite, where, name + "pose, velocity, force or torque is not finite, or beyond 1e30"});
+    }
+    for (const auto& curve : body.prescribed) {
+        if (!curve) continue;
+        const auto good = [](double x) { return base::is_usable_number(x); };
+        if (good(curve->rate) && good(curve->stop_time.value_or(0)) && std::all_of(curve->times.begin(), curve->times.end(), good) &&
+            std::all_of(curve->values.begin(), curve->values.end(), good))
+            continue;
+        found.push_back({ErrorCode::not_finite, where + "/prescribed", name + "a prescribed motion is not finite, or beyond 1e30"});
+    }
+    if (!is_usable(body.script)) {
+        found.push_back(
+            {ErrorCode::out_of_range, where + "/script", name + "a script needs a finite pose for each time, and increasing times > 0"});
+    } else if (!body.script.empty() && body.type != BodyType::kinematic_body) {
+        found.push_back({ErrorCode::inconsistent, where + "/script", name + "only a kinematic body follows a script"});
+    }
+    return found;
+}
+
+/// Copies of a part are looked at and measured once.
+class BodyChecks {
+public:
+    explicit BodyChecks(bool check_meshes) : check_meshes_(check_meshes) {}
+
+    void add(const scene::Body& body, const std::string& where, SceneCheck& check) {
+        Errors found = check_usable(body, where);
+        const std::size_t shape = shapes_.add(body.mesh);
+        BodyMeasure measure;
+        // A mesh that cannot be indexed has nothing more to tell, and a mesh that is known to be bad has no mass worth judging.
+        if (found.empty() && check_meshes_ && sound_.count({shape, must_be_closed(body), body.mesh_policy}) == 0) {
+            found = check_mesh(body, where, check.warnings);
+            if (found.empty()) sound_.insert({shape, must_be_closed(body), body.mesh_policy});
+        }
+        if (found.empty()) {
+            const auto [entry, fresh] = measures_.try_emplace({shape, body.mass_kind});
+            if (fresh) entry->second = measure_body(body.mesh, body.mass_kind);
+            measure = entry->second;
+            found = check_mass(body, measure, where);
+        }
+        for (const Errors& more : {found, check_motion(body, where)}) check.errors.insert(check.errors.end(), more.begin(), more.end());
+        check.measures.push_back(measure);
+    }
+
+private:
+    bool check_meshes_;
+    geometry::ShapeIndex shapes_;
+    std::set<std::tuple<std::size_t, bool, MeshPolicy>> sound_;
+    std::map<std::pair<std::size_t, MassKind>, BodyMeasure> measures_;
+};
+
+}  // namespace
+
+SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
+    SceneCheck check;
+    check.errors = check_numbers(scene);
+    const Errors friction = check_friction(scene);
+    check.errors.insert(check.errors.end(), friction.begin(), friction.end());
+    BodyChecks bodies(check_meshes);
+    for (const scene::Body& body : scene.bodies) bodies.add(body, place_of(scene, body), check);
+    return check;
+}
+
+}  // namespace fettle::core::model

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/body_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/design/cli/answers.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using core::model::Body;
+using core::scene::BodyType;
+
+const char* type_name(BodyType type) {
+    return type == BodyType::dynamic_body ? "dynamic" : type == BodyType::static_body ? "static" : "kinematic";
+}
+
+Vector3 size_of(const Body& body) { return body.mesh.vertices.rowwise().maxCoeff() - body.mesh.vertices.rowwise().minCoeff(); }
+
+std::optional<double> volume_of(const Body& body) {
+    const core::geometry::Mesh& mesh = body.mesh;
+    if (!core::geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) return std::nullopt;
+    return core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3);
+}
+
+std::optional<double> mass_of(const Body& body) {
+    if (body.type != BodyType::dynamic_body) return std::nullopt;
+    return body.moments(3, 3);
+}
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+std::string mass_text(const std::optional<double>& mass) {
+    if (!mass) return "";
+    return *mass < 1 ? formatted("%.4g g", 1000 * *mass) : formatted("%.4g kg", *mass);
+}
+
+}  // namespace
+
+Json parts_json(const core::model::Model& model) {
+    Json list = Json::array();
+    for (const Body& body : model.bodies) {
+        const Vector3 size = size_of(body);
+        list.push_back({{"name", body.name},
+                        {"type", type_name(body.type)},
+                        {"size", {size.x(), size.y(), size.z()}},
+                        {"volume", or_null(volume_of(body))},
+                        {"mass", or_null(mass_of(body))}});
+    }
+    return list;
+}
+
+std::string parts_text(const core::model::Model& model) {
+    const std::string unit = unit_name(model.length_unit);
+    const double per_metre = 1 / core::base::metres_per_unit(unit).value();
+    std::size_t widest = 4;
+    for (const Body& body : model.bodies) widest = std::max(widest, std::min<std::size_t>(body.name.size(), 32));
+    std::string text = formatted("  %-*s  %-9s  %-30s  %-12s  %s\n", static_cast<int>(widest), "body", "type",
+                                 ("size [" + unit + "]").c_str(), ("[" + unit + "^3]").c_str(), "mass");
+    for (const Body& body : model.bodies) {
+        const Vector3 size = per_metre * size_of(body);
+        const auto volume = volume_of(body);
+        const std::string shown = volume ? formatted("%.5g", *volume * per_metre * per_metre * per_metre) : std::string("open");
+        text += formatted("  %-*s  %-9s  %-30s  %-12s  %s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
+                          formatted("%.5g x %.5g x %.5g", size.x(), size.y(), size.z()).c_str(), shown.c_str(),
+                          mass_text(mass_of(body)).c_str());
+    }
+    return text;
+}
+
+std::vector<std::string> doubts_of(const core::model::Model& model) {
+    constexpr double lightest = 10, heaviest = 30'000, largest = 10, smallest = 10e-6;
+    std::vector<std::string> doubts;
+    for (const Body& body : model.bodies) {
+        const auto volume = volume_of(body), mass = mass_of(body);
+        const double density = volume && mass && *volume > 0 ? *mass / *volume : 0;
+        // A shell, a wire or points have another mass than density times volume.
+        const bool solid = density > 0 && std::abs(density - body.density) <= 1e-9 * density;
+        if (solid && (density < lightest || density > heaviest)) {
+            doubts.push_back("body `" + body.name + "`: a density of " + formatted("%.4g", density) +
+                             " kg/m^3 is hardly meant (plastics have about 1000, steel 7850); 1.24 g/cm^3 are 1240 kg/m^3");
+        }
+        const double size = size_of(body).maxCoeff();
+        if (model.length_unit != 1 || (size <= largest && size >= smallest)) continue;
+        doubts.push_back("body `" + body.name + "`: its size is " + formatted("%.4g", size) +
+                         " m; are its lengths in millimetres? then write \"units\": \"mm\" (or \"mesh_unit\": \"mm\")");
+    }
+    return doubts;
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// What validate shows and doubts, and what the program says to files and options that it cannot take.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+using fettle::Vector3;
+using fettle::core::geometry::Mesh;
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+using Folder = fettle::tests::support::TemporaryFolder;
+
+std::string obj_of(const Mesh& mesh) {
+    std::string text;
+    for (int i = 0; i < mesh.vertices.cols(); ++i) {
+        const Vector3 x = mesh.vertices.col(i);
+        text += "v " + std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + "\n";
+    }
+    for (const auto& t : mesh.triangles)
+        text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
+    return text;
+}
+
+std::string scene_of(const std::string& units, const std::string& density) {
+    return R"({"fettle_scene": 1, "units": ")" + units + R"(", "bodies": [{"name": "part", "mesh": "part.obj", "density": )" + density +
+           "}]}";
+}
+
+bool mentions(const Json& warnings, const std::string& part) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [&](const Json& warning) { return warning.get<std::string>().find(part) != std::string::npos; });
+}
+
+const Mesh part = fettle::tests::box_mesh({0, 0, 0}, {60, 40, 12});
+
+}  // namespace
+
+TEST_CASE("validate: size, volume and mass of each body, in the file's unit") {
+    const Folder folder;
+    folder.write("part.obj", obj_of(part));
+    const Answer good = run("validate " + folder.write("a.scene.json", scene_of("mm", "1240")));
+    CHECK(good.code == 0);
+    CHECK(good.says("60 x 40 x 12"));
+    CHECK(good.says("size [mm]"));
+    CHECK(good.says("28800"));
+    CHECK(good.says("35.71 g"));
+    const Json json = run("validate --json " + folder.file("a.scene.json")).json();
+    REQUIRE(json.at("parts").size() == 1);
+    CHECK(json["parts"][0].at("mass").get<double>() == Approx(0.035712));
+    CHECK(json["parts"][0].at("volume").get<double>() == Approx(2.88e-5));
+    CHECK(json["warnings"].empty());
+}
+
+TEST_CASE("validate: what can hardly be meant is doubted") {
+    const Folder folder;
+    folder.write("part.obj", obj_of(part));
+    const Json metres = run("validate --json " + folder.write("m.scene.json", scene_of("m", "1240"))).json();
+    CHECK(metres.at("status") == "ok");
+    CHECK(mentions(metres["warnings"], "body `part`: its size is 60 m; are its lengths in millimetres?"));
+    const Json light = run("validate --json " + folder.write("l.scene.json", scene_of("mm", "1.24"))).json();
+    CHECK(mentions(light.at("warnings"), "a density of 1.24 kg/m^3 is hardly meant"));
+}
+
+TEST_CASE("validate: a mesh without a unit is not told in metres") {
+    const Folder folder;
+    Mesh open = part;
+    const auto box = folder.write("part.obj", obj_of(part));
+    const Answer answer = run("validate " + box);
+    CHECK(answer.code == 0);
+    CHECK(answer.says("size 60 x 40 x 12, volume 28800; the file states no unit"));
+    CHECK(run("validate --json " + box).json().at("unit").is_null());
+    open.triangles.pop_back();
+    const Answer faulty = run("validate --json " + folder.write("open.obj", obj_of(open)));
+    CHECK(faulty.code == 3);
+    CHECK(faulty.says("the surface is open"));
+    CHECK_FALSE(faulty.says(") m"));
+}
+
+TEST_CASE("validate: real meshes pass with warnings, and not when strict") {
+    const Folder folder;
+    const auto twins = fettle::tests::joined(part, fettle::tests::box_mesh({30, 20, 6}, {90, 60, 18}));
+    const std::string file = folder.write("part.obj", obj_of(twins));
+    const Answer tolerant = run("validate --json " + file);
+    CHECK(tolerant.code == 0);
+    CHECK(mentions(tolerant.json().at("warnings"), "triangles intersect"));
+    CHECK(run("validate --strict --json " + file).code == 3);
+    const std::string scene = folder.write("a.scene.json", scene_of("mm", "1240"));
+    const Answer in_scene = run("validate --json " + scene);
+    CHECK(in_scene.code == 0);
+    CHECK(mentions(in_scene.json().at("warnings"), "triangles intersect"));
+    CHECK(run("simulate " + scene + " --steps 1", true).says("triangles intersect"));
+    CHECK(run("validate --strict --json " + scene).code == 3);
+}
+
+TEST_CASE("files of other kinds are told what is read") {
+    const Folder folder;
+    const std::string mesh = folder.write("part.stl", "solid a\nendsolid a\n");
+    const Answer stl = run("clearance " + mesh + " --minimum 0.3mm", true);
+    CHECK(stl.code == 3);
+    CHECK(stl.says("is a mesh, not a scene or design"));
+    for (const char* name : {"a.scad", "a.amf", "a.csv"}) {
+        const Answer other = run("validate " + folder.write(name, "<cube/>"), true);
+        CHECK(other.code == 3);
+        CHECK(other.says("is not read; scenes and designs are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf"));
+        CHECK_FALSE(other.says("not valid JSON"));
+    }
+}
+
+TEST_CASE("options out of range are told in words") {
+    const Answer words = run("simulate a.scene.json --steps five", true);
+    CHECK(words.code == 3);
+    CHECK(words.says("--steps: `five` is not a number of at least 0"));
+    CHECK(words.out.size() < 200);
+    CHECK(run("simulate a.scene.json --time 1e160", true).says("--time: 1e160 is out of range: a number of at most 1e30"));
+    CHECK(run("simulate a.scene.json --time nan", true).code == 3);
+    CHECK(run("--threads 9999 validate a", true).says("`9999` is not a number from 1 to 4096"));
+}
+
+TEST_CASE("the README of scenes shows keys that are read") {
+    std::ifstream file("core/scene/README.md");
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    const std::size_t begin = text.find("```json\n") + 8, end = text.find("```", begin);
+    REQUIRE(end != std::string::npos);
+    const Folder folder;
+    for (const char* name : {"frame.stl", "crank.stl", "gripper.stl"}) {
+        std::string stl = "solid a\n";
+        for (const auto& t : part.triangles) {
+            stl += "facet normal 0 0 0\nouter loop\n";
+            for (const int v : t) {
+                const Vector3 x = part.vertices.col(v) + Vector3(name[0] * 100.0, 0, 0);
+                stl += "vertex " + std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + "\n";
+            }
+            stl += "endloop\nendfacet\n";
+        }
+        folder.write(name, stl + "endsolid a\n");
+    }
+    const Answer answer = run("validate " + folder.write("a.scene.json", text.substr(begin, end - begin)), true);
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+}
