@@ -45,18 +45,22 @@ private:
 
     // Times inside the step at which the script or a curve has an entry.
     std::vector<double> changes() const {
+        const double least = negligible_time * (to_ - from_);
         std::vector<double> times;
-        if (is_scripted()) times = body_.script.times;
+        const auto add = [&](const std::vector<double>& sorted) {
+            times.insert(times.end(), std::upper_bound(sorted.begin(), sorted.end(), from_ + least),
+                         std::lower_bound(sorted.begin(), sorted.end(), to_ - least));
+        };
+        if (is_scripted()) add(body_.script.times);
         for (const auto& curve : body_.prescribed) {
             if (!curve || (curve->rate == 0 && curve->times.empty() && body_.script.empty())) continue;
-            times.insert(times.end(), curve->times.begin(), curve->times.end());
-            if (curve->stop_time) times.push_back(*curve->stop_time);
+            add(curve->times);
+            if (curve->stop_time) add({*curve->stop_time});
         }
         std::sort(times.begin(), times.end());
-        const double least = negligible_time * (to_ - from_);
         std::vector<double> out;
         for (const double time : times)
-            if (time > (out.empty() ? from_ : out.back()) + least && time < to_ - least) out.push_back(time);
+            if (time < to_ - least && time > (out.empty() ? from_ : out.back()) + least) out.push_back(time);
         return out;
     }
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 /// fettle simulate SCENE: runs a scene, or a design at its values, and writes the trajectory.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/model/start_check.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/path_proof.hpp"
 
 namespace fettle::design::cli {
 
@@ -46,30 +46,6 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
     return list;
 }
 
-// Proven for the continuous path, to 1% of what the steps' ends saw; null when no two bodies may touch.
-Json certified_minimum(const core::model::Model& model, const Simulation& simulation) {
-    double seen = model.dhat;
-    for (const auto& step : simulation.report.steps) seen = std::min(seen, step.minimum_distance);
-    std::vector<core::clearance::PairRequest> pairs;
-    const int count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a) {
-        for (int b = a + 1; b < count; ++b) {
-            if (core::model::may_collide(model, a, b)) pairs.push_back({a, b, 0});
-        }
-    }
-    if (pairs.empty()) return nullptr;
-    core::clearance::ClearanceOptions options;
-    options.motion = true;
-    options.tolerance = 1e-2 * seen;
-    options.sample_nodes = false;
-    double minimum = std::numeric_limits<double>::infinity();
-    for (const auto& pair : core::clearance::certify_clearance(model, simulation.trajectory, pairs, options))
-        minimum = std::min(minimum, pair.lower);
-    return minimum;
-}
-
-int exit_code(SimulationStatus status) { return status == SimulationStatus::ok ? exit_done : exit_undecided; }
-
 // With the rows of the run that this one goes on with, if its tables are beside its trajectory.
 std::string whole_table(const std::string& name, const std::string& text, const Options& options, const Simulation& earlier) {
     if (options.earlier.empty()) return text;
@@ -78,80 +54,182 @@ std::string whole_table(const std::string& name, const std::string& text, const 
     return before ? core::records::joined_table(*before, text, until) : text;
 }
 
-Errors write_outputs(const Options& options, const core::model::Model& model, const Simulation& simulation, const Simulation& earlier,
-                     const std::string& scene_path, const Json& json) {
+// What the folder holds of an earlier run is read, or put aside, before anything is written: it may be the run that this one goes on with.
+Errors write_motion(const Options& options, const core::model::Model& model, const Simulation& simulation, const Simulation& earlier,
+                    const std::string& scene_path, Console& console) {
     const std::filesystem::path folder = options.out;
-    // Read before anything is written: the earlier run's folder may be this one.
     std::vector<std::pair<std::string, std::string>> tables;
     const std::vector<std::string> names = body_names(model);
     for (const auto& [name, text] : {std::pair{"steps.csv", core::records::steps_csv(simulation)},
                                      {"contacts.csv", core::records::contacts_csv(simulation, names)},
                                      {"drives.csv", core::records::drives_csv(simulation, names)}})
         tables.emplace_back(name, whole_table(name, text, options, earlier));
+    const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", simulation.trajectory.steps.size());
+    if (!kept) return kept.errors();
+    if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
+    std::error_code ignored;
+    std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
     Errors errors =
         core::records::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
-    if (!errors.empty()) return errors;
     for (const auto& [name, text] : tables) {
-        errors = core::files::write_file_atomically(folder / name, text);
-        if (!errors.empty()) return errors;
+        if (errors.empty()) errors = core::files::write_file_atomically(folder / name, text);
     }
-    return core::files::write_file_atomically(folder / "result.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return errors;
+}
+
+// Reads the run to go on with. Errors: not a run of this scene, or one that has got further already.
+Result<Simulation> read_earlier(const Options& options, const core::model::Model& model, int steps, Console& console) {
+    const auto stored = core::records::read_trajectory(options.earlier);
+    if (!stored) return stored.errors();
+    tell_warnings(console, stored->warnings);
+    const std::size_t done = stored->trajectory.steps.size();
+    if (steps >= 0 && static_cast<std::size_t>(steps) < done)
+        return Error{
+            ErrorCode::out_of_range, options.earlier,
+            "this run has " + std::to_string(done) + " steps, and goes on to no fewer: " + std::to_string(steps) + " are asked for"};
+    Result<Simulation> resumed = core::records::resumable(*stored, model);
+    if (resumed) console.narrate("going on from step " + std::to_string(resumed->checkpoint.step));
+    return resumed;
+}
+
+Errors try_outputs(const Options& options) {
+    Errors errors = options.out.empty() ? Errors{} : try_output_folder(options.out);
+    if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
+    return errors;
+}
+
+// Bodies that the simulation lets pass through each other, and that do so from the start.
+std::vector<std::string> start_clashes(const core::model::Model& model) {
+    using core::scene::BodyType;
+    std::vector<std::string> warnings;
+    const int count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a) {
+        for (int b = a + 1; b < count; ++b) {
+            const auto &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
+            const bool dynamic = first.type == BodyType::dynamic_body || second.type == BodyType::dynamic_body;
+            const bool moves = first.type == BodyType::kinematic_body || second.type == BodyType::kinematic_body;
+            if (dynamic || !moves || (first.group >= 0 && first.group == second.group)) continue;
+            if (const auto clash = core::model::check_start_pair(model, a, b))
+                warnings.push_back(clash->message + " (neither is dynamic, so nothing keeps them apart)");
+        }
+    }
+    constexpr size_t most = 5;
+    if (warnings.size() > most) {
+        const std::string rest = "and " + std::to_string(warnings.size() - most) + " more such pairs";
+        warnings.resize(most);
+        warnings.push_back(rest);
+    }
+    return warnings;
+}
+
+// "ok" is said of a path that is proven.
+struct Outcome {
+    std::string status, message;
+    int exit_code = exit_undecided;
+};
+
+Outcome outcome_of(const core::stepper::SimulationReport& report, const PathProof& proof) {
+    if (report.status != SimulationStatus::ok) return {core::stepper::to_string(report.status), report.message, exit_undecided};
+    switch (proof.state) {
+        case ProofState::proven:
+        case ProofState::nothing:
+            return {"ok", "", exit_done};
+        case ProofState::stopped:
+            return {"interrupted", "every step was simulated; " + proof.reason, exit_undecided};
+        case ProofState::not_certified:
+            break;
+    }
+    return {"not_certified", "every step was solved, but the path is not proven: " + proof.reason, exit_undecided};
+}
+
+std::string answer_text(const Outcome& outcome, const Simulation& simulation, const PathProof& proof, const std::string& out,
+                        const Console& console) {
+    std::string text = formatted("%s after %zu steps, %d Newton iterations, %.3g s\n",
+                                 console.coloured(outcome.status, outcome.exit_code == exit_done).c_str(),
+                                 simulation.trajectory.steps.size(), simulation.report.newton_iterations, simulation.report.wall_seconds);
+    if (!outcome.message.empty()) text += outcome.message + "\n";
+    if (proof.state == ProofState::nothing) {
+        text += "smallest distance: none, no two bodies may collide\n";
+    } else if (proof.state == ProofState::proven) {
+        text += formatted("smallest distance of two bodies over the path: %.6g m, proven\n", *proof.lower);
+    } else {
+        text += "smallest distance of two bodies over the path: not certified\n";
+    }
+    if (!out.empty()) text += "trajectory: " + (std::filesystem::path(out) / "trajectory.json").string() + "\n";
+    return text;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
+int finish(const Options& options, const LoadedModel& loaded, const Simulation& simulation, const Simulation& earlier, Json json,
+           Console& console) {
+    const core::model::Model& model = loaded.model;
+    const auto& report = simulation.report;
+    // Stopped before it got as far as the run that it goes on with: that run stays.
+    const bool writes_out = !options.out.empty() && simulation.trajectory.steps.size() >= earlier.trajectory.steps.size();
+    if (!options.out.empty() && !writes_out)
+        console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
+    Errors errors;
+    if (writes_out) errors = write_motion(options, model, simulation, earlier, loaded.scene_path, console);
+    if (errors.empty() && !options.poses.empty())
+        errors = core::records::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
+    if (!errors.empty()) return console.input_errors(errors);
+    console.narrate("certifying the path");
+    const auto begin = std::chrono::steady_clock::now();
+    const PathProof proof = prove_path(model, simulation, interrupted);
+    const Outcome outcome = outcome_of(report, proof);
+    json["status"] = outcome.status;
+    if (!outcome.message.empty()) json["message"] = outcome.message;
+    json["steps"] = simulation.trajectory.steps.size();
+    json["newton_iterations"] = report.newton_iterations;
+    json["wall_seconds"] = report.wall_seconds;
+    json["certify_seconds"] = seconds_since(begin);
+    json["minimum_distance"] = proof.lower ? Json(*proof.lower) : Json();
+    json["certification"] = to_string(proof.state);
+    json["bodies"] = bodies_at_end(model, simulation.trajectory);
+    json["peak_memory_bytes"] = peak_memory_bytes();
+    if (writes_out) {
+        json["out"] = options.out;
+        const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+        errors = core::files::write_file_atomically(std::filesystem::path(options.out) / "result.json", text);
+        if (!errors.empty()) return console.input_errors(errors);
+    }
+    console.result(json, answer_text(outcome, simulation, proof, writes_out ? options.out : "", console));
+    return outcome.exit_code;
 }
 
 int run_simulate(const Options& options, const CommonOptions& common, Console& console) {
-    const Result<LoadedModel> loaded = load_model(options.path, common);
+    const auto begin = std::chrono::steady_clock::now();
+    Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
-    tell_warnings(console, loaded->warnings);
     const core::model::Model& model = loaded->model;
+    for (const std::string& clash : start_clashes(model)) loaded->warnings.push_back(clash);
+    tell_warnings(console, loaded->warnings);
     core::stepper::SimulationOptions simulate_options;
     simulate_options.steps = options.steps >= 0  ? options.steps
-                             : options.time >= 0 ? static_cast<int>(std::ceil(options.time / model.timestep - 1e-9))
+                             : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
     simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     simulate_options.should_stop = interrupted;
     simulate_options.outputs = !options.out.empty();
     Simulation earlier;
     if (!options.earlier.empty()) {
-        const auto stored = core::records::read_trajectory(options.earlier);
-        if (!stored) return console.input_errors(stored.errors());
-        Result<Simulation> resumed = core::records::resumable(*stored, model);
-        if (!resumed) return console.input_errors(resumed.errors());
-        earlier = *std::move(resumed);
+        Result<Simulation> read = read_earlier(options, model, core::stepper::step_count(model, simulate_options), console);
+        if (!read) return console.input_errors(read.errors());
+        earlier = *std::move(read);
         simulate_options.resume = &earlier;
-        console.narrate("going on from step " + std::to_string(earlier.checkpoint.step));
     }
-    const Simulation simulation = core::stepper::simulate(model, simulate_options);
-    const core::stepper::SimulationReport& report = simulation.report;
-    console.narrate("certifying the path");
+    const Errors unwritable = try_outputs(options);
+    if (!unwritable.empty()) return console.input_errors(unwritable);
     Json json;
-    json["status"] = core::stepper::to_string(report.status);
-    if (!report.message.empty()) json["message"] = report.message;
-    json["steps"] = simulation.trajectory.steps.size();
-    json["newton_iterations"] = report.newton_iterations;
-    json["wall_seconds"] = report.wall_seconds;
-    json["minimum_distance"] = certified_minimum(model, simulation);
-    json["bodies"] = bodies_at_end(model, simulation.trajectory);
-    json["peak_memory_bytes"] = peak_memory_bytes();
-    if (!options.out.empty()) {
-        json["out"] = options.out;
-        const Errors errors = write_outputs(options, model, simulation, earlier, loaded->scene_path, json);
-        if (!errors.empty()) return console.input_errors(errors);
-    }
-    if (!options.poses.empty()) {
-        const Errors errors = core::records::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
-        if (!errors.empty()) return console.input_errors(errors);
-    }
-    const bool ok = report.status == SimulationStatus::ok;
-    std::string text = formatted("%s after %zu steps, %d Newton iterations, %.3g s\n",
-                                 console.coloured(core::stepper::to_string(report.status), ok).c_str(), simulation.trajectory.steps.size(),
-                                 report.newton_iterations, report.wall_seconds);
-    if (!report.message.empty()) text += report.message + "\n";
-    if (json["minimum_distance"].is_number()) {
-        text += formatted("smallest distance of two bodies over the path: %.6g m, proven\n", json["minimum_distance"].get<double>());
-    }
-    if (!options.out.empty()) text += "trajectory: " + (std::filesystem::path(options.out) / "trajectory.json").string() + "\n";
-    console.result(json, text);
-    return exit_code(report.status);
+    json["status"] = "";
+    json["start_seconds"] = seconds_since(begin);
+    if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
+    const Simulation simulation = core::stepper::simulate(model, simulate_options);
+    return finish(options, *loaded, simulation, earlier, std::move(json), console);
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/records/trajectory_lines.hpp"
 #include "fettle/core/records/trajectory_reader.hpp"
+#include "fettle/core/stepper/step.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -167,7 +169,7 @@ TEST_CASE("A step's fractions and uneven times are kept", "[stepper]") {
 struct ChangedFile {
     const Folder folder;
     const fs::path path = folder.path / "a.json";
-    std::string text;
+    std::string text, checkpoint;
 
     ChangedFile() {
         const model::Model model = two_boxes();
@@ -175,6 +177,9 @@ struct ChangedFile {
         trajectory.steps[1].fractions = {0, 0.5, 1};
         REQUIRE(write_trajectory(path, trajectory, model).empty());
         text = files::read_file(path).value();
+        stepper::Checkpoint at_step{1, stepper::start_state(model)};
+        at_step.state.history.poses = trajectory.poses[1];
+        checkpoint = TrajectoryLines(trajectory, model).checkpoint(at_step);
     }
     auto read(const std::string& changed) const {
         std::ofstream(path) << changed;
@@ -274,10 +279,11 @@ TEST_CASE("Whatever is done to a trajectory file, its reader answers", "[stepper
     const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
     const std::vector<std::string> tokens{"1e308", "-1",    "0",  "1e-320",     "[]", "{}", "null",
                                           "\"x\"", "[[1]]", "-0", "4294967296", ",",  "\n", "]"};
+    REQUIRE(parse_trajectory("fuzz", file.text + file.checkpoint)->checkpoint);
     int refused = 0;
     constexpr int changes = 4000;
     for (int i = 0; i < changes; ++i) {
-        std::string text = file.text;
+        std::string text = file.text + file.checkpoint;
         for (std::size_t n = 1 + below(3); n > 0; --n) {
             const std::size_t at = below(text.size()), length = std::min(text.size() - at, 1 + below(30));
             const std::size_t number = text.find_first_of("0123456789[\"", at), end = text.find_first_of(",]}", number);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/output_folder.hpp"
+
+#include <fstream>
+#include <system_error>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// By its lines; what cannot be read has none to lose.
+std::size_t stored_steps(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::size_t steps = 0;
+    for (std::string line; std::getline(stream, line);) steps += line.starts_with("{\"nodes\"") ? 1 : 0;
+    return steps;
+}
+
+}  // namespace
+
+Errors try_output_folder(const fs::path& folder) {
+    const fs::path probe = folder / ".fettle_can_write";
+    Errors errors = core::files::write_file_atomically(probe, "");
+    for (Error& error : errors) error.where = folder.string();
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+    return errors;
+}
+
+Errors try_output_file(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unreadable, file.string(), "is a folder, a file is wanted"}};
+    return try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+}
+
+Result<std::string> keep_longer_run(const fs::path& file, std::size_t steps) {
+    if (!core::records::is_trajectory_file(file) || stored_steps(file) <= steps) return std::string();
+    for (int n = 1;; ++n) {
+        fs::path kept = file;
+        kept.replace_extension(std::to_string(n) + file.extension().string());
+        std::error_code code;
+        if (fs::exists(kept, code)) continue;
+        fs::rename(file, kept, code);
+        if (code) return Error{ErrorCode::file_unreadable, kept.string(), "an earlier, longer run cannot be kept: " + code.message()};
+        return kept.string();
+    }
+}
+
+}  // namespace fettle::design::cli

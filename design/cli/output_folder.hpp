@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+/// Folders and files that results go to: tried before the work, and never at the cost of a longer run that is there.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::design::cli {
+
+/// Can files be made in `folder`? It is made if it is not there; a file is written in it and taken away again.
+/// Errors: file_unreadable, with the reason. Call it when the input has been read, before minutes of work.
+[[nodiscard]] Errors try_output_folder(const std::filesystem::path& folder);
+
+/// The same of the folder of a file that is to be written; a folder in the file's place is a fault too.
+[[nodiscard]] Errors try_output_file(const std::filesystem::path& file);
+
+/// If `file` is a trajectory of more than `steps` steps it is renamed: trajectory.json -> the first of trajectory.1.json,
+/// trajectory.2.json, ... that is free. @return the new path, empty if nothing was done.
+Result<std::string> keep_longer_run(const std::filesystem::path& file, std::size_t steps);
+
+}  // namespace fettle::design::cli

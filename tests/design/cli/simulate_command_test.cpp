@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// What `simulate` says and leaves behind: "ok" for a proven path only, steps that are never lost, and refusals before the work.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "fettle/design/cli/path_proof.hpp"
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+namespace {
+
+using fettle::Vector3;
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+
+const char* const cube =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+    "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+
+struct SceneFolder : fettle::tests::support::TemporaryFolder {
+    SceneFolder() { write("cube.obj", cube); }
+    /// A cube that falls past another; `more` bodies.
+    std::string scene(const std::string& more = "", const std::string& gravity = "-10", const std::string& name = "fall.scene.json") const {
+        return write(name, R"({"fettle_scene": 1, "units": "m", "gravity": [0, 0, )" + gravity +
+                               R"(], "timestep": 0.3, "end_time": 1, "bodies": [
+            {"name": "cube", "type": "dynamic", "mesh": "cube.obj", "density": 1},
+            {"name": "below", "type": "static", "mesh": "cube.obj", "position": [5, 0, -50]})" +
+                               more + "]}");
+    }
+    std::string contents(const std::string& name) const {
+        std::ifstream stream(path / name);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    int steps(const std::string& name) const {
+        std::ifstream stream(path / name);
+        int count = 0;
+        for (std::string line; std::getline(stream, line);) count += nlohmann::json::parse(line).contains("nodes") ? 1 : 0;
+        return count;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("simulate: steps cover the end time, and the times of all it did are told") {
+    const SceneFolder folder;
+    const Answer answer = run("simulate " + folder.scene() + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.json()["steps"] == 4);
+    CHECK(answer.json()["certification"] == "proven");
+    CHECK(answer.json()["minimum_distance"].get<double>() > 0);
+    for (const char* key : {"start_seconds", "wall_seconds", "certify_seconds"}) CHECK(answer.json()[key].get<double>() >= 0);
+    CHECK(run("simulate " + folder.scene() + " --time 1 --json").json()["steps"] == 4);
+}
+
+TEST_CASE("simulate: where no pair may collide there is no least distance, and that is said") {
+    const SceneFolder folder;
+    const std::string scene = folder.write("alone.scene.json", R"({"fettle_scene": 1, "units": "m", "timestep": 0.1, "end_time": 0.2,
+        "bodies": [{"name": "cube", "type": "dynamic", "mesh": "cube.obj", "density": 1}]})");
+    const Answer answer = run("simulate " + scene + " --json");
+    CHECK(answer.code == 0);
+    CHECK(answer.json()["status"] == "ok");
+    CHECK(answer.json()["minimum_distance"].is_null());
+    CHECK(answer.json()["certification"] == "no pair may collide");
+    CHECK(run("simulate " + scene).says("no two bodies may collide"));
+}
+
+TEST_CASE("simulate: bodies that nothing keeps apart are warned of") {
+    const SceneFolder folder;
+    const std::string clash =
+        R"(, {"name": "gate", "type": "kinematic", "mesh": "cube.obj", "position": [5.5, 0.5, -50.5], "prescribed": {"px": {"rate": 1}}})";
+    const Answer answer = run("simulate " + folder.scene(clash) + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    REQUIRE(answer.json()["warnings"].size() == 1);
+    CHECK(answer.json()["warnings"][0].get<std::string>().find("gate") != std::string::npos);
+    CHECK_FALSE(run("simulate " + folder.scene() + " --json").json().contains("warnings"));
+}
+
+TEST_CASE("simulate: a run is taken up, never back") {
+    const SceneFolder folder;
+    const std::string scene = folder.scene(), out = folder.file("run"), stored = out + "/trajectory.json";
+    CHECK(run("simulate " + scene + " --steps 40 --out " + out).code == 0);
+    CHECK(folder.steps("run/trajectory.json") == 40);
+    const Answer back = run("simulate " + scene + " --continue " + stored + " --steps 10 --out " + out, true);
+    CHECK(back.code == 3);
+    CHECK(back.says("has 40 steps"));
+    CHECK(folder.steps("run/trajectory.json") == 40);
+    CHECK(run("simulate " + scene + " --continue " + stored + " --steps 45 --out " + out).code == 0);
+    CHECK(folder.steps("run/trajectory.json") == 45);
+    CHECK(run("simulate " + scene + " --steps 45 --out " + folder.file("whole")).code == 0);
+    CHECK(folder.contents("run/trajectory.json") == folder.contents("whole/trajectory.json"));
+
+    // A shorter run of its own does not cost the longer one.
+    CHECK(run("simulate " + scene + " --steps 3 --out " + out).code == 0);
+    CHECK(folder.steps("run/trajectory.json") == 3);
+    CHECK(folder.steps("run/trajectory.1.json") == 45);
+
+    const Answer other = run(
+        "simulate " + folder.scene("", "-5", "other.scene.json") + " --continue " + folder.file("whole/trajectory.json") + " --steps 50",
+        true);
+    CHECK(other.code == 3);
+    CHECK(other.says("gravity"));
+}
+
+TEST_CASE("simulate: a run that was killed in the middle of a line is taken up") {
+    const SceneFolder folder;
+    const std::string scene = folder.scene(), out = folder.file("run");
+    CHECK(run("simulate " + scene + " --steps 40 --out " + out).code == 0);
+    const std::string whole = folder.contents("run/trajectory.json");
+    // As if written step by step: the checkpoint after its step, and the last line cut off.
+    const std::size_t checkpoint = whole.find("{\"checkpoint\"");
+    std::string text = whole.substr(0, checkpoint);
+    std::string killed = whole.substr(checkpoint), lines = text.substr(0, text.size() - 100);
+    std::size_t at = lines.find('\n');
+    for (int step = 0; step < 32; ++step) at = lines.find('\n', at + 1);
+    lines.insert(at + 1, killed);
+    folder.write("killed.json", lines);
+    const Answer answer =
+        run("simulate " + scene + " --continue " + folder.file("killed.json") + " --steps 40 --out " + folder.file("again"), true);
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.says("ends in the middle of a line"));
+    CHECK(folder.contents("again/trajectory.json") == whole);
+}
+
+TEST_CASE("simulate: a folder that cannot be written to is told before the work") {
+    const SceneFolder folder;
+    folder.write("file", "");
+    for (const std::string& option :
+         {"--out " + folder.file("file") + "/run", "--poses " + folder.file("file") + "/poses.csv", "--poses " + folder.path.string()}) {
+        const Answer answer = run("simulate " + folder.scene() + " --steps 1000000000 " + option + " --json");
+        CHECK(answer.code == 3);
+        CHECK(answer.json()["errors"][0]["code"] == "file_unreadable");
+    }
+}
+
+TEST_CASE("A path is proven, refuted or left open: never taken for granted") {
+    using namespace fettle;
+    using namespace fettle::tests::support;
+    core::model::Model model;
+    model.dhat = 1e-3;
+    model.bodies = {ground_plate(),
+                    make_body("box", box_mesh(Vector3(-0.1, -0.1, 0), Vector3(0.1, 0.1, 0.2)), make_pose({0, 0, 0}, {0, 0, 1}))};
+    core::stepper::Simulation run;
+    run.trajectory.body_names = {"plate", "box"};
+    run.trajectory.timestep = 0.1;
+    run.report.steps.resize(1);
+    run.report.steps[0].minimum_distance = 1;
+    const auto to = [&](double lowest) {
+        using core::kinematics::ChartPoint;
+        const auto at = [&](double z) {
+            return std::vector<ChartPoint>{{model.bodies[0].pose_start.position, Vector3::Zero()}, {Vector3(0, 0, z), Vector3::Zero()}};
+        };
+        core::stepper::TrajectoryStep step;
+        step.nodes = {at(1), at(lowest), at(1)};
+        run.trajectory.steps = {step};
+        const std::vector<core::kinematics::Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
+        run.trajectory.poses = {poses, poses};
+        return design::cli::prove_path(model, run, [] { return false; });
+    };
+    using design::cli::ProofState;
+    CHECK(to(0.5).state == ProofState::proven);
+    const auto near = to(1e-7);  // far closer than the ends of the steps saw
+    CHECK(near.state == ProofState::proven);
+    CHECK(*near.lower > 0.9e-7);
+    const auto crossing = to(-0.1);
+    CHECK(crossing.state == ProofState::not_certified);
+    CHECK(crossing.reason.find("box") != std::string::npos);
+    model.dmin = 1e-3;
+    CHECK(to(0.5e-3).state == ProofState::not_certified);
+    CHECK(to(1.001e-3).state == ProofState::proven);
+    const auto stopped = design::cli::prove_path(model, run, [] { return true; });
+    CHECK(stopped.state == ProofState::stopped);
+    CHECK_FALSE(stopped.lower);
+    model.bodies.pop_back();
+    run.trajectory.poses[0].pop_back();
+    CHECK(design::cli::prove_path(model, run, [] { return false; }).state == ProofState::nothing);
+}
