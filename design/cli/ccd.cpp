@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// fettle ccd QUERIES...: continuous collision detection on ground-truth queries: hits, misses, false alarms, time.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <ctime>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -216,20 +216,20 @@ int run_ccd(const Options& options, Console& console) {
 
 }  // namespace
 
-Command add_ccd(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("ccd", "Ground-truth collision queries: hits, misses, false alarms, time");
+Command add_ccd(CommandLine& program) {
+    CommandLine app = program.command("ccd", "Ground-truth collision queries: hits, misses, false alarms, time");
     auto options = std::make_shared<Options>();
-    app->add_option("QUERIES", options->paths, "Files .csv (linear motion) and .json (rigid motion), or folders of them")->required();
-    app->add_option("--method", options->method, "Of linear queries: conservative (advancement; the default), inclusion (bisection)")
-        ->check(CLI::IsMember({"default", "conservative", "inclusion"}));
-    app->add_option("--minimum-separation", options->minimum_separation,
-                    "Hit where the distance is at most this: 0.1mm, or a number in the files' own unit (default 0)");
-    app->add_option("--tolerance", options->tolerance, "How far above it a hit may be reported (default 1e-6)");
-    app->add_option("--deviation", options->deviation, "Of curve from chord in rigid queries: closed-form (default) or interval")
-        ->check(CLI::IsMember({"closed-form", "interval"}));
-    app->add_option("--type", options->type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
-        ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
-    app->footer(
+    app.option("QUERIES", options->paths, "Files .csv (linear motion) and .json (rigid motion), or folders of them").required();
+    app.option("--method", options->method, "Of linear queries: conservative (advancement; the default), inclusion (bisection)")
+        .one_of({"default", "conservative", "inclusion"});
+    app.option("--minimum-separation", options->minimum_separation,
+               "Hit where the distance is at most this: 0.1mm, or a number in the files' own unit (default 0)");
+    app.option("--tolerance", options->tolerance, "How far above it a hit may be reported (default 1e-6)");
+    app.option("--deviation", options->deviation, "Of curve from chord in rigid queries: closed-form (default) or interval")
+        .one_of({"closed-form", "interval"});
+    app.option("--type", options->type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
+        .one_of({"vertex-face", "edge-edge"});
+    app.closing_words(
         "Example:  fettle ccd shared/ccd/sample-queries --method inclusion --json\n"
         "CSV: 8 rows a query, xn,xd,yn,yd,zn,zd[,truth], vertices at t0 and at t1; truth also from STEM_mma_bool.json beside the file or "
         "in\n"

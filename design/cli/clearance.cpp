@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over a motion. What is judged:
 /// clearance_subject.hpp (motions), clearance_pairs.hpp (pairs and what they require); how it is told: clearance_report.hpp.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -159,49 +158,47 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     return exit_code(report.status);
 }
 
-void add_options(CLI::App& app, Options& options) {
-    app.add_option("FILE", options.subject.path, "Scene, design (at its values), or trajectory")->required();
-    app.add_option("--minimum", options.minimum,
-                   "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
-    app.add_option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
-    app.add_option("--pairs", options.pairs.pairs,
-                   "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
-                   "as assembled, every pair that may collide over a motion)");
-    app.add_option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
-    app.add_option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)")
-        ->allow_extra_args(false);
-    app.add_option("--tolerance", options.tolerance,
-                   "How far the two bounds may be apart (default: 0.001mm or 0.1% of the minimum, the less)");
-    CLI::Option* motion = app.add_flag("--motion", options.subject.motion,
-                                       "Over the motion, which is simulated first (a trajectory: always); else as assembled");
-    CLI::Option* kinematic = app.add_flag("--kinematic", options.subject.kinematic,
-                                          "Over the scripted motion without dynamics: what has no script stays where it is");
-    CLI::Option* poses = app.add_option("--poses", options.subject.poses,
-                                        "Over the poses in this file (.csv or .json, of any program); FILE supplies the meshes");
-    app.add_option("--poses-unit", options.subject.poses_unit, "Unit of lengths in a CSV that does not say px[mm]")->needs(poses);
-    kinematic->excludes(motion)->excludes(poses);
-    poses->excludes(motion);
-    CLI::Option* steps = app.add_option("--steps", options.subject.steps, "How many steps of the motion")->check(CLI::NonNegativeNumber);
-    app.add_option("--time", options.subject.time, "How long, in seconds")->check(CLI::NonNegativeNumber)->excludes(steps);
-    app.add_option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
-        ->expected(0, 1)
-        ->default_str("3")
-        ->check(CLI::NonNegativeNumber);
-    app.add_option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
-    app.add_option("--certificate", options.certificate,
-                   "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
-    app.add_option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
+void add_options(CommandLine& app, Options& options) {
+    app.option("FILE", options.subject.path, "Scene, design (at its values), or trajectory").required();
+    app.option("--minimum", options.minimum,
+               "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
+    app.option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
+    app.option("--pairs", options.pairs.pairs,
+               "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
+               "as assembled, every pair that may collide over a motion)");
+    app.option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
+    app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
+    app.option("--tolerance", options.tolerance, "How far the two bounds may be apart (default: 0.001mm or 0.1% of the minimum, the less)");
+    Option motion =
+        app.flag("--motion", options.subject.motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
+    Option kinematic = app.flag("--kinematic", options.subject.kinematic,
+                                "Over the scripted motion without dynamics: what has no script stays where it is");
+    Option poses = app.option("--poses", options.subject.poses,
+                              "Over the poses in this file (.csv or .json, of any program); FILE supplies the meshes");
+    app.option("--poses-unit", options.subject.poses_unit, "Unit of lengths in a CSV that does not say px[mm]").needs(poses);
+    kinematic.excludes(motion).excludes(poses);
+    poses.excludes(motion);
+    Option steps = app.option("--steps", options.subject.steps, "How many steps of the motion").at_least(0);
+    app.option("--time", options.subject.time, "How long, in seconds").at_least(0).excludes(steps);
+    app.option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
+        .value_if_bare("3")
+        .at_least(0);
+    app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
+    app.option("--certificate", options.certificate,
+               "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
+    app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
 }
 
 }  // namespace
 
-Command add_clearance(CLI::App& program, const CommonOptions& common) {
-    CLI::App* app = program.add_subcommand("clearance", "Certified least distance of each pair of bodies");
+Command add_clearance(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("clearance", "Certified least distance of each pair of bodies");
     auto options = std::make_shared<Options>();
-    add_options(*app, *options);
-    app->footer(quantities::process_table() +
-                "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
-                "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
+    add_options(app, *options);
+    app.closing_words(
+        quantities::process_table() +
+        "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
+        "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
     return {app, [options, &common](Console& console) { return run_clearance(*options, common, console); }};
 }
 

@@ -4,8 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
+
+#include "fettle/core/base/limits.hpp"
 
 namespace fettle::design::cli {
 
@@ -30,7 +31,8 @@ std::optional<Number> parsed(const std::string& text) {
 template <class Number>
 std::string number_fault(const std::string& text) {
     const auto number = parsed<Number>(text);
-    if (number && std::isfinite(static_cast<double>(*number))) return {};
+    if (number && core::base::is_usable_number(static_cast<double>(*number))) return {};
+    if (number) return text + " is out of range: a number of at most 1e30 in absolute value is wanted";
     return std::string(std::is_integral_v<Number> ? "a whole number is wanted, found \"" : "a number is wanted, found \"") + text + "\"";
 }
 

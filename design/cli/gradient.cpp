@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// fettle gradient DESIGN: objective, constraints and their gradients; --check audits them against differences of whole simulations.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/cli/answers.hpp"
@@ -151,14 +150,13 @@ int run_gradient(const Options& options, const CommonOptions& common, Console& c
 
 }  // namespace
 
-Command add_gradient(CLI::App& program, const CommonOptions& common) {
-    CLI::App* app = program.add_subcommand("gradient", "Objective, constraints and their gradients");
+Command add_gradient(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("gradient", "Objective, constraints and their gradients");
     auto options = std::make_shared<Options>();
-    app->add_option("DESIGN", options->path, "Design, taken at its values")->required();
-    app->add_flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
-    app->add_option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2")
-        ->check(CLI::PositiveNumber);
-    app->footer(
+    app.option("DESIGN", options->path, "Design, taken at its values").required();
+    app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
+    app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2").above(0);
+    app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");
     return {app, [options, &common](Console& console) { return run_gradient(*options, common, console); }};

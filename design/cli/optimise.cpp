@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// fettle optimise DESIGN: tunes the parameters, and certifies the final design.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -143,16 +142,16 @@ int run_optimise(const Options& options, const CommonOptions& common, Console& c
 
 }  // namespace
 
-Command add_optimise(CLI::App& program, const CommonOptions& common) {
-    CLI::App* app = program.add_subcommand("optimise", "Tunes a design's parameters under its requirements, and certifies the result");
-    app->alias("optimize");
+Command add_optimise(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("optimise", "Tunes a design's parameters under its requirements, and certifies the result");
+    app.also_called("optimize");
     auto options = std::make_shared<Options>();
-    app->add_option("DESIGN", options->path, "Design to start from")->required();
-    app->add_option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp or cobyla (default: what the design says)")
-        ->check(CLI::IsMember(optimisers::optimiser_names()));
-    app->add_option("--out", options->out, "Folder for the result (default: the design's `output`)");
-    app->add_flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
-    app->footer("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
+    app.option("DESIGN", options->path, "Design to start from").required();
+    app.option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp or cobyla (default: what the design says)")
+        .one_of(optimisers::optimiser_names());
+    app.option("--out", options->out, "Folder for the result (default: the design's `output`)");
+    app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
+    app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
     return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }};
 }
 

@@ -6,11 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fettle/design/cli/command_line.hpp"
 #include "fettle/design/cli/console.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace fettle::design::cli {
 
@@ -23,16 +20,16 @@ struct CommonOptions {
 
 /// A subcommand: adds itself to the program's options; `run` is called once the command line has been read, and returns the exit code.
 struct Command {
-    CLI::App* app = nullptr;
+    CommandLine line;
     std::function<int(Console&)> run;
 };
 
-Command add_validate(CLI::App& program, const CommonOptions& common);
-Command add_simulate(CLI::App& program, const CommonOptions& common);
-Command add_clearance(CLI::App& program, const CommonOptions& common);
-Command add_gradient(CLI::App& program, const CommonOptions& common);
-Command add_optimise(CLI::App& program, const CommonOptions& common);
-Command add_ccd(CLI::App& program);
+Command add_validate(CommandLine& program, const CommonOptions& common);
+Command add_simulate(CommandLine& program, const CommonOptions& common);
+Command add_clearance(CommandLine& program, const CommonOptions& common);
+Command add_gradient(CommandLine& program, const CommonOptions& common);
+Command add_optimise(CommandLine& program, const CommonOptions& common);
+Command add_ccd(CommandLine& program);
 
 /// From now on the first Ctrl-C asks the work to stop with what it has; a second one ends the program at once.
 void catch_interrupts();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// fettle simulate SCENE: runs a scene, or a design at its values, and writes the trajectory.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -234,19 +233,18 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
 
 }  // namespace
 
-Command add_simulate(CLI::App& program, const CommonOptions& common) {
-    CLI::App* app = program.add_subcommand("simulate", "Runs a scene (or a design at its values) through time");
+Command add_simulate(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("simulate", "Runs a scene (or a design at its values) through time");
     auto options = std::make_shared<Options>();
-    app->add_option("SCENE", options->path, "Scene or design")->required();
-    CLI::Option* steps =
-        app->add_option("--steps", options->steps, "How many steps (default: the scene's end time)")->check(CLI::NonNegativeNumber);
-    app->add_option("--time", options->time, "How long, in seconds")->check(CLI::NonNegativeNumber)->excludes(steps);
-    app->add_option("--out", options->out,
-                    "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
-                    "(forces between bodies) and drives.csv (what motors and guides supply)");
-    app->add_option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
-    app->add_option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
-    app->footer(
+    app.option("SCENE", options->path, "Scene or design").required();
+    Option steps = app.option("--steps", options->steps, "How many steps (default: the scene's end time)").at_least(0);
+    app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);
+    app.option("--out", options->out,
+               "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
+               "(forces between bodies) and drives.csv (what motors and guides supply)");
+    app.option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
+    app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
+    app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
         "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");
     return {app, [options, &common](Console& console) { return run_simulate(*options, common, console); }};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// fettle validate FILE: is this scene, design, trajectory or mesh usable? Every fault, by name and place.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -134,15 +133,15 @@ int run_validate(const Options& options, const CommonOptions& common, Console& c
 
 }  // namespace
 
-Command add_validate(CLI::App& program, const CommonOptions& common) {
-    CLI::App* app =
-        program.add_subcommand("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
+Command add_validate(CommandLine& program, const CommonOptions& common) {
+    CommandLine app =
+        program.command("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
     auto options = std::make_shared<Options>();
-    app->add_option("FILE", options->path, "Scene, design, trajectory, certificate (.json) or mesh (.stl .obj .off .ply .3mf)")->required();
-    app->add_option("--trajectory", options->trajectory,
-                    "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
-    app->add_option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
-    app->footer(
+    app.option("FILE", options->path, "Scene, design, trajectory, certificate (.json) or mesh (.stl .obj .off .ply .3mf)").required();
+    app.option("--trajectory", options->trajectory,
+               "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
+    app.option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
+    app.closing_words(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");
     return {app, [options, &common](Console& console) { return run_validate(*options, common, console); }};

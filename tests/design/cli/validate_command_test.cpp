@@ -117,11 +117,11 @@ TEST_CASE("files of other kinds are told what is read") {
 TEST_CASE("options out of range are told in words") {
     const Answer words = run("simulate a.scene.json --steps five", true);
     CHECK(words.code == 3);
-    CHECK(words.says("--steps: `five` is not a number of at least 0"));
+    CHECK(words.says("--steps: a whole number is wanted, found \"five\""));
     CHECK(words.out.size() < 200);
     CHECK(run("simulate a.scene.json --time 1e160", true).says("--time: 1e160 is out of range: a number of at most 1e30"));
     CHECK(run("simulate a.scene.json --time nan", true).code == 3);
-    CHECK(run("--threads 9999 validate a", true).says("`9999` is not a number from 1 to 4096"));
+    CHECK(run("--threads 9999 validate a", true).says("--threads: 9999 is not allowed: 1 to 4096 is"));
 }
 
 TEST_CASE("the README of scenes shows keys that are read") {
