@@ -2,6 +2,7 @@
 #include "fettle/design/cli/output_folder.hpp"
 
 #include <fstream>
+#include <limits>
 #include <system_error>
 
 #include "fettle/core/files/atomic_file.hpp"
@@ -13,11 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By its lines; what cannot be read has none to lose.
+// By its lines. Of the first format, whose first line does not end the bodies, it is not known: there may be any number.
 std::size_t stored_steps(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::size_t steps = 0;
-    for (std::string line; std::getline(stream, line);) steps += line.starts_with("{\"nodes\"") ? 1 : 0;
+    std::string line;
+    if (std::getline(stream, line) && !line.ends_with('}')) return std::numeric_limits<std::size_t>::max();
+    while (std::getline(stream, line)) steps += line.starts_with("{\"nodes\"") ? 1 : 0;
     return steps;
 }
 

@@ -80,6 +80,7 @@ Verdict validate_trajectory(const std::string& path) {
     }
     verdict.facts["bodies"] = stored->trajectory.body_names;
     verdict.facts["steps"] = stored->trajectory.steps.size();
+    verdict.warnings = stored->warnings;
     return verdict;
 }
 

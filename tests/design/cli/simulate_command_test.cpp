@@ -99,6 +99,10 @@ TEST_CASE("simulate: a run is taken up, never back") {
     CHECK(folder.steps("run/trajectory.json") == 3);
     CHECK(folder.steps("run/trajectory.1.json") == 45);
 
+    folder.write("old/trajectory.json", "{\"fettle_trajectory\": 1,\n\"steps\": []}\n");  // of unknown length
+    CHECK(run("simulate " + scene + " --steps 3 --out " + folder.file("old")).code == 0);
+    CHECK(folder.contents("old/trajectory.1.json").find("\"steps\": []") != std::string::npos);
+
     const Answer other = run(
         "simulate " + folder.scene("", "-5", "other.scene.json") + " --continue " + folder.file("whole/trajectory.json") + " --steps 50",
         true);
