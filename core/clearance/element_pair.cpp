@@ -22,6 +22,21 @@ struct Piercing {
 int edge_count(const Corners& element) { return element.count == 3 ? 3 : element.count - 1; }
 Vector3 edge_end(const Corners& element, int k) { return element.x.col((k + 1) % 3); }
 
+// By how much corners may be off, by norm, without undoing that an edge passes through a triangle: its ends stay beyond the plane, and the
+// point where it meets the plane stays off the triangle's edges. That point goes further than the ends, the more so the flatter the edge
+// lies. So an edge that only runs along a triangle's border is no clash.
+double depth_of(double height_p, double height_q, double length, const Vector3& weight, const Matrix3& triangle) {
+    const double twice_area = (triangle.col(1) - triangle.col(0)).cross(triangle.col(2) - triangle.col(0)).norm();
+    double off_edges = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+        const double side = (triangle.col((i + 2) % 3) - triangle.col((i + 1) % 3)).norm();
+        off_edges = std::min(off_edges, weight[i] * twice_area / side);
+    }
+    const double steep = std::min(1.0, (height_p + height_q) / length);
+    const double depth = std::min({height_p, height_q, off_edges * steep});
+    return depth > 0 ? depth : 0;
+}
+
 // Where edge k of `edges` passes through the triangle's plane, moved into the triangle by clamping: both points belong to their
 // pieces whatever rounding did, so their distance is an honest upper bound.
 std::optional<Piercing> piercing(const Corners& edges, int k, const Matrix3& triangle) {
@@ -34,13 +49,13 @@ std::optional<Piercing> piercing(const Corners& edges, int k, const Matrix3& tri
     const double s = hp / (hp - hq);
     Piercing result;
     result.on_edge = p + s * (q - p);
-    result.depth = std::min(std::abs(hp), std::abs(hq)) / std::sqrt(squared);
     result.corner = s < 0.5 ? k : (k + 1) % 3;
     const Vector3 w = result.on_edge - triangle.col(0);
     Vector3 weight;
     weight[1] = w.cross(v).dot(normal) / squared;
     weight[2] = u.cross(w).dot(normal) / squared;
     weight[0] = 1 - weight[1] - weight[2];
+    result.depth = depth_of(std::abs(hp) / std::sqrt(squared), std::abs(hq) / std::sqrt(squared), (q - p).norm(), weight, triangle);
     weight = weight.cwiseMax(0);
     weight /= weight.sum();
     if (!weight.allFinite()) return std::nullopt;  // a sliver whose squared area underflows: its edges are measured anyway

@@ -24,8 +24,8 @@ struct ElementPairDistance {
     Vector3 difference = Vector3::Zero();  ///< point_a - point_b without the cancellation
     Primitive kind_a = Primitive::vertex, kind_b = Primitive::vertex;
     int corner_a = 0, corner_b = 0;
-    double depth = 0;           ///< if intersecting: how far the edge's nearer end is beyond the triangle's plane [m]
-    bool intersecting = false;  ///< an edge of one passes through the other; the features are then those next to the point
+    double depth = 0;           ///< if intersecting: by how much corners may be off without undoing it; 0: a matter of rounding [m]
+    bool intersecting = false;  ///< an edge of one passes through the other, or touches it; the features are then those next to the point
 };
 
 /// `a`, `b` in one frame. Degenerate triangles are the segments or points that they are.

@@ -100,8 +100,24 @@ std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& s
     return clashes;
 }
 
+bool is_finite(const core::stepper::Trajectory& trajectory) {
+    const auto finite = [](const auto& list, const auto& first, const auto& second) {
+        return std::all_of(list.begin(), list.end(), [&](const auto& x) { return (x.*first).allFinite() && (x.*second).allFinite(); });
+    };
+    using core::kinematics::ChartPoint;
+    using core::kinematics::Pose;
+    for (const auto& poses : trajectory.poses)
+        if (!finite(poses, &Pose::rotation, &Pose::position)) return false;
+    for (const auto& step : trajectory.steps)
+        for (const auto& node : step.nodes)
+            if (!finite(node, &ChartPoint::position, &ChartPoint::rotation_vector)) return false;
+    return true;
+}
+
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
 Errors write_proof(const std::string& path, const core::certificate::Certificate& certificate, const Subject& subject) {
+    if (!is_finite(subject.trajectory))
+        return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
     const Errors errors = core::certificate::write_certificate(path, certificate);
     if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
     return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);

@@ -180,6 +180,10 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
     for (int i = 0; i < std::min<int>(explain, static_cast<int>(report.pairs.size())); ++i)
         text += "\n" + formatted("%d. ", i + 1) + explained(report.pairs[static_cast<size_t>(i)], subject, lengths);
     text += "\n" + summary(report, subject);
+    std::map<std::string, int> reasons;
+    for (const ReportedPair& pair : report.pairs)
+        if (pair.finding == Finding::undecided && !pair.least.reason.empty()) ++reasons[pair.least.reason];
+    for (const auto& [reason, count] : reasons) text += formatted("undecided (%d): ", count) + reason + "\n";
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
     if (!report.left_out.empty())

@@ -94,6 +94,19 @@ TEST_CASE("Faces that touch exactly are undecided: neither a clash nor apart", "
     CHECK(contact.lower > 0.9e-9);
 }
 
+TEST_CASE("Edges that run along a border are no clash: blocks that slide on each other with no gap are undecided", "[clearance]") {
+    const auto model = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {0.9, 0.02, 2}});
+    const auto sliding = one_step(model, {{{0.9, 0.02, 2}, zero}, {{0.5, 0.1, 2}, {0, 0, 0.3}}, {{0.2, 0.4, 2}, {0, 0, 0.1}}});
+    for (const auto& trajectory : {as_assembled(model), sliding}) {
+        const auto result = certify_clearance(model, trajectory, {{0, 1, 0}}, over_motion())[0];
+        CHECK(!result.is_clash());
+        CHECK(result.status == PairStatus::undecided);
+    }
+    // A tenth of a micrometre in each other is one.
+    const auto deeper = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {0.9, 0.02, 2 - 1e-7}});
+    CHECK(certify_clearance(deeper, as_assembled(deeper), {{0, 1, 0}}, options_with(1e-6))[0].is_clash());
+}
+
 TEST_CASE("Contact is as far as minimum separation and activation distance reach", "[clearance]") {
     auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5})}, {{0, 0, 0}, {1.5 + 1.5e-4, 0, 0}});
     CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::clear);
