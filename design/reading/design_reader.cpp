@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_reader.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
@@ -83,8 +83,8 @@ private:
     }
 
     void read_simulation(const JsonNode& node) {
-        const double end_time = design_.scene.end_time.value_or(1000 * design_.scene.timestep);
-        design_.steps = static_cast<int>(std::lround(end_time / design_.scene.timestep));
+        const auto& end_time = design_.scene.end_time;
+        design_.steps = end_time ? core::stepper::step_count(*end_time, design_.scene.timestep) : core::stepper::default_step_count;
         if (!node.exists()) return;
         node.allow_keys({"steps", "clearance_tolerance"});
         design_.steps = node["steps"].integer(1).value_or(design_.steps);
