@@ -163,7 +163,7 @@ private:
 
     int cell_budget() const {
         const double triangles = static_cast<double>(pair_.a.mesh->triangles.size() + pair_.b.mesh->triangles.size());
-        return static_cast<int>(std::clamp(1e8 / (triangles + 1), 100.0, 4000.0));
+        return static_cast<int>(std::clamp(1e8 / (triangles + 1), 100.0, 20000.0));
     }
 
     std::optional<Overlap> overlap_at(const Instant& at, int cells) const {

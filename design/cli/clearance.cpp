@@ -64,9 +64,6 @@ Result<Lengths> read_lengths(const Options& options) {
     if (lengths.minimum && *lengths.minimum < 0) errors.push_back({ErrorCode::out_of_range, "--minimum", "a clearance is not negative"});
     if (lengths.tolerance && !(*lengths.tolerance > 0))
         errors.push_back({ErrorCode::out_of_range, "--tolerance", "a tolerance is greater than 0"});
-    if (options.minimum.empty() && options.pairs.process.empty() && options.pairs.pairs.find('=') == std::string::npos)
-        errors.push_back({ErrorCode::missing_key, "command line",
-                          "how much clearance is required? say --minimum 0.3mm, --process fdm, or --pairs A:B=0.3mm"});
     if (!options.pairs.process.empty()) {
         const auto preset = quantities::process_preset(options.pairs.process, "--process");
         errors.insert(errors.end(), preset.errors().begin(), preset.errors().end());
@@ -80,18 +77,28 @@ int exit_code(PairStatus status) {
     return status == PairStatus::undecided ? exit_undecided : exit_done;
 }
 
-// Bodies that push each other are closer than the tolerance; how close, and that they do not pass through each other, takes a finer one.
-void look_closer(const Subject& subject, core::clearance::ClearanceOptions certify, std::vector<core::clearance::PairClearance>& results) {
-    const double tolerance = certify.tolerance;
-    certify.max_evaluations /= 20;
+// Those that are not judged: a clash of theirs is found, and they become rows of the report for it.
+std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& subject, core::clearance::ClearanceOptions certify,
+                                                                PairSelection& selection) {
+    certify.margin_curve = certify.sample_nodes = false;
+    certify.certificate = nullptr;
     certify.on_pair = nullptr;
-    for (core::clearance::PairClearance& pair : results) {
-        if (pair.intersecting || !(pair.upper > 0) || pair.upper > 10 * tolerance || !may_push(subject, pair.a, pair.b)) continue;
-        certify.tolerance = 1e-2 * pair.upper;
-        const auto closer =
-            core::clearance::certify_clearance(subject.model, subject.trajectory, {{pair.a, pair.b, pair.minimum}}, certify);
-        if (closer.front().lower > pair.lower && closer.front().upper <= pair.upper) pair = closer.front();
+    certify.enough = 10 * certify.tolerance;
+    std::vector<core::clearance::PairClearance> clashes;
+    std::vector<PairSpec> apart;
+    for (PairSpec& pair : selection.left_out) {
+        std::vector<core::clearance::PairRequest> requests;
+        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0});
+        auto found = core::clearance::certify_clearance(subject.model, subject.trajectory, requests, certify);
+        if (std::none_of(found.begin(), found.end(), [](const auto& each) { return each.is_clash(); })) {
+            apart.push_back(std::move(pair));
+            continue;
+        }
+        clashes.insert(clashes.end(), found.begin(), found.end());
+        selection.pairs.push_back(std::move(pair));
     }
+    selection.left_out = std::move(apart);
+    return clashes;
 }
 
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
@@ -109,11 +116,14 @@ Json proof_json(const Options& options, const Subject& subject) {
 int run_clearance(const Options& options, const CommonOptions& common, Console& console) {
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
-    const Result<Subject> subject = load_subject(options.subject, common, console);
+    Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
     PairOptions pair_options = options.pairs;
     pair_options.minimum = lengths->minimum;
-    const Result<PairSelection> selection = select_pairs(subject->model, pair_options);
+    pair_options.motion = subject->motion();
+    if (lengths->minimum && !options.pairs.process.empty())
+        subject->notes.push_back("--minimum applies; what --process " + options.pairs.process + " requires was not judged");
+    Result<PairSelection> selection = select_pairs(subject->model, pair_options);
     if (!selection) return console.input_errors(selection.errors());
 
     core::clearance::ClearanceOptions certify;
@@ -126,8 +136,10 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     core::certificate::Certificate certificate;
     if (!options.certificate.empty()) certify.certificate = &certificate;
     auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection), certify);
-    if (options.certificate.empty()) look_closer(*subject, certify, results);  // a certificate is of what was certified at once
-    ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance);
+    const auto clashes = clashes_of_left_out(*subject, certify, *selection);
+    results.insert(results.end(), clashes.begin(), clashes.end());
+    certificate.source = subject->source == SubjectSource::trajectory ? "" : options.subject.path;
+    ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     Errors errors;
     if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
     const std::string unit = unit_name(subject->model.length_unit);
@@ -149,11 +161,12 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
 
 void add_options(CLI::App& app, Options& options) {
     app.add_option("FILE", options.subject.path, "Scene, design (at its values), or trajectory")->required();
-    app.add_option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm");
+    app.add_option("--minimum", options.minimum,
+                   "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
     app.add_option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
     app.add_option("--pairs", options.pairs.pairs,
                    "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
-                   "that may collide)");
+                   "as assembled, every pair that may collide over a motion)");
     app.add_option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
     app.add_option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)")
         ->allow_extra_args(false);

@@ -171,11 +171,14 @@ private:
         PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", named, {}};
         for (const int i : a.bodies) {
             for (const int j : b.bodies) {
-                if (named || judged_by_default(model_, i, j)) pair.body_pairs.emplace_back(i, j);
+                if (named || is_judged(i, j)) pair.body_pairs.emplace_back(i, j);
             }
         }
         if (pair.body_pairs.empty()) {
-            if (may_meet(a, b)) selection_.left_out.push_back(a.name + ":" + b.name);
+            for (const int i : a.bodies)
+                for (const int j : b.bodies)
+                    if (!is_one_group(i, j)) pair.body_pairs.emplace_back(i, j);
+            if (!pair.body_pairs.empty()) selection_.left_out.push_back(pair);
             return;
         }
         for (PairSpec& known : selection_.pairs) {
@@ -195,17 +198,15 @@ private:
         selection_.pairs.push_back(pair);
     }
 
-    // One of them moves, and the scene does not say that they belong together.
-    bool may_meet(const Unit& a, const Unit& b) const {
-        for (const int i : a.bodies) {
-            for (const int j : b.bodies) {
-                const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
-                const bool together = x.group >= 0 && x.group == y.group;
-                const auto still = core::scene::BodyType::static_body;
-                if (!together && (x.type != still || y.type != still)) return true;
-            }
-        }
-        return false;
+    bool is_one_group(int i, int j) const {
+        const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
+        return x.group >= 0 && x.group == y.group;
+    }
+
+    // Patterns of --pairs ask for whatever they match.
+    bool is_judged(int i, int j) const {
+        if (!options_.pairs.empty() || !options_.motion) return !is_one_group(i, j);
+        return judged_by_default(model_, i, j);
     }
 
     void ignore(const std::string& text) {
@@ -222,12 +223,8 @@ private:
             if (hit(pair)) selection_.ignored.push_back(pair.a.name + ":" + pair.b.name);
         }
         pairs.erase(std::remove_if(pairs.begin(), pairs.end(), hit), pairs.end());
-        const auto left = [&](const std::string& name) {
-            const Unit a{name.substr(0, name.find(':')), {}, false}, b{name.substr(name.find(':') + 1), {}, false};
-            return (among(a, token.a) && among(b, token.b)) || (among(a, token.b) && among(b, token.a));
-        };
         auto& out = selection_.left_out;
-        out.erase(std::remove_if(out.begin(), out.end(), left), out.end());
+        out.erase(std::remove_if(out.begin(), out.end(), hit), out.end());
     }
 
     // The longest side of the box of a part as it is drawn: the largest part of a group.
@@ -248,8 +245,11 @@ private:
             if (!found) return;
             preset = *found;
         }
+        const bool some =
+            std::any_of(selection_.pairs.begin(), selection_.pairs.end(), [](const PairSpec& p) { return !p.required_by.empty(); });
         for (PairSpec& pair : selection_.pairs) {
             if (!pair.required_by.empty()) continue;
+            pair.minimum = 0;
             const std::string name = pair.a.name + ":" + pair.b.name;
             if (options_.minimum) {
                 pair.minimum = *options_.minimum;
@@ -259,7 +259,7 @@ private:
                 errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
                 pair.minimum = required ? *required : 0;
                 pair.required_by = "--process " + options_.process;
-            } else {
+            } else if (some) {
                 fail("--minimum", ErrorCode::missing_key,
                      "what does " + name + " need? say --minimum 0.3mm, --process fdm, or --pairs " + name + "=0.3mm");
                 return;
@@ -269,14 +269,14 @@ private:
 
     // Each once, and not what another token named.
     void tidy_left_out() {
-        std::vector<std::string> once;
-        for (const std::string& name : selection_.left_out) {
-            const size_t colon = name.find(':');
-            const std::string other = name.substr(colon + 1) + ":" + name.substr(0, colon);
-            const auto is = [&](const std::string& known) { return known == name || known == other; };
-            const auto judged = [&](const PairSpec& pair) { return is(pair.a.name + ":" + pair.b.name); };
-            if (std::none_of(once.begin(), once.end(), is) && std::none_of(selection_.pairs.begin(), selection_.pairs.end(), judged))
-                once.push_back(name);
+        std::vector<PairSpec> once;
+        for (PairSpec& pair : selection_.left_out) {
+            const auto is = [&](const PairSpec& known) {
+                return (same(known.a, pair.a) && same(known.b, pair.b)) || (same(known.a, pair.b) && same(known.b, pair.a));
+            };
+            pair.minimum = 0;
+            if (std::none_of(once.begin(), once.end(), is) && std::none_of(selection_.pairs.begin(), selection_.pairs.end(), is))
+                once.push_back(pair);
         }
         selection_.left_out = once;
     }

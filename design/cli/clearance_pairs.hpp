@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Which pairs `fettle clearance` judges and what it requires of each: --pairs, --ignore, --group, --minimum, --process.
+///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have
+///   over a motion: every pair that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at for a
+///   clash only
 ///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own
 ///   --ignore A:B,...     the same without minimum; order of the two does not matter
 ///   --group name=a,b,c   bodies that are one rigid set: not judged against each other, one row of the report against others
@@ -18,7 +21,8 @@ struct PairOptions {
     std::string pairs, ignore;
     std::vector<std::string> groups;
     std::optional<double> minimum;  ///< [m], per side
-    std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it
+    std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it, which the report says
+    bool motion = false;            ///< over a motion
 };
 
 /// A body, or a group.
@@ -31,18 +35,19 @@ struct Unit {
 struct PairSpec {
     Unit a, b;
     double minimum = 0;                           ///< [m]
-    std::string required_by;                      ///< "--minimum", "--process fdm" or "--pairs"
+    std::string required_by;                      ///< "--minimum", "--process fdm" or "--pairs"; empty: only its distance is wanted
     bool named = false;                           ///< by name, not by default or by `*`: judged even if dynamics makes them touch
     std::vector<std::pair<int, int>> body_pairs;  ///< to measure; first of a, second of b
 };
 
 struct PairSelection {
     std::vector<PairSpec> pairs;
-    std::vector<std::string> ignored;   ///< "A:B"
-    std::vector<std::string> left_out;  ///< neither judged by default nor named, though one of them moves
+    std::vector<std::string> ignored;  ///< "A:B"
+    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: a clash of theirs is told, nothing else
 };
 
-/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair.
+/// Without any minimum only distances are wanted, and no pair has one.
+/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one.
 Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options);
 
 }  // namespace fettle::design::cli

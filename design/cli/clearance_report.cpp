@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
-#include "fettle/core/model/start_check.hpp"
 #include "fettle/design/cli/answers.hpp"
 
 namespace fettle::design::cli {
@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using core::clearance::PairClearance;
 using core::clearance::PairStatus;
+using core::clearance::Solids;
 using core::clearance::Witness;
 
 int severity(PairStatus status) {
@@ -34,39 +35,45 @@ int severity(PairStatus status) {
     return 3;
 }
 
+bool is_worse(const PairClearance& x, const PairClearance& y) {
+    if (x.is_clash() != y.is_clash()) return x.is_clash();
+    return x.is_clash() ? x.clash_time < y.clash_time : x.upper < y.upper;
+}
+
+Solids worse_of(Solids x, Solids y) {
+    for (const Solids each : {Solids::overlap, Solids::unproven, Solids::not_closed})
+        if (x == each || y == each) return each;
+    return Solids::disjoint;
+}
+
 // The whole pair: the least of its members.
 PairClearance least_of(const std::vector<PairClearance>& members) {
     PairClearance least = members.front();
     for (const PairClearance& member : members) {
         const PairClearance before = least;
-        if (member.upper < before.upper) least = member;
+        if (is_worse(member, before)) least = member;
         least.lower = std::min(before.lower, member.lower);
+        least.upper = std::min(before.upper, member.upper);
         least.sampled = std::min(before.sampled, member.sampled);
         least.complete = before.complete && member.complete;
         least.intersecting = before.intersecting || member.intersecting;
+        least.solids = worse_of(before.solids, member.solids);
+        least.reason = before.reason.empty() ? member.reason : before.reason;
         least.status = severity(member.status) < severity(before.status) ? member.status : before.status;
     }
     return least;
 }
 
-// Surfaces that never meet leave one thing to ask: does one body lie inside the other? Then it does at the start.
-// `model`: one without minimum separation.
-std::string overlap_at_start(const core::model::Model& model, const std::vector<PairClearance>& members) {
-    for (const PairClearance& member : members) {
-        if (!(member.lower > 0)) continue;
-        if (const auto error = core::model::check_start_pair(model, member.a, member.b)) return error->message;
-    }
-    return {};
-}
-
-Finding finding_of(const Subject& subject, const ReportedPair& pair) {
+Finding finding_of(const Subject& subject, const ReportedPair& pair, bool stopped) {
     const PairClearance& least = pair.least;
-    if (least.intersecting || !pair.overlap.empty()) return Finding::clash;
-    if (least.status == PairStatus::clear) return Finding::clear;
-    if (least.status == PairStatus::contact) return Finding::contact;
     const bool pushes =
         std::any_of(pair.members.begin(), pair.members.end(), [&](const PairClearance& m) { return may_push(subject, m.a, m.b); });
-    if (!pair.spec.named && pushes && least.upper < subject.model.dhat + subject.model.dmin) return Finding::contact;
+    const bool near = !pair.spec.named && pushes && least.upper < subject.model.dhat + subject.model.dmin;
+    if (least.is_clash()) return Finding::clash;
+    if (least.status == PairStatus::clear) return Finding::clear;
+    if (least.lower > 0 && least.solids != Solids::unproven && (near || least.status == PairStatus::contact))
+        return pair.spec.required_by.empty() && !pushes ? Finding::clear : Finding::contact;
+    if (near || (stopped && !least.complete)) return Finding::undecided;  // told apart from a clash neither way
     return least.status == PairStatus::violated ? Finding::below : Finding::undecided;
 }
 
@@ -116,19 +123,27 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     Json json;
     json["a"] = pair.spec.a.name;
     json["b"] = pair.spec.b.name;
-    json["minimum"] = least.minimum;
-    json["required_by"] = pair.spec.required_by;
+    const bool required = !pair.spec.required_by.empty();
+    json["minimum"] = required ? Json(least.minimum) : Json();
+    json["required_by"] = required ? Json(pair.spec.required_by) : Json();
     json["lower"] = least.lower;
     json["upper"] = least.upper;
     json["status"] = core::clearance::to_string(least.status);
     json["finding"] = to_string(pair.finding);
-    json["time"] = least.witness.time;
+    json["solids"] = core::certificate::to_string(least.solids);
+    if (pair.finding == Finding::undecided && !least.reason.empty()) json["reason"] = least.reason;
+    json["time"] = least.is_clash() ? least.clash_time : least.witness.time;
     json["point_a"] = vector_json(least.witness.point_a);
     json["point_b"] = vector_json(least.witness.point_b);
     json["gap"] = least.upper - least.lower;
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
     if (!pair.overlap.empty()) json["overlap"] = pair.overlap;
+    if (least.is_clash()) json["clash_not_before"] = least.clash_not_before;
+    if (least.overlap) {
+        json["depth"] = {{"lower", least.overlap->depth_lower}, {"upper", least.overlap->depth_upper}, {"time", least.overlap->time}};
+        json["volume"] = {{"lower", least.overlap->volume_lower}, {"upper", least.overlap->volume_upper}};
+    }
     if (pair.spec.a.is_group) json["body_a"] = names[static_cast<size_t>(least.a)];
     if (pair.spec.b.is_group) json["body_b"] = names[static_cast<size_t>(least.b)];
     json["pose_a"] = pose_json(file_pose(subject, least.witness, least.a));
@@ -146,6 +161,33 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
 int count_changes(const ClearanceReport& report, const char* change) {
     return static_cast<int>(
         std::count_if(report.pairs.begin(), report.pairs.end(), [&](const ReportedPair& p) { return p.change == change; }));
+}
+
+std::vector<std::string> uncovered(const core::model::Model& model, const PairSelection& selection) {
+    std::set<std::pair<int, int>> covered;
+    for (const PairSpec& pair : selection.pairs)
+        for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
+    std::vector<std::string> list;
+    const auto count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b)
+            if (covered.count({a, b}) == 0)
+                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
+    return list;
+}
+
+std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
+    std::string message;
+    if (stopped) message = "interrupted: what was not looked at is undecided";
+    if (!subject.incomplete.empty())
+        message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
+    if (selection.pairs.empty())
+        message += (message.empty() ? "" : "; ") + std::string("nothing was judged: ") +
+                   (subject.model.bodies.size() < 2 ? "there are no two bodies"
+                    : !selection.ignored.empty()    ? "every pair is ignored"
+                    : !selection.left_out.empty()   ? "no pair may collide in this motion; name pairs with --pairs"
+                                                    : "all bodies are of one group");
+    return message;
 }
 
 bool is_finding(const std::string& status) { return status == "violated" || status == "undecided"; }
@@ -174,13 +216,11 @@ const char* to_string(Finding finding) {
 }
 
 ClearanceReport make_report(const Subject& subject, const PairSelection& selection, const std::vector<PairClearance>& results,
-                            double tolerance) {
+                            double tolerance, bool stopped) {
     ClearanceReport report;
     report.ignored = selection.ignored;
-    report.left_out = selection.left_out;
+    for (const PairSpec& pair : selection.left_out) report.left_out.push_back(pair.a.name + ":" + pair.b.name);
     report.tolerance = tolerance;
-    core::model::Model touching_allowed = subject.model;
-    touching_allowed.dmin = 0;
     size_t next = 0;
     const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
     for (const PairSpec& spec : selection.pairs) {
@@ -192,15 +232,16 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
             for (Witness& witness : pair.members.back().witnesses) set_time(witness);
         }
         pair.least = least_of(pair.members);
-        if (!pair.least.intersecting) pair.overlap = overlap_at_start(touching_allowed, pair.members);
-        if (!pair.overlap.empty()) pair.least.lower = pair.least.upper = 0;
-        pair.finding = finding_of(subject, pair);
+        if (pair.least.solids == Solids::overlap) pair.overlap = "one lies inside the material of the other";
+        pair.finding = finding_of(subject, pair, stopped);
         pair.least.status = status_of(pair.finding);
         if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
         if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
         report.pairs.push_back(std::move(pair));
     }
-    if (!subject.incomplete.empty() && report.status == PairStatus::clear) report.status = PairStatus::undecided;
+    report.uncovered = uncovered(subject.model, selection);
+    report.message = why_not_judged(subject, selection, stopped);
+    if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
     std::stable_sort(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& x, const ReportedPair& y) {
         return x.finding != y.finding ? x.finding < y.finding : share(x) < share(y);
     });
@@ -238,13 +279,13 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     double minimum = std::numeric_limits<double>::infinity(), least = minimum;
     Json list = Json::array();
     for (const ReportedPair& pair : report.pairs) {
-        minimum = std::min(minimum, pair.least.minimum);
+        if (!pair.spec.required_by.empty()) minimum = std::min(minimum, pair.least.minimum);
         least = std::min(least, pair.least.lower);
         list.push_back(pair_json(pair, subject, names));
     }
     Json json;
     json["status"] = core::clearance::to_string(report.status);
-    json["minimum"] = report.pairs.empty() ? Json() : Json(minimum);
+    json["minimum"] = std::isfinite(minimum) ? Json(minimum) : Json();
     json["least"] = report.pairs.empty() ? Json() : Json(least);
     json["tolerance"] = report.tolerance;
     json["motion"] = subject.motion();
@@ -253,8 +294,9 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["pairs"] = list;
     json["ignored"] = report.ignored;
     json["left_out"] = report.left_out;
+    json["uncovered"] = report.uncovered;
     json["notes"] = subject.notes;
-    if (!subject.incomplete.empty()) json["message"] = "the motion is known up to there only: " + subject.incomplete;
+    if (!report.message.empty()) json["message"] = report.message;
     if (!report.baseline.empty()) {
         json["baseline"] = {{"file", report.baseline},
                             {"new", count_changes(report, "new")},

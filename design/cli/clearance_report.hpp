@@ -34,23 +34,27 @@ struct ReportedPair {
     core::clearance::PairClearance least;                 ///< of the two bodies that are closest; bounds and status of the whole pair
     std::vector<core::clearance::PairClearance> members;  ///< one per pair of bodies
     Finding finding = Finding::undecided;
-    std::string overlap;           ///< says how one lies inside the other; empty: it does not
+    std::string overlap;           ///< says that one lies inside the other; empty: it does not
     std::optional<Before> before;  ///< in the baseline
     std::string change;            ///< "new", "existing", "resolved"; empty: nothing to tell, or no baseline
 };
 
 struct ClearanceReport {
     std::vector<ReportedPair> pairs;  ///< worst first
-    std::vector<std::string> ignored, left_out;
-    std::vector<std::string> missing;  ///< findings of the baseline whose pairs were not judged now
-    std::string baseline;              ///< file; empty: none
-    double tolerance = 0;              ///< [m]
+    std::vector<std::string> ignored;
+    std::vector<std::string> left_out;   ///< not judged: no clash was found, nothing else is told
+    std::vector<std::string> uncovered;  ///< pairs of bodies that no row speaks of
+    std::string message;                 ///< why nothing was judged, or not to the end; empty: it was
+    std::vector<std::string> missing;    ///< findings of the baseline whose pairs were not judged now
+    std::string baseline;                ///< file; empty: none
+    double tolerance = 0;                ///< [m]
     core::clearance::PairStatus status = core::clearance::PairStatus::clear;
 };
 
-/// `results`: one per pair of bodies, in the order of the selection.
+/// `results`: one per pair of bodies, in the order of the selection. `stopped`: someone asked for an end: what the rest would have shown is
+/// not known, so that nothing is told as violated but what was certified before.
 ClearanceReport make_report(const Subject& subject, const PairSelection& selection,
-                            const std::vector<core::clearance::PairClearance>& results, double tolerance);
+                            const std::vector<core::clearance::PairClearance>& results, double tolerance, bool stopped);
 
 /// A body's pose at a witness's instant: that of its file's frame.
 core::kinematics::Pose file_pose(const Subject& subject, const core::clearance::Witness& witness, int body);

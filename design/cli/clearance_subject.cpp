@@ -2,7 +2,9 @@
 #include "fettle/design/cli/clearance_subject.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -90,8 +92,20 @@ void simulate(int steps, Subject& subject, Console& console) {
     core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
     subject.trajectory = std::move(simulation.trajectory);
     subject.source = SubjectSource::simulated;
+    const std::string status = core::stepper::to_string(simulation.report.status), &why = simulation.report.message;
     if (simulation.report.status != core::stepper::SimulationStatus::ok)
-        subject.incomplete = std::string(core::stepper::to_string(simulation.report.status)) + ": " + simulation.report.message;
+        subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
+}
+
+// A file that is none of what has bodies and places.
+Errors refuse_other_files(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (extension.empty() || extension == ".json" || !std::filesystem::exists(path)) return {};
+    const bool mesh = file_kind(path) == FileKind::mesh;
+    return {{ErrorCode::unsupported, path,
+             std::string(mesh ? "a mesh is one body without a place" : "files of this kind are not read") +
+                 "; clearance reads a scene, a design or a trajectory (.json), and meshes (.stl .obj .off .ply .3mf) that a scene names"}};
 }
 
 }  // namespace
@@ -113,6 +127,7 @@ const char* to_string(SubjectSource source) {
 }
 
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console) {
+    if (const Errors errors = refuse_other_files(options.path); !errors.empty()) return errors;
     if (file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
     Result<LoadedModel> loaded = load_model(options.path, common, false);
     if (!loaded) return loaded.errors();
@@ -144,6 +159,8 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     } else {
         subject.trajectory = core::clearance::as_assembled(subject.model);
     }
+    if (subject.source != SubjectSource::as_assembled && !subject.motion())
+        subject.notes.push_back("there is no motion, only a start: judged as assembled");
     return subject;
 }
 
@@ -152,12 +169,13 @@ bool judged_by_default(const core::model::Model& model, int a, int b) {
     if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
     const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
     if (a == b || (first.group >= 0 && first.group == second.group)) return false;
-    return first.type != BodyType::static_body || second.type != BodyType::static_body;
+    const auto still = [](const core::model::Body& body) { return body.type == BodyType::static_body; };
+    return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
 }
 
 bool may_push(const Subject& subject, int a, int b) {
     const bool dynamics = subject.source == SubjectSource::simulated || subject.source == SubjectSource::trajectory;
-    return dynamics && core::model::may_collide(subject.model, a, b);
+    return dynamics && subject.motion() && core::model::may_collide(subject.model, a, b);
 }
 
 }  // namespace fettle::design::cli

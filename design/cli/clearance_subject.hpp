@@ -32,13 +32,15 @@ struct Subject {
     std::string incomplete;          ///< why the motion is not whole; empty: it is, or there is none
     std::vector<std::string> notes;  ///< what the reader of a report should know
 
-    bool motion() const { return source != SubjectSource::as_assembled; }
+    /// Without steps there is none, wherever the poses come from.
+    bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
 };
 
 /// Errors: of the files and options, all with their places.
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console);
 
-/// Are these two judged when no pairs are named? Those that may collide; where nothing is dynamic, those of which one may move.
+/// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
+/// where nothing moves, all but those of one group.
 bool judged_by_default(const core::model::Model& model, int a, int b);
 
 /// In a motion with dynamics, can these two push each other? Then coming close is what they are for, unless someone asks for more.

@@ -11,6 +11,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
@@ -26,28 +27,17 @@ public:
         decimals_ = std::clamp(static_cast<int>(std::ceil(-std::log10(tolerance / metres_) - 1e-9)), 0, 9);
     }
     // A bound that is printed is still a bound. `more` decimals than the table has.
-    std::string down(double x, int more = 0) const {
-        return rounded(x / metres_, decimals_ + more, [](double y) { return std::floor(y); });
-    }
-    std::string up(double x, int more = 0) const {
-        return rounded(x / metres_, decimals_ + more, [](double y) { return std::ceil(y); });
-    }
+    std::string down(double x, int more = 0) const { return RoundedLengths(unit_, decimals_).fixed(x, Towards::down, more); }
+    std::string up(double x, int more = 0) const { return RoundedLengths(unit_, decimals_).fixed(x, Towards::up, more); }
     std::string plain(double x) const { return formatted("%.6g", x / metres_); }
     std::string rough(double x) const { return formatted("%.2g", x / metres_); }
     std::string point(const Vector3& x) const {
         return formatted("(%.6g, %.6g, %.6g) %s", x.x() / metres_, x.y() / metres_, x.z() / metres_, unit_.c_str());
     }
     const std::string& unit() const { return unit_; }
+    double metres() const { return metres_; }
 
 private:
-    template <class Round>
-    static std::string rounded(double x, int decimals, const Round& round) {
-        const double scale = std::pow(10.0, decimals);
-        if (x == 0 || !std::isfinite(x)) return formatted("%g", x);
-        if (std::abs(x) * scale >= 10) return formatted("%.*f", decimals, round(x * scale) / scale);
-        const double digit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 2);  // of the third digit
-        return formatted("%.3g", round(x / digit) * digit);
-    }
     std::string unit_;
     double metres_;
     int decimals_ = 0;
@@ -65,9 +55,11 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
         const PairClearance& least = pair.least;
         const std::string status = formatted("%-16s", to_string(pair.finding));
         const bool good = pair.finding == Finding::clear || pair.finding == Finding::contact;
-        text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(), lengths.plain(least.minimum).c_str(),
-                          lengths.down(least.lower).c_str(), lengths.up(least.upper).c_str(), console.coloured(status, good).c_str());
-        if (subject.motion()) text += formatted("  %.6g", least.witness.time);
+        text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(),
+                          pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), lengths.down(least.lower).c_str(),
+                          lengths.up(least.upper).c_str(), console.coloured(status, good).c_str());
+        if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
+        if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
         text += (pair.change.empty() ? "" : "  " + pair.change) + "\n";
     }
     return text;
@@ -89,6 +81,22 @@ std::string feature(core::clearance::Primitive kind, int index) {
     return formatted("%s %d", words[static_cast<int>(kind)], index);
 }
 
+std::string clash(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
+    const PairClearance& least = pair.least;
+    std::string text = "   " + (pair.overlap.empty() ? std::string("the surfaces pass through each other") : pair.overlap);
+    if (subject.motion())
+        text += formatted(" from %.9g s on; until %.9g s there is proven to be no clash", least.clash_time, least.clash_not_before);
+    text += "\n";
+    if (!least.overlap) return text;
+    const core::clearance::Overlap& o = *least.overlap;
+    const double cubed = lengths.metres() * lengths.metres() * lengths.metres();
+    text += "   to part them takes a move of at least " + lengths.down(o.depth_lower) + ", " + lengths.up(o.depth_upper) + " " +
+            lengths.unit() + " is enough; they share at least " + formatted("%.3g", 0.995 * o.volume_lower / cubed) + ", at most " +
+            formatted("%.3g", 1.005 * o.volume_upper / cubed) + " " + lengths.unit() + "^3";
+    if (subject.motion()) text += formatted(", at %.6g s", o.time);
+    return text + "\n";
+}
+
 std::string explained(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const PairClearance& least = pair.least;
     const Witness& w = least.witness;
@@ -96,12 +104,14 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
     std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
     text += "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " + lengths.unit() +
-            " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart); required " + lengths.plain(least.minimum) +
-            " per side (" + pair.spec.required_by + ")\n";
-    if (!pair.overlap.empty()) return text + "   " + pair.overlap + "\n";
-    if (pair.finding == Finding::clash) text += "   an edge of one passes through a face of the other\n";
+            " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)" +
+            (pair.spec.required_by.empty() ? "\n"
+                                           : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
+    if (pair.finding == Finding::undecided && !least.reason.empty()) text += "   undecided: " + least.reason + "\n";
+    if (pair.finding == Finding::clash) text += clash(pair, subject, lengths);
+    if (least.solids == core::clearance::Solids::overlap && !least.intersecting) return text;
     if (w.step >= 0) {
-        text += formatted("   closest at %.9g s, in step %d", w.time, w.step + 1);
+        text += formatted("   %s at %.9g s, in step %d", least.is_clash() ? "first" : "closest", w.time, w.step + 1);
         const int segments = core::stepper::segment_count(subject.trajectory, w.step);
         if (segments > 1) text += formatted(", part %d of %d of its path", w.segment + 1, segments);
         text += formatted(", %.3g%% of the way\n", 100 * w.s);
@@ -173,9 +183,14 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
     if (!report.left_out.empty())
-        text += "not judged, because the simulation lets them pass through each other: " + joined(report.left_out) +
+        text += "not judged, because the simulation lets them pass through each other (no clash was found): " + joined(report.left_out) +
                 "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
+    if (!report.uncovered.empty())
+        text +=
+            formatted("%zu pair%s of bodies have no row: ", report.uncovered.size(), report.uncovered.size() == 1 ? "" : "s") +
+            joined({report.uncovered.begin(), report.uncovered.begin() + static_cast<long>(std::min<size_t>(report.uncovered.size(), 6))}) +
+            (report.uncovered.size() > 6 ? ", ...\n" : "\n");
     for (const std::string& note : subject.notes) text += "note: " + note + "\n";
     if (!report.baseline.empty()) {
         int changes[3] = {0, 0, 0};
@@ -185,12 +200,12 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
         text += formatted("against %s: %d new, %d existing, %d resolved\n", report.baseline.c_str(), changes[0], changes[1], changes[2]);
         if (!report.missing.empty()) text += "found there and not judged now: " + joined(report.missing) + "\n";
     }
-    if (!subject.incomplete.empty()) text += "the motion is known up to there only: " + subject.incomplete + "\n";
+    if (!report.message.empty()) text += report.message + "\n";
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
 
 std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit) {
-    const double metres = core::base::metres_per_unit(unit).value();
+    const RoundedLengths lengths(unit);
     std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
     for (const ReportedPair& pair : report.pairs) {
         for (const PairClearance& member : pair.members) {
@@ -200,7 +215,7 @@ std::string margins_csv(const ClearanceReport& report, const Subject& subject, c
                 const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
                 text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +
                         shortest(core::stepper::time_at(subject.trajectory, m.step, m.segment, 0)) + "," + shortest(end) + "," +
-                        shortest(m.lower / metres) + "," + shortest(m.upper / metres) + "\n";
+                        lengths.shortest(m.lower, Towards::down) + "," + lengths.shortest(m.upper, Towards::up) + "\n";
             }
         }
     }

@@ -71,13 +71,13 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
 }
 
 struct Options {
-    std::string path, trajectory;
+    std::string path, trajectory, minimum;
 };
 
 int run_validate(const Options& options, const CommonOptions& common, Console& console) {
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
-    if (kind == FileKind::certificate) return validate_certificate({path, options.trajectory}, console);
+    if (kind == FileKind::certificate) return validate_certificate({path, options.trajectory, options.minimum}, common, console);
     if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
@@ -105,6 +105,7 @@ Command add_validate(CLI::App& program, const CommonOptions& common) {
     app->add_option("FILE", options->path, "Scene, design, trajectory, certificate (.json) or mesh (.stl .obj .off .ply .3mf)")->required();
     app->add_option("--trajectory", options->trajectory,
                     "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
+    app->add_option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
     app->footer(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/validate_certificate.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -8,66 +10,165 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::certificate::Certificate;
+using core::certificate::PairCertificate;
+using core::certificate::Solids;
+using core::model::Model;
+
+Json name_of(const Model& model, int body) {
+    const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
+    return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
+}
+
+// "clear", "violated" or "undecided", of a pair whose claims are proven.
+const char* verdict(const PairCertificate& pair, double minimum) {
+    const bool apart = pair.solids == Solids::disjoint || pair.solids == Solids::not_closed;
+    if (pair.lower >= minimum && pair.lower > 0 && apart) return "clear";
+    return pair.upper < minimum ? "violated" : "undecided";
+}
 
 // What a certificate claims, by name.
-Json claims_json(const core::certificate::Certificate& certificate, const core::model::Model& model) {
-    const auto name = [&](int body) {
-        const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
-        return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
-    };
+Json claims_json(const Certificate& certificate, const Model& model, const std::optional<double>& minimum) {
     Json list = Json::array();
-    for (const auto& pair : certificate.pairs)
-        list.push_back({{"a", name(pair.a)}, {"b", name(pair.b)}, {"lower", pair.lower}, {"upper", pair.upper}});
+    for (const PairCertificate& pair : certificate.pairs) {
+        list.push_back({{"a", name_of(model, pair.a)},
+                        {"b", name_of(model, pair.b)},
+                        {"lower", pair.lower},
+                        {"upper", pair.upper},
+                        {"solids", to_string(pair.solids)}});
+        if (minimum) list.back()["status"] = verdict(pair, *minimum);
+    }
     return list;
 }
 
-std::string claims_text(const Json& claims, const core::model::Model& model) {
-    const std::string unit = unit_name(model.length_unit);
-    const double factor = 1 / core::base::metres_per_unit(unit).value();
+std::string claims_text(const Json& claims, const Certificate& certificate) {
+    const RoundedLengths lengths(unit_name(certificate.length_unit));
     std::string text;
     const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
-    for (const Json& pair : claims)
-        text += formatted("  %s:%s  at least %.9g, at most %.9g %s\n", name(pair["a"]).c_str(), name(pair["b"]).c_str(),
-                          pair["lower"].get<double>() * factor, pair["upper"].get<double>() * factor, unit.c_str());
+    for (const Json& pair : claims) {
+        const std::string solids = pair["solids"];
+        text += "  " + name(pair["a"]) + ":" + name(pair["b"]) + "  at least " + lengths.fixed(pair["lower"], Towards::down) +
+                ", at most " + lengths.fixed(pair["upper"], Towards::up) + " " + lengths.unit() + "; " +
+                (solids == "disjoint"     ? "disjoint solids"
+                 : solids == "not closed" ? "disjoint solids cannot be verified: not closed"
+                                          : "not proven to be apart") +
+                (pair.contains("status") ? ": " + pair["status"].get<std::string>() : "") + "\n";
+    }
     return text;
+}
+
+// Are the source's meshes still those of the certificate? Nothing to tell if they are.
+struct SourceCheck {
+    bool stale = false;
+    std::string note;
+};
+
+SourceCheck check_source(const Certificate& certificate, const std::string& path, const CommonOptions& common) {
+    if (certificate.source.empty()) return {};
+    std::filesystem::path source = certificate.source;
+    if (!std::filesystem::exists(source)) source = std::filesystem::path(path).parent_path() / certificate.source;
+    const std::string untold = ": whether its meshes have changed since cannot be told";
+    if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
+    const Result<LoadedModel> loaded = load_model(source.string(), common, false);
+    if (!loaded) return {false, certificate.source + ", which it was made from, cannot be read" + untold};
+    if (core::records::geometry_hash(loaded->model) == certificate.geometry_hash) return {};
+    return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+}
+
+Result<std::optional<double>> read_minimum(const std::string& text) {
+    if (text.empty()) return std::optional<double>{};
+    const Result<double> length = core::base::parse_length(text, "--minimum");
+    if (!length) return length.errors();
+    if (*length < 0) return Error{ErrorCode::out_of_range, "--minimum", "a clearance is not negative"};
+    return std::optional<double>(*length);
+}
+
+struct Answer {
+    Json json, faults = Json::array();
+    std::string text;
+    bool stale = false;
+    int code = exit_violated;
+
+    void add_fault(const std::string& where, const std::string& message) {
+        faults.push_back({{"where", where}, {"message", message}});
+        text += "  " + where + ": " + message + "\n";
+    }
+};
+
+std::string worst_of(const Json& claims) {
+    std::string worst = "clear";
+    for (const Json& pair : claims) {
+        const std::string status = pair["status"];
+        if (status == "violated" || (status == "undecided" && worst == "clear")) worst = status;
+    }
+    return worst;
+}
+
+void check(const Certificate& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
+           const std::optional<double>& minimum, const CommonOptions& common, Answer& answer) {
+    const core::certificate::CertificateReport report = core::certificate::check_certificate(certificate, stored);
+    for (const auto& fault : report.faults) answer.add_fault(fault.where, fault.message);
+    answer.stale = report.stale;
+    const SourceCheck source = check_source(certificate, question.path, common);
+    if (source.stale) {
+        answer.stale = true;
+        answer.add_fault("/source", source.note);
+    }
+    const bool accepted = answer.faults.empty();
+    answer.json["leaves"] = report.leaves;
+    answer.json["motion"] = certificate.motion;
+    answer.json["pairs"] = claims_json(certificate, stored.model, accepted ? minimum : std::nullopt);
+    answer.json["uncovered"] = Json::array();
+    std::string uncovered;
+    for (const auto& [a, b] : uncovered_pairs(certificate, static_cast<int>(stored.model.bodies.size()))) {
+        const std::string name = stored.model.bodies[static_cast<size_t>(a)].name + ":" + stored.model.bodies[static_cast<size_t>(b)].name;
+        answer.json["uncovered"].push_back(name);
+        uncovered += (uncovered.empty() ? "" : ", ") + name;
+    }
+    answer.json["notes"] = Json::array();
+    if (!source.stale && !source.note.empty()) answer.json["notes"].push_back(source.note);
+    if (!accepted) return;
+    answer.code = exit_done;
+    answer.text +=
+        formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves, certificate.motion ? "over the motion" : "as assembled") +
+        claims_text(answer.json["pairs"], certificate);
+    if (!uncovered.empty()) answer.text += "not covered: " + uncovered + "\n";
+    for (const Json& note : answer.json["notes"]) answer.text += "note: " + note.get<std::string>() + "\n";
+    if (!minimum) return;
+    const std::string worst = worst_of(answer.json["pairs"]);
+    answer.json["minimum"] = *minimum;
+    answer.json["judgement"] = worst;
+    answer.text += "at a minimum of " + question.minimum + ": " + worst + "\n";
+    answer.code = worst == "violated" ? exit_violated : worst == "undecided" ? exit_undecided : exit_done;
 }
 
 }  // namespace
 
-int validate_certificate(const CertificateQuestion& question, Console& console) {
+int validate_certificate(const CertificateQuestion& question, const CommonOptions& common, Console& console) {
+    const Result<std::optional<double>> minimum = read_minimum(question.minimum);
+    if (!minimum) return console.input_errors(minimum.errors());
     const std::string trajectory = question.trajectory.empty() ? certificate_trajectory(question.path) : question.trajectory;
     const auto stored = core::records::read_trajectory(trajectory);
     if (!stored) return console.input_errors(stored.errors());
-    Json json{{"status", "rejected"}, {"kind", "certificate"}, {"trajectory", trajectory}};
-    Json faults = Json::array();
-    std::string text;
+    Answer answer;
+    answer.json = {{"status", "rejected"}, {"kind", "certificate"}, {"trajectory", trajectory}};
     const auto certificate = core::certificate::read_certificate(question.path);
-    for (const Error& error : certificate.errors()) faults.push_back({{"where", error.where}, {"message", error.message}});
-    if (certificate) {
-        const core::certificate::CertificateReport report = core::certificate::check_certificate(*certificate, *stored);
-        for (const auto& fault : report.faults) faults.push_back({{"where", fault.where}, {"message", fault.message}});
-        if (report.accepted()) json["status"] = "accepted";
-        json["leaves"] = report.leaves;
-        json["motion"] = certificate->motion;
-        json["pairs"] = claims_json(*certificate, stored->model);
-        if (report.accepted()) {
-            text = formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
-                             certificate->motion ? "over the motion" : "as assembled") +
-                   claims_text(json["pairs"], stored->model);
-        }
-    }
-    json["faults"] = faults;
-    for (const Json& fault : faults) text += "  " + fault["where"].get<std::string>() + ": " + fault["message"].get<std::string>() + "\n";
-    const bool accepted = faults.empty();
-    console.result(
-        json, question.path + ": " + console.coloured(json["status"].get<std::string>(), accepted) + " for " + trajectory + "\n" + text);
-    return accepted ? exit_done : exit_violated;
+    for (const Error& error : certificate.errors()) answer.add_fault(error.where, error.message);
+    if (certificate) check(*certificate, *stored, question, *minimum, common, answer);
+    const bool accepted = answer.faults.empty();
+    const std::string status = accepted ? "accepted" : answer.stale ? "stale" : "rejected";
+    answer.json["status"] = status;
+    answer.json["faults"] = answer.faults;
+    console.result(answer.json, question.path + ": " + console.coloured(status, accepted) + " for " + trajectory + "\n" + answer.text);
+    return answer.code;
 }
 
 }  // namespace fettle::design::cli

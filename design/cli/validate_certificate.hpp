@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// fettle validate CERTIFICATE: is every claim of it proven? A checker of its own judges (certificate_checker.hpp).
+/// fettle validate CERTIFICATE: is every claim of it proven? A checker of its own judges (certificate_checker.hpp). Told beside that: which
+/// pairs of bodies it does not cover, whether it is stale (its trajectory, or the meshes of the scene or design that it names, have changed
+/// since), and with a minimum whether its bounds meet that.
 #pragma once
 
 #include <string>
@@ -11,9 +13,11 @@ namespace fettle::design::cli {
 struct CertificateQuestion {
     std::string path;        ///< of the certificate
     std::string trajectory;  ///< the path that it speaks of; empty: the one beside it
+    std::string minimum;     ///< required clearance, "0.3mm"; empty: only the claims are checked
 };
 
-/// Answers "accepted" or "rejected", with every fault; returns the exit code.
-int validate_certificate(const CertificateQuestion& question, Console& console);
+/// Answers "accepted", "rejected" or "stale", with every fault; returns the exit code: 1 where it is not accepted or a pair is violated, 2
+/// where one is undecided.
+int validate_certificate(const CertificateQuestion& question, const CommonOptions& common, Console& console);
 
 }  // namespace fettle::design::cli

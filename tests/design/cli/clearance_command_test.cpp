@@ -46,16 +46,18 @@ std::string contents(const std::string& path) {
 TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its minimum") {
     const RowFolder folder;
     const std::string command = "clearance " + folder.scene() + " --json ";
-    // Everything that moves against everything: not pin1 against pin2, which are both static. Worst first.
+    // As assembled every pair, whatever types it has: also pin1 against pin2, which are both static. Worst first.
     const Answer all = run(command + "--minimum 0.6mm");
     CHECK(all.code == 1);
-    REQUIRE(all.json()["pairs"].size() == 5);
-    CHECK(all.json()["pairs"][0]["b"] == "pin1");
-    CHECK(all.json()["pairs"][0]["finding"] == "below threshold");
-    CHECK(all.json()["pairs"][0]["lower"].get<double>() == Approx(0.0005).margin(1e-6));
+    REQUIRE(all.json()["pairs"].size() == 6);
+    CHECK(all.json()["pairs"][0]["a"] == "pin1");
+    CHECK(all.json()["pairs"][1]["b"] == "pin1");
+    CHECK(all.json()["pairs"][1]["finding"] == "below threshold");
+    CHECK(all.json()["pairs"][1]["lower"].get<double>() == Approx(0.0005).margin(1e-6));
+    CHECK(all.json()["uncovered"].empty());
+    CHECK(run(command + "--motion --minimum 0.6mm").json()["pairs"].size() == 5);  // over a motion those of which one moves
     CHECK(all.pair("spin", "pin2")["status"] == "clear");
     CHECK(all.json()["minimum"] == 6e-4);
-    // Both static: by name only.
     const Answer named = run(command + "--minimum 0.1mm --pairs pin1:pin2");
     CHECK(named.code == 0);
     CHECK(named.pair("pin1", "pin2")["upper"].get<double>() == Approx(0.0002).margin(1e-6));
@@ -69,7 +71,8 @@ TEST_CASE("clearance: pairs by name, wildcard and group, ignored, each with its 
     const Answer ignored = run(command + "--minimum 0.6mm --ignore pin1:*");
     CHECK(ignored.code == 0);
     CHECK(ignored.json()["pairs"].size() == 3);
-    CHECK(ignored.json()["ignored"].size() == 2);
+    CHECK(ignored.json()["ignored"].size() == 3);
+    CHECK(ignored.json()["uncovered"].size() == 3);
     // The pins as one rigid set: one row, that of the nearest; not against each other.
     const Answer group = run(command + "--minimum 0.6mm --group frame=pin1,pin2");
     CHECK(group.json()["pairs"].size() == 3);
@@ -88,7 +91,6 @@ TEST_CASE("clearance: usage that is wrong is refused with what to do") {
         CHECK(answer.code == 3);
         CHECK(answer.says(says));
     };
-    refused("", "how much clearance is required? say --minimum 0.3mm, --process fdm");
     refused("--minimum 0.3", "--minimum");
     refused("--minimum -1mm", "a clearance is not negative");
     refused("--process fdn", "did you mean \"fdm\"?");
@@ -108,7 +110,7 @@ TEST_CASE("clearance: usage that is wrong is refused with what to do") {
 
 TEST_CASE("clearance: process presets, per side, by size of the parts") {
     const RowFolder folder;
-    const Answer sla = run("clearance " + folder.scene() + " --process sla --json");
+    const Answer sla = run("clearance " + folder.scene() + " --process sla --pairs 'slide:*,spin:*' --json");
     CHECK(sla.code == 0);
     CHECK(sla.pair("slide", "pin1")["minimum"].get<double>() == Approx(0.375e-3));
     CHECK(sla.pair("slide", "pin1")["required_by"] == "--process sla");
@@ -116,6 +118,7 @@ TEST_CASE("clearance: process presets, per side, by size of the parts") {
     CHECK(fdm.code == 1);
     CHECK(fdm.pair("slide", "pin1")["minimum"].get<double>() == Approx(0.7e-3));
     CHECK(run("clearance " + folder.scene() + " --process fdm --minimum 0.3mm --json").pair("slide", "pin1")["minimum"] == 3e-4);
+    CHECK(run("clearance " + folder.scene() + " --process fdm --minimum 0.3mm").says("--minimum applies"));
     CHECK(run("clearance --help").says("per side"));
 }
 
