@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_reader.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <set>
 

@@ -147,3 +147,12 @@ TEST_CASE("a density that is not per volume has no unit of a density per volume"
         scene);
     CHECK(read_design(right.design()));
 }
+
+TEST_CASE("an end time that no whole number of steps meets is covered, not cut short") {
+    const DesignFolder folder(small_design,
+                              replaced(small_scene, "\"timestep\": 0.005, \"end_time\": 0.1", "\"timestep\": 0.03, \"end_time\": 0.1"));
+    const Result<DesignFile> file = read_design(folder.design());
+    INFO(all(file.errors()));
+    REQUIRE(file);
+    CHECK(file->design.steps == 4);
+}
