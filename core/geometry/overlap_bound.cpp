@@ -28,8 +28,13 @@ std::vector<bool> involved(const Mesh& mesh, const std::vector<std::pair<int, in
     return out;
 }
 
-/// One triangle with an area of each patch; empty if there are too many.
-std::vector<std::size_t> one_of_each_patch(const Mesh& mesh, const std::vector<bool>& crossed) {
+struct Patches {
+    std::vector<std::size_t> of;       ///< per triangle: its patch
+    std::vector<std::size_t> largest;  ///< per patch: its largest triangle; the number of triangles if there is none with an area
+};
+
+/// Triangles of no pair, joined over edges that two of them share.
+Patches patches_of(const Mesh& mesh, const std::vector<bool>& crossed) {
     std::vector<int> parent(mesh.triangles.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int t) {
@@ -45,20 +50,19 @@ std::vector<std::size_t> one_of_each_patch(const Mesh& mesh, const std::vector<b
         if (!crossed[static_cast<std::size_t>(a)] && !crossed[static_cast<std::size_t>(b)])
             parent[static_cast<std::size_t>(root(a))] = root(b);
     });
-    std::vector<double> largest(mesh.triangles.size(), 0);
-    std::vector<std::size_t> chosen(mesh.triangles.size(), mesh.triangles.size());
+    std::vector<double> areas(mesh.triangles.size(), 0);
+    Patches patches{std::vector<std::size_t>(mesh.triangles.size(), 0),
+                    std::vector<std::size_t>(mesh.triangles.size(), mesh.triangles.size())};
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (crossed[t]) continue;
         const Triangle& v = mesh.triangles[t];
         const Vector3 a = mesh.vertices.col(v[0]), b = mesh.vertices.col(v[1]), c = mesh.vertices.col(v[2]);
-        const auto patch = static_cast<std::size_t>(root(static_cast<int>(t)));
-        if (const double area = (b - a).cross(c - a).norm(); area > largest[patch]) {
-            largest[patch] = area;
-            chosen[patch] = t;
-        }
+        const auto patch = patches.of[t] = static_cast<std::size_t>(root(static_cast<int>(t)));
+        const double area = (b - a).cross(c - a).norm();
+        if (crossed[t] || area <= areas[patch]) continue;
+        areas[patch] = area;
+        patches.largest[patch] = t;
     }
-    std::erase(chosen, mesh.triangles.size());
-    return chosen;
+    return patches;
 }
 
 /// Is one side of the triangle outside (wound 0 times) and the other, inner one inside (1)?
@@ -124,12 +128,18 @@ std::optional<double> all_but_largest_shell(const Mesh& mesh, const std::vector<
 
 std::optional<double> overlap_volume_bound(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
     if (pairs.empty()) return 0;
-    const std::vector<bool> crossed = involved(mesh, pairs);
-    const std::vector<std::size_t> patches = one_of_each_patch(mesh, crossed);
-    const std::vector<Cluster> clusters = clusters_of(mesh, crossed);
-    const bool plain = patches.size() <= most_patches && !patches.empty() && !clusters.empty() &&
-                       std::all_of(patches.begin(), patches.end(), [&](std::size_t t) { return has_plain_sides(mesh, t); });
-    if (!plain) return all_but_largest_shell(mesh, pairs);
+    std::vector<bool> doubtful = involved(mesh, pairs);
+    const Patches patches = patches_of(mesh, doubtful);
+    std::size_t looked_at = 0;
+    for (std::size_t patch = 0; patch < patches.largest.size(); ++patch) {
+        const std::size_t t = patches.largest[patch];
+        if (t == mesh.triangles.size()) continue;
+        if (++looked_at <= most_patches && has_plain_sides(mesh, t)) continue;
+        for (std::size_t other = 0; other < patches.of.size(); ++other)
+            if (patches.of[other] == patch) doubtful[other] = true;
+    }
+    const std::vector<Cluster> clusters = clusters_of(mesh, doubtful);
+    if (clusters.empty()) return all_but_largest_shell(mesh, pairs);
     double bound = 0;
     for (const Cluster& cluster : clusters) bound += (cluster.box.high - cluster.box.low).prod() * cluster.triangles;
     const std::optional<double> by_shells = all_but_largest_shell(mesh, pairs);

@@ -65,13 +65,13 @@ std::string parts_text(const core::model::Model& model) {
     const double per_metre = 1 / core::base::metres_per_unit(unit).value();
     std::size_t widest = 4;
     for (const Body& body : model.bodies) widest = std::max(widest, std::min<std::size_t>(body.name.size(), 32));
-    std::string text = formatted("  %-*s  %-9s  %-30s  %-12s  %s\n", static_cast<int>(widest), "body", "type",
-                                 ("size [" + unit + "]").c_str(), ("[" + unit + "^3]").c_str(), "mass");
+    std::string text = formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), "body", "type",
+                                 ("size [" + unit + "]").c_str(), ("volume [" + unit + "^3]").c_str(), "mass");
     for (const Body& body : model.bodies) {
         const Vector3 size = per_metre * size_of(body);
         const auto volume = volume_of(body);
         const std::string shown = volume ? formatted("%.5g", *volume * per_metre * per_metre * per_metre) : std::string("open");
-        text += formatted("  %-*s  %-9s  %-30s  %-12s  %s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
+        text += formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
                           formatted("%.5g x %.5g x %.5g", size.x(), size.y(), size.z()).c_str(), shown.c_str(),
                           mass_text(mass_of(body)).c_str());
     }

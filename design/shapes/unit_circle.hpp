@@ -5,8 +5,8 @@
 /// - a pin (outer surface) is inscribed: its vertices lie at R;
 /// - a bore (inner surface) is circumscribed: its flats are at R, its vertices at R / cos(pi/N).
 /// So a pin of radius r, concentric in a bore of radius R, keeps at least R - r at every angle between the two, exactly R - r
-/// where a vertex of the pin faces the middle of a flat. The clearance that is certified, as assembled and concentric, is never less than the
-/// nominal one.
+/// where a vertex of the pin faces the middle of a flat. The clearance that is certified, as assembled and concentric, is never less than
+/// the nominal one.
 #pragma once
 
 #include <array>

@@ -97,18 +97,6 @@ TEST_CASE("Copies of a part share its hierarchy, and are what they would be alon
     CHECK(bodies[2].edge_area == alone->bodies[0].edge_area);
 }
 
-TEST_CASE("Every copy of a bad mesh is refused", "[model]") {
-    std::vector<scene::Body> bodies;
-    for (const char* name : {"a", "b"}) {
-        bodies.push_back(box_body(name, {0, 0, 0}, {1, 1, 1}));
-        bodies.back().mesh.triangles.pop_back();
-        geometry::build_connectivity(bodies.back().mesh);
-    }
-    const base::Errors errors = build_model(scene_of(bodies)).errors();
-    for (const std::string name : {"`a`", "`b`"})
-        CHECK(std::count_if(errors.begin(), errors.end(), [&](const base::Error& e) { return contains(e.message, name); }) == 3);
-}
-
 TEST_CASE("A reference point is the caller's, the scene's, or a default", "[model]") {
     scene::Body box = box_body("box", {0, 0, 0}, {2, 2, 2});
     const auto reference = [](const scene::Scene& scene, const BuildOptions& options) {
@@ -295,22 +283,6 @@ TEST_CASE("Who may collide", "[model]") {
     for (int dof = 0; dof < 6; ++dof) CHECK(is_free(model->bodies[1], dof));
 }
 
-TEST_CASE("A density that is not positive is refused with body and place", "[model]") {
-    for (const double density : {-1000.0, 0.0}) {
-        scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
-        box.density = density;
-        const auto error = only_error(build_model(scene_of({box})));
-        CHECK(error.code == ErrorCode::out_of_range);
-        CHECK(error.where == "a.scene.json#/bodies/piston/density");
-        CHECK(contains(error.message, "`piston`"));
-        box.type = BodyType::static_body;
-        CHECK(build_model(scene_of({box})));
-    }
-    scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
-    box.density = std::numeric_limits<double>::quiet_NaN();
-    CHECK(only_error(build_model(scene_of({box}))).code == ErrorCode::not_finite);
-}
-
 TEST_CASE("Meshes that cannot be a dynamic solid are refused", "[model]") {
     scene::Body open = box_body("lid", {0, 0, 0}, {1, 1, 1});
     open.mesh.triangles.pop_back();
@@ -411,28 +383,6 @@ TEST_CASE("Defaults of size follow what moves", "[model]") {
     cube.type = scene::BodyType::static_body;
     const auto at_rest = build_model(scene_of({cube, ground}));
     CHECK(at_rest->dhat == 1e-3 * at_rest->diagonal);
-}
-
-TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
-    scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
-    cube.linear_velocity.x() = 1e150;
-    CHECK(contains(only_error(build_model(scene_of({cube}))).message, "beyond 1e30"));
-    cube.linear_velocity.x() = 0;
-    cube.prescribed[5] = scene::MotionCurve{};
-    cube.prescribed[5]->rate = 1e150;
-    CHECK(contains(only_error(build_model(scene_of({cube}))).where, "/prescribed"));
-}
-
-TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {
-    scene::Body twins = box_body("twins", {0, 0, 0}, {1, 1, 1});
-    twins.mesh = tests::joined(twins.mesh, tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
-    CHECK(build_model(scene_of({twins})).errors().size() > 0);
-    twins.mesh_policy = scene::MeshPolicy::tolerant;
-    const auto model = build_model(scene_of({twins}));
-    REQUIRE(model);
-    REQUIRE(model->warnings.size() == 1);
-    CHECK(contains(model->warnings[0], "body `twins`"));
-    CHECK(contains(model->warnings[0], "triangles intersect"));
 }
 
 }  // namespace

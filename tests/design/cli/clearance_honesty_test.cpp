@@ -163,7 +163,7 @@ TEST_CASE("A certificate says what it covers, is judged by a minimum, and is sta
 
     const std::string path = folder.file("fit.trajectory.json"), whole = contents(path);
     auto moved = nlohmann::ordered_json::parse(whole);
-    moved["poses"][1][9] = moved["poses"][0][1][9].get<double>() + 1e-3;  // farther: the bounds hold, but are of something else
+    moved["poses"][1][9] = moved["poses"][1][9].get<double>() + 1e-3;  // farther: the bounds hold, but are of something else
     folder.write("fit.trajectory.json", moved.dump());
     const Answer stale = run("validate " + file + " --json");
     CHECK(stale.code == 1);

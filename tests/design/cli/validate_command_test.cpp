@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -77,7 +78,7 @@ TEST_CASE("validate: a mesh without a unit is not told in metres") {
     CHECK(answer.code == 0);
     CHECK(answer.says("size 60 x 40 x 12, volume 28800; the file states no unit"));
     CHECK(run("validate --json " + box).json().at("unit").is_null());
-    open.triangles.pop_back();
+    open.triangles.resize(6);
     const Answer faulty = run("validate --json " + folder.write("open.obj", obj_of(open)));
     CHECK(faulty.code == 3);
     CHECK(faulty.says("the surface is open"));
@@ -122,6 +123,15 @@ TEST_CASE("options out of range are told in words") {
     CHECK(run("simulate a.scene.json --time 1e160", true).says("--time: 1e160 is out of range: a number of at most 1e30"));
     CHECK(run("simulate a.scene.json --time nan", true).code == 3);
     CHECK(run("--threads 9999 validate a", true).says("--threads: 9999 is not allowed: 1 to 4096 is"));
+}
+
+TEST_CASE("a body without density has no mass to sum") {
+    using namespace fettle::tests::design_support;
+    const DesignFolder folder(
+        replaced(small_design, R"("mass", "bodies": ["cube"], "weight": 1)", R"("mass", "bodies": ["wall"], "weight": 1)"));
+    const Answer answer = run("validate " + folder.design(), true);
+    CHECK(answer.code == 3);
+    CHECK(answer.says("has no density in its scene"));
 }
 
 TEST_CASE("the README of scenes shows keys that are read") {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/check_scene.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/tests/core/geometry/sample_meshes.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+using base::ErrorCode;
+using scene::BodyType;
+
+scene::Body box_body(const std::string& name, const Vector3& low, const Vector3& high) {
+    scene::Body body;
+    body.name = name;
+    body.where = "a.scene.json#/bodies/" + name;
+    body.mesh = tests::box_mesh(low, high);
+    return body;
+}
+
+scene::Scene scene_of(std::vector<scene::Body> bodies) {
+    scene::Scene scene;
+    scene.path = "a.scene.json";
+    scene.bodies = std::move(bodies);
+    return scene;
+}
+
+base::Error only_error(const base::Result<Model>& result) {
+    REQUIRE(result.errors().size() == 1);
+    return result.errors().front();
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
+    scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
+    cube.linear_velocity.x() = 1e150;
+    CHECK(contains(only_error(build_model(scene_of({cube}))).message, "beyond 1e30"));
+    cube.linear_velocity.x() = 0;
+    cube.prescribed[5] = scene::MotionCurve{};
+    cube.prescribed[5]->rate = 1e150;
+    CHECK(contains(only_error(build_model(scene_of({cube}))).where, "/prescribed"));
+}
+
+TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {
+    scene::Body twins = box_body("twins", {0, 0, 0}, {1, 1, 1});
+    twins.mesh = tests::joined(twins.mesh, tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+    CHECK(build_model(scene_of({twins})).errors().size() > 0);
+    twins.mesh_policy = scene::MeshPolicy::tolerant;
+    const auto model = build_model(scene_of({twins}));
+    REQUIRE(model);
+    REQUIRE(model->warnings.size() == 1);
+    CHECK(contains(model->warnings[0], "body `twins`"));
+    CHECK(contains(model->warnings[0], "triangles intersect"));
+}
+
+TEST_CASE("A density that is not positive is refused with body and place", "[model]") {
+    for (const double density : {-1000.0, 0.0}) {
+        scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
+        box.density = density;
+        const auto error = only_error(build_model(scene_of({box})));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.where == "a.scene.json#/bodies/piston/density");
+        CHECK(contains(error.message, "`piston`"));
+        box.type = BodyType::static_body;
+        CHECK(build_model(scene_of({box})));
+    }
+    scene::Body box = box_body("piston", {0, 0, 0}, {1, 1, 1});
+    box.density = std::numeric_limits<double>::quiet_NaN();
+    CHECK(only_error(build_model(scene_of({box}))).code == ErrorCode::not_finite);
+}
+
+TEST_CASE("Every copy of a bad mesh is refused", "[model]") {
+    std::vector<scene::Body> bodies;
+    for (const char* name : {"a", "b"}) {
+        bodies.push_back(box_body(name, {0, 0, 0}, {1, 1, 1}));
+        bodies.back().mesh.triangles.pop_back();
+        geometry::build_connectivity(bodies.back().mesh);
+    }
+    const base::Errors errors = build_model(scene_of(bodies)).errors();
+    for (const std::string name : {"`a`", "`b`"})
+        CHECK(std::count_if(errors.begin(), errors.end(), [&](const base::Error& e) { return contains(e.message, name); }) == 3);
+}
+
+TEST_CASE("Copies of a part are measured once, and alike", "[model]") {
+    scene::Body first = box_body("first", {0, 0, 0}, {1, 2, 3}), second = first, shell = first;
+    second.name = "second";
+    second.pose.position = {5, 0, 0};
+    shell.name = "shell";
+    shell.mass_kind = scene::MassKind::area;
+    const SceneCheck check = check_scene(scene_of({first, second, shell}), true);
+    CHECK(check.errors.empty());
+    REQUIRE(check.measures.size() == 3);
+    CHECK(check.measures[0].amount() == Approx(6));
+    CHECK(check.measures[1].unit_moments == check.measures[0].unit_moments);
+    CHECK(check.measures[2].amount() == Approx(22));
+    CHECK((check.measures[0].centre().value() - Vector3(0.5, 1, 1.5)).norm() < 1e-14);
+}
+
+}  // namespace
+}  // namespace fettle::core::model
