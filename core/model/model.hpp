@@ -55,7 +55,7 @@ struct Model {
     double dhat = 1e-3;                 ///< [m]
     double dmin = 0;                    ///< [m]
     double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
-    bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and raise it (stepper/step.cpp)? never for a gradient
+    bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and vary it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
     Friction friction;
     scene::Integrator integrator = scene::Integrator::implicit_euler;

@@ -111,7 +111,7 @@ struct Scene {
     std::optional<double> end_time;     ///< [s]
     std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of moving_diagonal
     double dmin = 0;                    ///< minimum separation [m]
-    std::optional<double> kappa;        ///< barrier stiffness [N/m]; default chosen by choose_kappa, and raised as steps need it
+    std::optional<double> kappa;        ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method.md 4)
     bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
     Friction friction;
     Integrator integrator = Integrator::implicit_euler;
