@@ -31,9 +31,13 @@ public:
     virtual const std::vector<ShapeDimension>& dimensions() const = 0;
 
     /// The part at other dimensions, one value for each of dimensions(), in their order [m]. A pure function; the mesh's connectivity is
-    /// the same for all values, its triangles bound a solid without self-intersection. Called from several threads at once.
+    /// the same for all values. Called from several threads at once.
     /// Errors: values that make no valid part; `where` names the dimension.
     virtual Result<ShapeInstance> at(const std::vector<double>& values) const = 0;
+
+    /// Are the triangles that at() returns always a solid's: closed, outward oriented, without self-intersection? Where this is not said,
+    /// the mesh of every trial is checked, and one that is no solid is a trial that cannot be built.
+    virtual bool is_always_solid() const { return false; }
 };
 
 /// The part as drawn.

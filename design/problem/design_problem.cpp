@@ -51,7 +51,9 @@ Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
     core::model::BuildOptions options;
     options.reference_points = reference_points_;
     options.kappa = kappa_;
-    options.check_meshes = false;  // the scene's were checked; generators make valid solids only
+    // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
+    options.check_meshes = std::any_of(design_.shapes.begin(), design_.shapes.end(),
+                                       [](const auto& shape) { return shape != nullptr && !shape->is_always_solid(); });
     return core::model::build_model(scene, options);
 }
 

@@ -121,6 +121,10 @@ private:
                 }
                 continue;
             }
+            if (part->mesh.triangles != body.mesh.triangles || part->mesh.vertices.cols() != body.mesh.vertices.cols()) {
+                errors.push_back({ErrorCode::mesh_invalid, "body " + body.name, "its shape has other triangles here than as drawn"});
+                continue;
+            }
             add_vertex_changes(index, *shape, part->jacobian);
             body.mesh = std::move(part->mesh);
         }

@@ -210,6 +210,33 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
     CHECK(same_bits(a.jacobian.row(0).transpose(), b.jacobian.row(0).transpose()));
 }
 
+TEST_CASE("a trial whose shape is no solid, or has other triangles, cannot be built") {
+    class Turned : public Frustum {  // inside out when it is high, with a triangle less when it is low
+    public:
+        Turned() : Frustum(8e-3, 5e-3, 8e-3) {}
+        Result<ShapeInstance> at(const std::vector<double>& d) const override {
+            Result<ShapeInstance> part = Frustum::at(d);
+            if (d[2] > 10e-3) part->mesh.vertices.row(0) *= -1;
+            if (d[2] < 7e-3) part->mesh.triangles.pop_back();
+            return part;
+        }
+    };
+    Design design = tilted_plate();
+    design.shapes[1] = std::make_shared<Turned>();
+    const auto problem = DesignProblem::create(std::move(design));
+    REQUIRE(problem);
+    VectorX p = values_of(problem->design().parameters);
+    CHECK(problem->evaluate(p).usable);
+    p[0] = 11e-3;
+    const DesignEvaluation high = problem->evaluate(p);
+    CHECK_FALSE(high.usable);
+    CHECK(high.reason.find("part") != std::string::npos);
+    p[0] = 6.5e-3;
+    const DesignEvaluation low = problem->evaluate(p);
+    CHECK_FALSE(low.usable);
+    CHECK(low.reason.find("other triangles") != std::string::npos);
+}
+
 TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {
     Design design = tilted_plate();
     design.parameters[1].moves[0].dimension = "fot";
