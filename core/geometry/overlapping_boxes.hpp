@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// All pairs of overlapping boxes among many, by one bounding volume tree that is thrown away after use: what mesh checks need.
-/// Trees of moving bodies are contact/body_hierarchy.hpp.
+/// Trees of moving bodies are geometry/body_hierarchy.hpp.
 #pragma once
 
 #include <functional>
