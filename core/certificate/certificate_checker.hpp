@@ -8,7 +8,7 @@
 /// triangle, every edge of no triangle and
 ///   every vertex of no edge; each piece is split into two that together are it;
 /// - each segment of the path has a tree of cells whose leaves cover all time and all pairs of elements (halves of intervals are exact);
-/// - each leaf's plane proves the claimed lower bound: see prove_leaf in interval_motion.hpp;
+/// - each leaf's plane proves the claimed lower bound: see LeafProver::prove in interval_motion.hpp;
 /// - what is claimed of the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): of a body
 ///   inside another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
 /// - there is a pair;

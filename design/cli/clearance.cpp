@@ -12,6 +12,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
@@ -128,9 +129,20 @@ Json proof_json(const Options& options, const Subject& subject) {
     return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
 }
 
+/// What would be found out only after the work: files that cannot be written, an earlier report that cannot be read.
+Errors try_files(const Options& options) {
+    for (const std::string& file : {options.csv, options.certificate}) {
+        if (file.empty()) continue;
+        if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+    }
+    if (options.baseline.empty()) return {};
+    return core::files::read_file(options.baseline).errors();
+}
+
 int run_clearance(const Options& options, const CommonOptions& common, Console& console) {
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
+    if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
     Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
     PairOptions pair_options = options.pairs;

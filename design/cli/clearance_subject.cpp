@@ -2,9 +2,7 @@
 #include "fettle/design/cli/clearance_subject.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -99,17 +97,6 @@ void simulate(int steps, Subject& subject, Console& console) {
         subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
 }
 
-// A file that is none of what has bodies and places.
-Errors refuse_other_files(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (extension.empty() || extension == ".json" || !std::filesystem::exists(path)) return {};
-    const bool mesh = file_kind(path) == FileKind::mesh;
-    return {{ErrorCode::unsupported, path,
-             std::string(mesh ? "a mesh is one body without a place" : "files of this kind are not read") +
-                 "; clearance reads a scene, a design or a trajectory (.json), and meshes (.stl .obj .off .ply .3mf) that a scene names"}};
-}
-
 }  // namespace
 
 const char* to_string(SubjectSource source) {
@@ -129,7 +116,6 @@ const char* to_string(SubjectSource source) {
 }
 
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console) {
-    if (const Errors errors = refuse_other_files(options.path); !errors.empty()) return errors;
     if (file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
     Result<LoadedModel> loaded = load_model(options.path, common, false);
     if (!loaded) return loaded.errors();

@@ -22,7 +22,8 @@ namespace fettle::design::cli {
 
 namespace {
 
-constexpr const char* read_here = "scenes and designs are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf";
+constexpr const char* read_here =
+    "scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf";
 
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();

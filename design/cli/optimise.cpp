@@ -136,7 +136,10 @@ int run_optimise(const Options& options, const CommonOptions& common, Console& c
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     const Errors errors = core::files::write_file_atomically(std::filesystem::path(folder.directory) / "result.json", text);
     if (!errors.empty()) return console.input_errors(errors);
-    console.result(json, outcome_text(problem->design(), outcome, console, folder.directory));
+    std::string told = outcome_text(problem->design(), outcome, console, folder.directory);
+    if (outcome.report.status == OptimiserStatus::interrupted)
+        told += "go on where it stopped: fettle optimise " + options.path + " --out " + folder.directory + " --resume\n";
+    console.result(json, told);
     return exit_code(outcome.report.status);
 }
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/model/start_check.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/step_tables.hpp"
@@ -97,30 +96,6 @@ Errors try_outputs(const Options& options) {
     return errors;
 }
 
-// Bodies that the simulation lets pass through each other, and that do so from the start.
-std::vector<std::string> start_clashes(const core::model::Model& model) {
-    using core::scene::BodyType;
-    std::vector<std::string> warnings;
-    const int count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a) {
-        for (int b = a + 1; b < count; ++b) {
-            const auto &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
-            const bool dynamic = first.type == BodyType::dynamic_body || second.type == BodyType::dynamic_body;
-            const bool moves = first.type == BodyType::kinematic_body || second.type == BodyType::kinematic_body;
-            if (dynamic || !moves || (first.group >= 0 && first.group == second.group)) continue;
-            if (const auto clash = core::model::check_start_pair(model, a, b))
-                warnings.push_back(clash->message + " (neither is dynamic, so nothing keeps them apart)");
-        }
-    }
-    constexpr size_t most = 5;
-    if (warnings.size() > most) {
-        const std::string rest = "and " + std::to_string(warnings.size() - most) + " more such pairs";
-        warnings.resize(most);
-        warnings.push_back(rest);
-    }
-    return warnings;
-}
-
 // "ok" is said of a path that is proven.
 struct Outcome {
     std::string status, message;
@@ -205,7 +180,6 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
     const core::model::Model& model = loaded->model;
-    for (const std::string& clash : start_clashes(model)) loaded->warnings.push_back(clash);
     tell_warnings(console, loaded->warnings);
     core::stepper::SimulationOptions simulate_options;
     simulate_options.steps = options.steps >= 0  ? options.steps

@@ -91,7 +91,8 @@ OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, con
     report.message = optimiser.name() + ": " + native.message;
     if (evaluator.stop_reason() == StopReason::budget)
         report.message = "stopped after max_evaluations = " + std::to_string(options.max_evaluations);
-    if (evaluator.stop_reason() == StopReason::interrupted) report.message = "interrupted";
+    if (evaluator.stop_reason() == StopReason::interrupted)
+        report.message = "stopped as asked after " + std::to_string(report.evaluations) + " evaluations";
     return report;
 }
 

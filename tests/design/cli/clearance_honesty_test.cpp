@@ -122,7 +122,7 @@ TEST_CASE("clearance: files that are none of what it reads are refused with a li
         const Answer answer = run("clearance " + folder.write(name, "solid part\nendsolid part\n") + " --minimum 1mm", true);
         CAPTURE(name, answer.out);
         CHECK(answer.code == 3);
-        CHECK(answer.says("reads a scene, a design or a trajectory (.json)"));
+        CHECK(answer.says("scenes, designs and trajectories are JSON (.json)"));
         CHECK(!answer.says("valid JSON"));
     }
 }
@@ -132,7 +132,7 @@ TEST_CASE("clearance: one that is interrupted is undecided, never violated") {
     // The signal comes while the motion of many steps is simulated.
     const std::string program = std::getenv("FETTLE_PROGRAM") != nullptr ? std::getenv("FETTLE_PROGRAM") : FETTLE_PROGRAM;
     const std::string out = folder.file("out.json");
-    const std::string command = "timeout -s INT 1 '" + program + "' clearance " + folder.file("small.scene.json") +
+    const std::string command = "timeout --foreground -s INT 1 '" + program + "' clearance " + folder.file("small.scene.json") +
                                 " --minimum 30mm --motion --steps 200000 --json > " + out + " 2>/dev/null";
     const int status = std::system(command.c_str());
     CAPTURE(status, contents(out));

@@ -110,7 +110,8 @@ TEST_CASE("files of other kinds are told what is read") {
     for (const char* name : {"a.scad", "a.amf", "a.csv"}) {
         const Answer other = run("validate " + folder.write(name, "<cube/>"), true);
         CHECK(other.code == 3);
-        CHECK(other.says("is not read; scenes and designs are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf"));
+        CHECK(other.says(
+            "is not read; scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf"));
         CHECK_FALSE(other.says("not valid JSON"));
     }
 }
