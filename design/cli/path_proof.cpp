@@ -61,6 +61,7 @@ PathProof prove_path(const core::model::Model& model, const core::stepper::Simul
     options.motion = true;
     options.tolerance = 1e-2 * seen;
     options.sample_nodes = false;
+    options.measure_overlap = false;
     options.should_stop = should_stop;
     proof.lower = std::numeric_limits<double>::infinity();
     for (int round = 1;; ++round, options.tolerance *= 1e-2) {

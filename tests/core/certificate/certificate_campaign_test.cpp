@@ -128,6 +128,7 @@ Outcome examine(int seed) {
     options.tolerance = outcome.tolerance;
     options.max_evaluations = random() % 4 ? 200000 : static_cast<long>(std::pow(10, between(random, 1, 4)));
     options.certificate = &certificate;
+    options.measure_overlap = false;
     options.sample_nodes = random() % 2;
     options.margin_curve = random() % 8 == 0;
     const double minimum = random() % 3 ? 0 : outcome.size * std::pow(10, between(random, -4, -1));
