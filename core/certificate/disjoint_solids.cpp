@@ -5,8 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "fettle/core/geometry/mesh_validity.hpp"
-#include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/geometry/point_in_solid.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -66,7 +65,7 @@ bool is_usable(const BodyPath& path) { return path.magnitude < largest; }  // fa
 SolidMesh solid_mesh(const geometry::Mesh& mesh) {
     SolidMesh solid;
     solid.mesh = &mesh;
-    solid.is_closed = mesh.triangles.empty() || geometry::is_closed(mesh);
+    solid.is_closed = mesh.triangles.empty() || geometry::bounds_a_solid(mesh);
     solid.samples = mesh.codimensional_points;
     const bool has_shells = mesh.triangle_shell.size() == mesh.triangles.size();
     std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
@@ -91,14 +90,13 @@ SolidMesh solid_mesh(const geometry::Mesh& mesh) {
 }
 
 bool is_in_material(const Vector3& point, const SolidMesh& solid) {
-    std::vector<const SolidMesh::Shell*> around;
+    int winding = 0;
     for (const SolidMesh::Shell& shell : solid.shells) {
         if ((point.array() < shell.low.array()).any() || (point.array() > shell.high.array()).any()) continue;
-        if (geometry::point_in_solid(point, solid.mesh->vertices, shell.triangles)) around.push_back(&shell);
+        const auto turns = geometry::winding_number(point, solid.mesh->vertices, shell.triangles);
+        if (!turns) return false;
+        winding += *turns;
     }
-    if (around.size() < 2) return !around.empty();
-    int winding = 0;
-    for (const SolidMesh::Shell* shell : around) winding += geometry::volume_sign(solid.mesh->vertices, shell->triangles);
     return winding != 0;
 }
 

@@ -4,9 +4,9 @@
 /// instant decides, exactly:
 ///   let x be a point of body a's surface in the world, and every point of b's surface farther than `lower` > 0 from it. Any point Z of b's
 ///   frame with |R_b Z + q_b - x| < lower (verified in interval arithmetic) is inside b's solid if and only if x is, for the way from one
-///   to the other meets no surface; and whether Z is inside is decided by exact predicates (geometry/mesh_validity.hpp).
-/// A solid is what its closed shells wind around: inside one shell is inside; inside several, by the sum of their orientations, so that a
-/// cavity (a shell turned inwards) is not material. Loose edges and points bound nothing, but may lie inside.
+///   to the other meets no surface; and whether Z is inside is decided by exact predicates (geometry/point_in_solid.hpp).
+/// A solid is what its shells together wind round, so that a cavity (a shell turned inwards) is not material. Loose edges and points bound
+/// nothing, but may lie inside.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct SolidMesh {
         Vector3 low = Vector3::Zero(), high = Vector3::Zero();  ///< box
     };
     const geometry::Mesh* mesh = nullptr;  ///< must stay where it is
-    bool is_closed = false;                ///< or without triangles: then nothing can be inside
+    bool is_closed = false;                ///< geometry::bounds_a_solid, or no triangles: then nothing can be inside
     std::vector<Shell> shells;
     std::vector<int> samples;  ///< one vertex of everything that hangs together
 };
