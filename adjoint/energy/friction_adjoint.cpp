@@ -5,7 +5,7 @@ namespace fettle::adjoint::energy {
 namespace {
 
 // One pair says enough.
-Errors check(const core::model::Model& model) {
+Errors check_friction(const core::model::Model& model) {
     const int count = static_cast<int>(model.bodies.size());
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b) {
@@ -23,6 +23,6 @@ void add_nothing(const StepEnd&, const StepTangent&, const ModelTangent&, contac
 
 }  // namespace
 
-const TermAdjoint friction_term_adjoint{"friction", check, subtract_nothing, add_nothing};
+const TermAdjoint friction_term_adjoint{"friction", check_friction, subtract_nothing, add_nothing};
 
 }  // namespace fettle::adjoint::energy

@@ -6,7 +6,7 @@
 namespace fettle::adjoint::energy {
 namespace {
 
-Errors check(const core::model::Model& model) {
+Errors check_inertia(const core::model::Model& model) {
     Errors errors;
     for (const core::model::Body& body : model.bodies) {
         if (!core::energy::has_free_dof(body)) continue;
@@ -18,8 +18,8 @@ Errors check(const core::model::Model& model) {
     return errors;
 }
 
-void subtract_reverse(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
-                      std::vector<ModelGradient>&) {
+void subtract_reverse_of_inertia(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
+                                 std::vector<ModelGradient>&) {
     for (std::size_t s = 0; s < motion.size(); ++s)
         for (std::size_t i = 0; i < at.poses.size(); ++i) {
             Matrix34 v;
@@ -29,7 +29,7 @@ void subtract_reverse(const StepEnd& at, const std::vector<std::vector<Vector6>>
         }
 }
 
-void add_tangent(const StepEnd& at, const StepTangent& step, const ModelTangent&, contact::PoseGradientTangent& out) {
+void add_tangent_of_inertia(const StepEnd& at, const StepTangent& step, const ModelTangent&, contact::PoseGradientTangent& out) {
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
         const Matrix34 minus_hat = pose_matrix(at.poses[i]) - at.problem.pose_hat[i];
         const Matrix4& moments = at.problem.model->bodies[i].moments;
@@ -40,6 +40,6 @@ void add_tangent(const StepEnd& at, const StepTangent& step, const ModelTangent&
 
 }  // namespace
 
-const TermAdjoint inertia_term_adjoint{"inertia", check, subtract_reverse, add_tangent};
+const TermAdjoint inertia_term_adjoint{"inertia", check_inertia, subtract_reverse_of_inertia, add_tangent_of_inertia};
 
 }  // namespace fettle::adjoint::energy

@@ -4,7 +4,7 @@
 namespace fettle::adjoint::energy {
 namespace {
 
-Errors check(const core::model::Model& model) {
+Errors check_loads(const core::model::Model& model) {
     Errors errors;
     for (const core::model::Body& body : model.bodies)
         if (core::energy::has_free_dof(body) && body.torque != Vector3::Zero())
@@ -12,13 +12,13 @@ Errors check(const core::model::Model& model) {
     return errors;
 }
 
-void subtract_reverse(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient&,
-                      std::vector<ModelGradient>& model_bar) {
+void subtract_reverse_of_loads(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient&,
+                               std::vector<ModelGradient>& model_bar) {
     for (std::size_t s = 0; s < motion.size(); ++s)
         for (std::size_t i = 0; i < at.poses.size(); ++i) model_bar[s].bodies[i].force_bar += at.problem.weight * motion[s][i].head<3>();
 }
 
-void add_tangent(const StepEnd& at, const StepTangent&, const ModelTangent& direction, contact::PoseGradientTangent& out) {
+void add_tangent_of_loads(const StepEnd& at, const StepTangent&, const ModelTangent& direction, contact::PoseGradientTangent& out) {
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
         out.value[i].col(3) -= at.problem.weight * at.problem.model->bodies[i].force;
         out.dot[i].col(3) -= at.problem.weight * direction.bodies[i].force_dot;
@@ -27,6 +27,6 @@ void add_tangent(const StepEnd& at, const StepTangent&, const ModelTangent& dire
 
 }  // namespace
 
-const TermAdjoint loads_term_adjoint{"loads", check, subtract_reverse, add_tangent};
+const TermAdjoint loads_term_adjoint{"loads", check_loads, subtract_reverse_of_loads, add_tangent_of_loads};
 
 }  // namespace fettle::adjoint::energy

@@ -4,11 +4,14 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace fettle::core::base {
 
 /// Largest absolute value that a reader takes, in the unit of the file and in SI alike.
 inline constexpr double largest_magnitude = 1e30;
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Finite and at most largest_magnitude; false for NaN.
 inline bool is_usable_number(double x) { return std::abs(x) <= largest_magnitude; }

@@ -5,12 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
 
 namespace fettle::core::certificate {
 namespace {
-
-constexpr double largest = 1e30;
 
 enum class Side { outside, inside, unknown };
 
@@ -39,7 +38,7 @@ Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double l
     Interval3 world = placed(at.inner, x);
     for (std::size_t k = 0; k < 3; ++k) world[k] = world[k] + at.offset[k];
     const Vector3 near = middle(at.outer).inverse() * middle(world);
-    if (!near.allFinite() || !(near.cwiseAbs().maxCoeff() < largest)) return Side::unknown;
+    if (!near.allFinite() || !(near.cwiseAbs().maxCoeff() < largest_magnitude)) return Side::unknown;
     Interval3 off = placed(at.outer, near);
     for (std::size_t k = 0; k < 3; ++k) off[k] = off[k] - world[k];
     if (!(norm_bound(off) < lower)) return Side::unknown;
@@ -58,7 +57,7 @@ Side any_inside(const SolidMesh& inner, const SolidMesh& outer, const Start& at,
     return found;
 }
 
-bool is_usable(const BodyPath& path) { return path.magnitude < largest; }  // false for what is not a number, too
+bool is_usable(const BodyPath& path) { return path.magnitude < largest_magnitude; }  // false for what is not a number, too
 
 }  // namespace
 

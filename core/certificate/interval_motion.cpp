@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/base/limits.hpp"
+
 namespace fettle::core::certificate {
 namespace {
 
 using Bernstein = std::array<double, 4>;
-constexpr double largest = 1e30;
 // Of more, the box is tried first.
 constexpr std::size_t few_points = 192;
 
@@ -245,7 +246,9 @@ long LeafProver::prove(const Region& a, const Region& b, const Span& span, const
     const double half = claim.middle - span.start;
     if (!(half > 0) || half != span.end - claim.middle) return 0;  // too short to be halved exactly
     if (!plane.n0.allFinite() || !plane.n1.allFinite()) return 0;
-    if (!(a_.magnitude < largest && b_.magnitude < largest && a.radius < largest && b.radius < largest)) return 0;
+    if (!(a_.magnitude < largest_magnitude && b_.magnitude < largest_magnitude && a.radius < largest_magnitude &&
+          b.radius < largest_magnitude))
+        return 0;
     claim.n0 = exactly(plane.n0);
     claim.n1 = exactly(plane.n1);
     claim.is_steady = plane.n0 == plane.n1;

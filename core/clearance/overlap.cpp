@@ -9,13 +9,13 @@
 #include <queue>
 #include <vector>
 
+#include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/geometry/distance.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounded_up = 1 + 64 * std::numeric_limits<double>::epsilon();
 constexpr int most_normals = 200;  // of faces, per body
 
 // Distance of a point, in the body's frame, to its triangles.

@@ -5,12 +5,12 @@
 #include <limits>
 #include <vector>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/crossing.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most_instants = 32;  // at which solids are looked at
 
 double most_slack(const PairMotion& pair) {

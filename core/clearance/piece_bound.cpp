@@ -7,13 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/base/rounding.hpp"
+
 namespace fettle::core::clearance {
 namespace {
 
 using Functionals = Eigen::Matrix<double, 4, 3>;
 using Values = Eigen::Matrix<double, 4, 1>;
-
-constexpr double rounded_up = 1 + 32 * std::numeric_limits<double>::epsilon();
 
 Vector3 excess(const Vector3& d, const Vector3& extent) {
     const Vector3 gap = (d.cwiseAbs() - extent).cwiseMax(0);

@@ -9,12 +9,10 @@
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/rounding.hpp"
 
 namespace fettle::core::clearance {
 namespace {
-
-constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
-constexpr double rounded_up = 1 + 64 * unit_roundoff;
 
 // What a body point X is off by at most: shift + |X| turn.
 struct Rest {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
@@ -44,8 +45,6 @@ private:
 
 class SearchFront {
 public:
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
-
     /// What the heap moves about: the entries themselves stay where they are.
     struct Key {
         double lower = 0;

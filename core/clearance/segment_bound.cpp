@@ -7,11 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/base/rounding.hpp"
+
 namespace fettle::core::clearance {
 namespace {
-
-constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
-constexpr double rounded_up = 1 + 64 * unit_roundoff;  // covers the few dozen operations of any formula below
 
 // Upper bound of max |n.x'''| over the segment.
 double third_derivative(const BodySegment& body, const Vector3& n, const Reach& reach) {

@@ -5,10 +5,10 @@
 #include <bit>
 #include <utility>
 
+#include "fettle/core/base/limits.hpp"
+
 namespace fettle::core::clearance {
 namespace {
-
-constexpr double infinity = SearchFront::infinity;
 
 // Calls with the index of every bit that is set.
 template <class Call>

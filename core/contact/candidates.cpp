@@ -19,7 +19,7 @@ using kinematics::PathSegment;
 using kinematics::Pose;
 
 constexpr double slack = 1 + 1e-12;  // of sums of a few products
-constexpr int pairs_a_piece = 32;    // pairs of bodies that a thread takes at a time
+constexpr int pairs_a_query = 32;    // pairs of bodies that a thread takes at a time
 
 // Bound of how far points of two bodies move relative to one another along their segments.
 double relative_motion(const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
@@ -186,7 +186,7 @@ void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandi
     std::vector<std::size_t> first(pairs.size() + 1, tasks.size());
     for (std::size_t k = tasks.size(); k-- > 0;) first[tasks[k].pair] = k;
     for (std::size_t p = pairs.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
-    base::parallel_for(static_cast<int>(searched.size()), pairs_a_piece, [&](int p) {
+    base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int p) {
         PrimitivePairs& out = *searched[p];
         out = {};
         for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
@@ -208,13 +208,13 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     const double activation = model.dmin + model.dhat;
     std::vector<SweptBody> swept(segments.size());
     std::vector<geometry::Box> boxes(segments.size());
-    base::parallel_for(static_cast<int>(segments.size()), pairs_a_piece, [&](int i) {
+    base::parallel_for(static_cast<int>(segments.size()), pairs_a_query, [&](int i) {
         swept[i] = swept_body(model.bodies[i], segments[i]);
         boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
     });
     candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes));
 
-    base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_piece, [&](int k) {
+    base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];
         pair.fresh = pair.fresh || !(motion_over(model, pair, segments) <= pair.allowance);
     });
@@ -222,7 +222,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     for (BodyPairCandidates& pair : candidates.pairs)
         if (pair.fresh) searched.push_back(&pair);
     std::vector<SweptPair> pairs(searched.size());
-    base::parallel_for(static_cast<int>(searched.size()), pairs_a_piece, [&](int k) {
+    base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = *searched[k];
         pair.allowance = allowance;
         pair.along = {segments[pair.a], segments[pair.b]};

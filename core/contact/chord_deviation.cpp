@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 
 namespace fettle::core::contact {
@@ -15,8 +16,7 @@ using kinematics::rotation;
 
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double inflate = 1 + 32 * u;
+constexpr double raised = 1 + 32 * unit_roundoff;
 
 Interval3 exact(const Vector3& v) { return {Interval(v.x()), Interval(v.y()), Interval(v.z())}; }
 
@@ -36,22 +36,22 @@ IntervalTurn turn_by(const Interval3& theta) {
 }  // namespace
 
 double rotated_rounding(double theta_norm, double w_norm, double s_end, double radius) {
-    return u * radius * (80 + 4 * theta_norm + 6 * s_end * w_norm);
+    return unit_roundoff * radius * (80 + 4 * theta_norm + 6 * s_end * w_norm);
 }
 
 double arc_deviation(const Vector3& theta, const Vector3& w, const Vector3& Y) {
     const double speed = w.norm(), arm = Y.norm();
-    const double across = w.cross(Y).norm() + 8 * u * speed * arm;
-    const double tilting = theta.cross(w).norm() + 8 * u * theta.norm() * speed;
-    return 0.125 * speed * std::min(speed * arm, across + tilting * arm / 3) * inflate;
+    const double across = w.cross(Y).norm() + 8 * unit_roundoff * speed * arm;
+    const double tilting = theta.cross(w).norm() + 8 * unit_roundoff * theta.norm() * speed;
+    return 0.125 * speed * std::min(speed * arm, across + tilting * arm / 3) * raised;
 }
 
 double arc_deviation_cubic(const Vector3& theta, const Vector3& w, const Vector3& Y) {
     const double speed = w.norm(), arm = Y.norm();
     const Vector3 start = rotation(theta) * Y, middle = rotation(theta + 0.5 * w) * Y, end = rotation(theta + w) * Y;
     // Three evaluations, of weights 1, 1/2, 1/2; their sums cancel to no more than 4u of the arm.
-    const double rounding = 2 * rotated_rounding(theta.norm(), speed, 1, arm) + 4 * u * arm;
-    return ((middle - 0.5 * (start + end)).norm() + speed * speed * speed * arm / (72 * 1.7320508075688772)) * inflate + rounding;
+    const double rounding = 2 * rotated_rounding(theta.norm(), speed, 1, arm) + 4 * unit_roundoff * arm;
+    return ((middle - 0.5 * (start + end)).norm() + speed * speed * speed * arm / (72 * 1.7320508075688772)) * raised + rounding;
 }
 
 IntervalArc::IntervalArc(const Vector3& theta, const Vector3& w) {
@@ -81,9 +81,9 @@ double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X,
     const Vector3 Y = segment.base * X;
     const Vector3 &theta = segment.rotation_vector_t0, &w = segment.rotation_vector_step;
     // Deviation is linear in the arm, and Y is off by at most 6u |X|: charge what an arm of that length can deviate (B0, or its path).
-    const double rounding = 6 * u * X.norm() * std::min(2.0, 0.125 * w.squaredNorm()) * inflate;
-    if (bound == DeviationBound::interval) return (arc_deviation_interval(theta, w, Y) + rounding) * inflate;
-    return (std::min(arc_deviation(theta, w, Y), arc_deviation_cubic(theta, w, Y)) + rounding) * inflate;
+    const double rounding = 6 * unit_roundoff * X.norm() * std::min(2.0, 0.125 * w.squaredNorm()) * raised;
+    if (bound == DeviationBound::interval) return (arc_deviation_interval(theta, w, Y) + rounding) * raised;
+    return (std::min(arc_deviation(theta, w, Y), arc_deviation_cubic(theta, w, Y)) + rounding) * raised;
 }
 
 }  // namespace fettle::core::contact

@@ -10,9 +10,6 @@ namespace fettle::core::contact {
 
 namespace {
 
-/// Share of the first gap at which an approach counts as a hit.
-constexpr double gap_share = 0.1;
-
 /// However many are allowed: advancement that needs more creeps within rounding, where more of it proves next to nothing.
 constexpr int most_directions = 5000;
 
@@ -45,7 +42,7 @@ public:
     LinearCcdResult run() {
         SeparatingPlane s = plane_at(0);
         if (!(s.gap > 0)) return {true, 0};
-        threshold_ = std::min(options_.tolerance, gap_share * s.gap);
+        threshold_ = std::min(options_.tolerance, hit_share * s.gap);
         for (int i = 0; i < std::min(options_.max_iterations, most_directions); ++i) {
             if (i > 0) s = better(plane_at(time_), s);
             if (!(s.gap > threshold_)) break;

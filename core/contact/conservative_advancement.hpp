@@ -32,6 +32,9 @@
 
 namespace fettle::core::contact {
 
+/// Share of the first gap at which an approach counts as a hit.
+inline constexpr double hit_share = 0.1;
+
 /// As linear_ccd; `options.method` is ignored. Past options.max_iterations directions, or 5000 of them, the answer is a hit at the time
 /// proven so far.
 LinearCcdResult conservative_advancement(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
@@ -21,8 +22,7 @@ struct Limits {
     double kept_most;      // and never has to keep more than this [m]
 };
 
-constexpr double u = 0x1p-53;
-constexpr int pairs_a_piece = 8;  // pairs of bodies that a thread takes at a time
+constexpr int pairs_a_search = 8;  // pairs of bodies that a thread takes at a time
 
 // Charged to world positions at least, relative to their size: more than their rounding, but where a body's position and its points'
 // cancel near the world's origin.
@@ -38,7 +38,8 @@ struct PlaceRounding {
 // (1 - cos x)/x^2 by 4u of their values at most 1 and 1/2, so R by u (4 + 15 |theta| + 10 |theta|^2); 12u for the products with base and X.
 PlaceRounding place_rounding(const PathSegment& s) {
     const double theta = s.rotation_vector_t0.norm();
-    return {theta <= 1 ? u * (17 + 32 * theta) : rotated_rounding(theta, 0, 0, 1) + u, 2 * u * s.position_t0.norm()};
+    return {theta <= 1 ? unit_roundoff * (17 + 32 * theta) : rotated_rounding(theta, 0, 0, 1) + unit_roundoff,
+            2 * unit_roundoff * s.position_t0.norm()};
 }
 
 // What is common to all pairs of bodies. Each pair of primitives has a fraction of its own, proven free, and the least of all is wanted;
@@ -55,7 +56,7 @@ public:
 
     SafeStep longest(const Candidates& candidates) {
         return base::ordered_reduce(
-            static_cast<int>(candidates.pairs.size()), pairs_a_piece, SafeStep{},
+            static_cast<int>(candidates.pairs.size()), pairs_a_search, SafeStep{},
             [&](int begin, int end) {
                 SafeStep shortest;
                 for (int k = begin; k < end; ++k) visit(candidates.pairs[k], shortest);
@@ -66,7 +67,7 @@ public:
 
     // Is the least fraction 1?
     bool is_free(const Candidates& candidates) {
-        base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_piece, [&](int k) {
+        base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_search, [&](int k) {
             SafeStep shortest;
             if (least_ == 1) visit(candidates.pairs[k], shortest);
         });
@@ -116,7 +117,7 @@ private:
         radius_a = std::sqrt(radius_a);
         radius_b = std::sqrt(radius_b);
         const double seen = distance_lower_bound(type, x);
-        const double needed = 8 * u * seen + start_roundings_[first].of(radius_a) + start_roundings_[second].of(radius_b);
+        const double needed = 8 * unit_roundoff * seen + start_roundings_[first].of(radius_a) + start_roundings_[second].of(radius_b);
         const double distance = seen - std::max(usual_rounding * (x[0].norm() + x[3].norm()), needed);
         const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
         const double travel = (1 + 1e-12) * ((sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * radius_a +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/geometry/accurate_cross.hpp"
 
 namespace fettle::core::contact {
@@ -13,10 +14,8 @@ using geometry::accurate_cross;
 
 namespace {
 
-constexpr double u = 0x1p-53;
-
 /// Squares of sines: below the first directions are parallel as far as rounding lets see, below the second cross products cancel.
-constexpr double parallel = 64 * u * u, nearly_parallel = 1e-10;
+constexpr double parallel = 64 * unit_roundoff * unit_roundoff, nearly_parallel = 1e-10;
 constexpr double largest_usable = 1e150;
 
 /// Squares of lengths between these neither overflow nor lose bits.
@@ -49,8 +48,8 @@ void judge(SeparatingPlane& s, const Lanes& values, const Vector3& largest, doub
         s.q = -s.q;
         least = -most;
     }
-    const double error = 8 * u * s.n.cwiseAbs().dot(largest) + 1e-290;
-    s.limit = dmin * (1 + 16 * u) + 1.01 * error;
+    const double error = 8 * unit_roundoff * s.n.cwiseAbs().dot(largest) + 1e-290;
+    s.limit = dmin * (1 + 16 * unit_roundoff) + 1.01 * error;
     const double gap = least - s.limit;
     if (gap > 0) s.gap = gap;
 }
@@ -154,7 +153,7 @@ RelativeMotion relative_motion(PairType type, const PairVertices& t0, const Pair
 }
 
 bool separated_along_axis(const RelativeMotion& m, double dmin) {
-    const double limit = dmin * (1 + 16 * u);
+    const double limit = dmin * (1 + 16 * unit_roundoff);
     const Differences low = m.d.min(m.e), high = m.d.max(m.e);
     for (Eigen::Index k = 0; k < 3; ++k) {
         if (low.col(k).minCoeff() > limit || high.col(k).maxCoeff() < -limit) return true;

@@ -7,11 +7,11 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_value(const ValueAt& at, TermValues& values) {
+void add_barrier_value(const ValueAt& at, TermValues& values) {
     values.couplings.push_back(contact::barrier_potential(*at.problem.model, at.candidates, at.poses, at.problem.barrier));
 }
 
-void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+void add_barrier_derivatives(const DerivativesAt& at, TermDerivatives& d) {
     contact::add_barrier_derivatives(at.contacts, at.poses, at.problem.barrier, at.kind, d.coupling, d.coupling_hessian);
 }
 
@@ -31,7 +31,7 @@ void add_pair(const StepProblem& problem, const contact::ContactPair& pair, int 
     ++f.contacts;
 }
 
-void add_report(const SolvedStep& step, TermReport& report) {
+void add_barrier_report(const SolvedStep& step, TermReport& report) {
     const StepProblem& problem = step.problem;
     for (const contact::BodyPairContacts& list : step.contacts.pairs) {
         ContactForce& f = force_between(report, list.first, list.second);
@@ -47,6 +47,6 @@ void add_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term barrier_term{"barrier", add_value, add_derivatives, add_report};
+const Term barrier_term{"barrier", add_barrier_value, add_barrier_derivatives, add_barrier_report};
 
 }  // namespace fettle::core::energy

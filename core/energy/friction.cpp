@@ -4,15 +4,15 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_value(const ValueAt& at, TermValues& values) {
+void add_friction_value(const ValueAt& at, TermValues& values) {
     values.couplings.push_back(contact::friction_potential(at.problem.friction, at.poses));
 }
 
-void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+void add_friction_derivatives(const DerivativesAt& at, TermDerivatives& d) {
     contact::add_friction_derivatives(at.problem.friction, at.poses, at.kind, d.coupling, d.coupling_hessian);
 }
 
-void add_report(const SolvedStep& step, TermReport& report) {
+void add_friction_report(const SolvedStep& step, TermReport& report) {
     const contact::FrictionSet& set = step.problem.friction;
     for (const contact::BodyPairFriction& pair : set.pairs)
         for (const contact::FrictionContact& c : pair.contacts) {
@@ -28,6 +28,6 @@ void add_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term friction_term{"friction", add_value, add_derivatives, add_report};
+const Term friction_term{"friction", add_friction_value, add_friction_derivatives, add_friction_report};
 
 }  // namespace fettle::core::energy

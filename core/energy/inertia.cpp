@@ -9,17 +9,17 @@
 namespace fettle::core::energy {
 namespace {
 
-constexpr int bodies_a_piece = 16;  // that a thread takes at a time
+constexpr int bodies_a_call = 16;  // that a thread takes at a time
 
-void add_value(const ValueAt& at, TermValues& values) {
+void add_inertia_value(const ValueAt& at, TermValues& values) {
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
         const model::Body& body = at.problem.model->bodies[i];
         if (has_free_dof(body)) values.bodies[i] += inertia_potential(pose_matrix(at.poses[i]), at.problem.pose_hat[i], body.moments);
     }
 }
 
-void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
-    base::parallel_for(static_cast<int>(at.poses.size()), bodies_a_piece, [&](int i) {
+void add_inertia_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+    base::parallel_for(static_cast<int>(at.poses.size()), bodies_a_call, [&](int i) {
         const model::Body& body = at.problem.model->bodies[i];
         if (!has_free_dof(body)) return;
         kinematics::PoseGradient gradient;
@@ -32,7 +32,7 @@ void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
 }
 
 // Momenta: with M = integral rho [X;1][X;1]^T, integral rho x v^T = P M V^T.
-void add_report(const SolvedStep& step, TermReport& report) {
+void add_inertia_report(const SolvedStep& step, TermReport& report) {
     for (std::size_t i = 0; i < step.poses.size(); ++i) {
         const Matrix4& moments = step.problem.model->bodies[i].moments;
         if (!(moments(3, 3) > 0)) continue;
@@ -59,6 +59,6 @@ void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat
     gradient.arm += g.leftCols<3>() * pose.rotation.transpose();
 }
 
-const Term inertia_term{"inertia", add_value, add_derivatives, add_report};
+const Term inertia_term{"inertia", add_inertia_value, add_inertia_derivatives, add_inertia_report};
 
 }  // namespace fettle::core::energy

@@ -6,7 +6,7 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_value(const ValueAt& at, TermValues& values) {
+void add_loads_value(const ValueAt& at, TermValues& values) {
     const StepProblem& problem = at.problem;
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
         const model::Body& body = problem.model->bodies[i];
@@ -17,7 +17,7 @@ void add_value(const ValueAt& at, TermValues& values) {
 }
 
 // A held body's torque counts, so that what drives it is told; its force is left to that report (stepper/step_outputs.hpp).
-void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+void add_loads_derivatives(const DerivativesAt& at, TermDerivatives& d) {
     const StepProblem& problem = at.problem;
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
         const model::Body& body = problem.model->bodies[i];
@@ -28,7 +28,7 @@ void add_derivatives(const DerivativesAt& at, TermDerivatives& d) {
     }
 }
 
-void add_report(const SolvedStep& step, TermReport& report) {
+void add_loads_report(const SolvedStep& step, TermReport& report) {
     const model::Model& model = *step.problem.model;
     for (std::size_t i = 0; i < step.poses.size(); ++i) {
         const model::Body& body = model.bodies[i];
@@ -40,6 +40,6 @@ void add_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term loads_term{"loads", add_value, add_derivatives, add_report};
+const Term loads_term{"loads", add_loads_value, add_loads_derivatives, add_loads_report};
 
 }  // namespace fettle::core::energy

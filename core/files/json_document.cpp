@@ -8,6 +8,7 @@
 #include <set>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/warning_groups.hpp"
@@ -44,12 +45,6 @@ std::string escaped(const std::string& key) {
 }
 
 std::string shortest(double number) { return json(number).dump(); }
-
-std::string joined(const std::vector<std::string_view>& words) {
-    std::string out;
-    for (const auto& word : words) out += (out.empty() ? "" : ", ") + std::string(word);
-    return out;
-}
 
 struct Place {
     std::size_t line = 1, column = 1;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/geometry/distance.hpp"
 
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/geometry/accurate_cross.hpp"
 
 namespace fettle::core::geometry {
 namespace {
-
-constexpr double unit_roundoff = 0x1p-53;
 
 using Vertices = std::array<const Vector3*, 4>;
 

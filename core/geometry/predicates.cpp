@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/rounding.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -20,7 +21,6 @@ using FixedInteger =
 using BigInteger = multiprecision::cpp_int;
 constexpr int fixed_coordinate_bits = 160;
 
-constexpr double unit_roundoff = 0x1p-53;
 // Between these the filters below are free of overflow, and what underflow can add is below the absolute term.
 constexpr double largest_filtered = 0x1p300;
 constexpr double underflow_allowance = 0x1p-760;

@@ -18,7 +18,7 @@ using base::ErrorCode;
 constexpr double rotation_tolerance = 1e-4;  // what five printed digits leave
 constexpr double rounding = 1e-15;           // a rotation as good as doubles make it stays as it is
 
-std::string shown(double x) {
+std::string shown_defect(double x) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", x);
     return text;
@@ -31,7 +31,7 @@ std::optional<Matrix3> from_quaternion(const std::vector<double>& q, const std::
     const double off = std::abs(given.norm() - 1);
     if (!(off <= rotation_tolerance)) {
         errors.push_back({ErrorCode::out_of_range, where,
-                          "the quaternion qw qx qy qz has length " + shown(given.norm()) + ", 1 is wanted (to 1e-4); normalise it"});
+                          "the quaternion qw qx qy qz has length " + shown_defect(given.norm()) + ", 1 is wanted (to 1e-4); normalise it"});
         return std::nullopt;
     }
     table.largest_rotation_error = std::max(table.largest_rotation_error, off);
@@ -44,7 +44,7 @@ std::optional<Matrix3> from_matrix(const std::vector<double>& m, const std::stri
     const double off = defect(r);
     if (!(off <= rotation_tolerance)) {
         errors.push_back({ErrorCode::out_of_range, where,
-                          "the matrix is not a rotation: R^T R is off the identity by " + shown(off) +
+                          "the matrix is not a rotation: R^T R is off the identity by " + shown_defect(off) +
                               ", at most 1e-4 is allowed; is it scaled, or printed with too few digits?"});
         return std::nullopt;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -22,8 +23,6 @@ using files::JsonDocument;
 using files::JsonNode;
 using kinematics::ChartPoint;
 using kinematics::Pose;
-
-constexpr double unit_roundoff = 0x1p-53;
 
 // Rounding of exp and a product (contact/chord_deviation.hpp, rotated_rounding): what the end of a step's chart and the next pose, which is
 // made orthonormal again, may differ by. Every certified bound is charged more than twice that.

@@ -21,7 +21,7 @@ using core::contact::DeviationBound;
 using core::contact::LinearCcdMethod;
 using core::contact::PairType;
 
-struct Options {
+struct CcdArguments {
     std::vector<std::string> paths;
     std::string method = "default", minimum_separation = "0", tolerance, deviation = "closed-form", type;
 };
@@ -146,7 +146,7 @@ Result<double> length_or_number(const std::string& text, const std::string& wher
     return core::base::parse_length(plain ? text + "m" : text, where);
 }
 
-Result<Settings> settings_of(const Options& options) {
+Result<Settings> settings_of(const CcdArguments& options) {
     Settings settings;
     Errors errors;
     const Result<double> dmin = length_or_number(options.minimum_separation, "--minimum-separation");
@@ -174,7 +174,7 @@ Json misses_json(const std::vector<Miss>& misses) {
     return json;
 }
 
-int run_ccd(const Options& options, Console& console) {
+int run_ccd(const CcdArguments& options, Console& console) {
     const Result<Settings> settings = settings_of(options);
     if (!settings) return console.input_errors(settings.errors());
     const Result<std::vector<std::string>> files = find_ccd_query_files(options.paths);
@@ -218,7 +218,7 @@ int run_ccd(const Options& options, Console& console) {
 
 Command add_ccd(CommandLine& program) {
     CommandLine app = program.command("ccd", "Ground-truth collision queries: hits, misses, false alarms, time");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CcdArguments>();
     app.option("QUERIES", options->paths, "Files .csv (linear motion) and .json (rigid motion), or folders of them").required();
     app.option("--method", options->method, "Of linear queries: conservative (advancement; the default), inclusion (bisection)")
         .one_of({"default", "conservative", "inclusion"});

@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using core::clearance::PairStatus;
 
-struct Options {
+struct ClearanceArguments {
     SubjectOptions subject;
     PairOptions pairs;
     std::string minimum, tolerance, csv, baseline, certificate;
@@ -50,7 +50,7 @@ struct Lengths {
     std::optional<double> minimum, tolerance;
 };
 
-Result<Lengths> read_lengths(const Options& options) {
+Result<Lengths> read_lengths(const ClearanceArguments& options) {
     Lengths lengths;
     Errors errors;
     const auto read = [&](const std::string& text, const char* option, std::optional<double>& out) {
@@ -124,13 +124,13 @@ Errors write_proof(const std::string& path, const core::certificate::Certificate
     return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
 }
 
-Json proof_json(const Options& options, const Subject& subject) {
+Json proof_json(const ClearanceArguments& options, const Subject& subject) {
     const bool own = subject.source == SubjectSource::trajectory;
     return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
 }
 
 /// What would be found out only after the work: files that cannot be written, an earlier report that cannot be read.
-Errors try_files(const Options& options) {
+Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
         if (Errors errors = try_output_file(file); !errors.empty()) return errors;
@@ -139,7 +139,7 @@ Errors try_files(const Options& options) {
     return core::files::read_file(options.baseline).errors();
 }
 
-int run_clearance(const Options& options, const CommonOptions& common, Console& console) {
+int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
     if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
@@ -186,7 +186,7 @@ int run_clearance(const Options& options, const CommonOptions& common, Console& 
     return exit_code(report.status);
 }
 
-void add_options(CommandLine& app, Options& options) {
+void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("FILE", options.subject.path, "Scene, design (at its values), or trajectory").required();
     app.option("--minimum", options.minimum,
                "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
@@ -221,7 +221,7 @@ void add_options(CommandLine& app, Options& options) {
 
 Command add_clearance(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("clearance", "Certified least distance of each pair of bodies");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ClearanceArguments>();
     add_options(app, *options);
     app.closing_words(
         quantities::process_table() +

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/model/start_check.hpp"
@@ -20,12 +21,6 @@ namespace fettle::design::cli {
 namespace {
 
 using core::scene::BodyType;
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
 
 // What moves without dynamics is kinematic, what does not move is static: whoever reads the stored trajectory then knows.
 void mark_as_scripted(Subject& subject) {

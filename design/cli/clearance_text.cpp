@@ -7,7 +7,9 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
@@ -152,12 +154,6 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     return text + "\n";
 }
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& each : words) text += (text.empty() ? "" : ", ") + each;
-    return text;
-}
-
 std::string shortest(double x) {
     char buffer[32];
     const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, x);
@@ -191,10 +187,9 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
                 "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     if (!report.uncovered.empty())
-        text +=
-            formatted("%zu pair%s of bodies have no row: ", report.uncovered.size(), report.uncovered.size() == 1 ? "" : "s") +
-            joined({report.uncovered.begin(), report.uncovered.begin() + static_cast<long>(std::min<size_t>(report.uncovered.size(), 6))}) +
-            (report.uncovered.size() > 6 ? ", ...\n" : "\n");
+        text += formatted("%zu pair%s of bodies have no row: ", report.uncovered.size(), report.uncovered.size() == 1 ? "" : "s") +
+                joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
+                (report.uncovered.size() > 6 ? ", ...\n" : "\n");
     for (const std::string& note : subject.notes) text += "note: " + note + "\n";
     if (!report.baseline.empty()) {
         int changes[3] = {0, 0, 0};

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 
 namespace fettle::design::cli {
 
@@ -85,9 +86,7 @@ Option& Option::between(double low, double high) {
 Option& Option::one_of(std::vector<std::string> words) {
     option_->check([words = std::move(words)](const std::string& text) -> std::string {
         if (std::find(words.begin(), words.end(), text) != words.end()) return {};
-        std::string list;
-        for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-        return "\"" + text + "\" is not one of " + list;
+        return "\"" + text + "\" is not one of " + joined(words);
     });
     return *this;
 }

@@ -20,7 +20,7 @@ using problem::DesignProblem;
 using studies::CheckReport;
 using studies::CheckRow;
 
-struct Options {
+struct GradientArguments {
     std::string path;
     bool check = false;
     double check_limit = 1e-5;
@@ -114,7 +114,7 @@ std::string values_text(const Design& design, const DesignEvaluation& e) {
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
 }
 
-int run_gradient(const Options& options, const CommonOptions& common, Console& console) {
+int run_gradient(const GradientArguments& options, const CommonOptions& common, Console& console) {
     Result<reading::DesignFile> read = reading::read_design(options.path, {common.mesh_dirs});
     if (!read) return console.input_errors(read.errors());
     tell_warnings(console, read->warnings);
@@ -152,7 +152,7 @@ int run_gradient(const Options& options, const CommonOptions& common, Console& c
 
 Command add_gradient(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("gradient", "Objective, constraints and their gradients");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<GradientArguments>();
     app.option("DESIGN", options->path, "Design, taken at its values").required();
     app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
     app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2").above(0);

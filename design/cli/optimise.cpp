@@ -20,7 +20,7 @@ using problem::DesignEvaluation;
 using problem::DesignProblem;
 using studies::OptimiseOutcome;
 
-struct Options {
+struct OptimiseArguments {
     std::string path, optimiser, out;
     bool resume = false;
 };
@@ -110,13 +110,13 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     return text + "written to " + out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
 }
 
-std::string output_folder(const Options& options, const reading::DesignFile& file) {
+std::string output_folder(const OptimiseArguments& options, const reading::DesignFile& file) {
     if (!options.out.empty()) return options.out;
     if (!file.output.empty()) return file.output;
     return std::filesystem::path(options.path).stem().stem().string() + ".out";
 }
 
-int run_optimise(const Options& options, const CommonOptions& common, Console& console) {
+int run_optimise(const OptimiseArguments& options, const CommonOptions& common, Console& console) {
     const Result<reading::DesignFile> file = reading::read_design(options.path, {common.mesh_dirs});
     if (!file) return console.input_errors(file.errors());
     tell_warnings(console, file->warnings);
@@ -148,7 +148,7 @@ int run_optimise(const Options& options, const CommonOptions& common, Console& c
 Command add_optimise(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("optimise", "Tunes a design's parameters under its requirements, and certifies the result");
     app.also_called("optimize");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<OptimiseArguments>();
     app.option("DESIGN", options->path, "Design to start from").required();
     app.option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp or cobyla (default: what the design says)")
         .one_of(optimisers::optimiser_names());

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
-struct Options {
+struct SimulateArguments {
     std::string path, out, poses, earlier;
     int steps = -1;
     double time = -1;
@@ -45,7 +45,7 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
 }
 
 // With the rows of the run that this one goes on with, if its tables are beside its trajectory.
-std::string whole_table(const std::string& name, const std::string& text, const Options& options, const Simulation& earlier) {
+std::string whole_table(const std::string& name, const std::string& text, const SimulateArguments& options, const Simulation& earlier) {
     if (options.earlier.empty()) return text;
     const Result<std::string> before = core::files::read_file(std::filesystem::path(options.earlier).parent_path() / name);
     const double until = (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep;
@@ -53,8 +53,8 @@ std::string whole_table(const std::string& name, const std::string& text, const 
 }
 
 // What the folder holds of an earlier run is read, or put aside, before anything is written: it may be the run that this one goes on with.
-Errors write_motion(const Options& options, const core::model::Model& model, const Simulation& simulation, const Simulation& earlier,
-                    const std::string& scene_path, Console& console) {
+Errors write_motion(const SimulateArguments& options, const core::model::Model& model, const Simulation& simulation,
+                    const Simulation& earlier, const std::string& scene_path, Console& console) {
     const std::filesystem::path folder = options.out;
     std::vector<std::pair<std::string, std::string>> tables;
     const std::vector<std::string> names = body_names(model);
@@ -76,7 +76,7 @@ Errors write_motion(const Options& options, const core::model::Model& model, con
 }
 
 // Reads the run to go on with. Errors: not a run of this scene, or one that has got further already.
-Result<Simulation> read_earlier(const Options& options, const core::model::Model& model, int steps, Console& console) {
+Result<Simulation> read_earlier(const SimulateArguments& options, const core::model::Model& model, int steps, Console& console) {
     const auto stored = core::records::read_trajectory(options.earlier);
     if (!stored) return stored.errors();
     tell_warnings(console, stored->warnings);
@@ -90,7 +90,7 @@ Result<Simulation> read_earlier(const Options& options, const core::model::Model
     return resumed;
 }
 
-Errors try_outputs(const Options& options) {
+Errors try_outputs(const SimulateArguments& options) {
     Errors errors = options.out.empty() ? Errors{} : try_output_folder(options.out);
     if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
     return errors;
@@ -138,7 +138,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
-int finish(const Options& options, const LoadedModel& loaded, const Simulation& simulation, const Simulation& earlier, Json json,
+int finish(const SimulateArguments& options, const LoadedModel& loaded, const Simulation& simulation, const Simulation& earlier, Json json,
            Console& console) {
     const core::model::Model& model = loaded.model;
     const auto& report = simulation.report;
@@ -175,7 +175,7 @@ int finish(const Options& options, const LoadedModel& loaded, const Simulation& 
     return outcome.exit_code;
 }
 
-int run_simulate(const Options& options, const CommonOptions& common, Console& console) {
+int run_simulate(const SimulateArguments& options, const CommonOptions& common, Console& console) {
     const auto begin = std::chrono::steady_clock::now();
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
@@ -209,7 +209,7 @@ int run_simulate(const Options& options, const CommonOptions& common, Console& c
 
 Command add_simulate(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("simulate", "Runs a scene (or a design at its values) through time");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SimulateArguments>();
     app.option("SCENE", options->path, "Scene or design").required();
     Option steps = app.option("--steps", options->steps, "How many steps (default: the scene's end time)").at_least(0);
     app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);

@@ -106,11 +106,11 @@ Verdict validate_model(const std::string& path, const CommonOptions& common) {
     return verdict;
 }
 
-struct Options {
+struct ValidateArguments {
     std::string path, trajectory, minimum;
 };
 
-int run_validate(const Options& options, const CommonOptions& common, Console& console) {
+int run_validate(const ValidateArguments& options, const CommonOptions& common, Console& console) {
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
     if (kind == FileKind::certificate) return validate_certificate({path, options.trajectory, options.minimum}, common, console);
@@ -137,7 +137,7 @@ int run_validate(const Options& options, const CommonOptions& common, Console& c
 Command add_validate(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
         program.command("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ValidateArguments>();
     app.option("FILE", options->path, "Scene, design, trajectory, certificate (.json) or mesh (.stl .obj .off .ply .3mf)").required();
     app.option("--trajectory", options->trajectory,
                "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");

@@ -7,13 +7,12 @@
 #include <mutex>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 
 namespace fettle::design::studies {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Objective, then constraints.
 VectorX quantities(const problem::DesignEvaluation& e) {

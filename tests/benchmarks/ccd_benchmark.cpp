@@ -17,6 +17,7 @@
 
 using namespace fettle;
 using namespace fettle::core::contact;
+using namespace fettle::design::cli;
 
 namespace {
 

@@ -21,6 +21,7 @@
 
 using namespace fettle;
 using namespace fettle::core;
+using namespace fettle::core::certificate;
 using namespace fettle::core::clearance;
 
 namespace {
