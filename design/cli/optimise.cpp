@@ -46,6 +46,46 @@ Json terms_json(const Design& design, const DesignEvaluation& final) {
     return list;
 }
 
+Json stages_json(const optimisers::OptimiserReport& report) {
+    Json list = Json::array();
+    for (const optimisers::StageReport& stage : report.stages) {
+        list.push_back({{"model", stage.model.empty() ? "as written" : stage.model},
+                        {"evaluations", stage.evaluations},
+                        {"objective", stage.objective},
+                        {"constraint_violation", stage.violation},
+                        {"message", stage.message}});
+    }
+    return list;
+}
+
+Json optimality_json(const Design& design, const optimisers::Optimality& o) {
+    Json residual = Json::object(), held = Json::object(), improvable = Json::array();
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        residual[design.parameters[k].name] = o.residual[static_cast<Eigen::Index>(k)];
+        held[design.parameters[k].name] = optimisers::to_string(o.held[k]);
+    }
+    for (const int k : o.improvable) {
+        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        improvable.push_back({{"parameter", p.name}, {"step", description::from_si(o.step[k], p.unit)}});
+    }
+    Json json{{"predicted_gain", o.predicted_gain},
+              {"worth", o.worth},
+              {"radius", o.radius},
+              {"residual", residual},
+              {"held_by", held},
+              {"improvable", improvable},
+              {"noise_in_objective", o.noise_in_objective},
+              {"judged", o.judged}};
+    if (o.noise.size() > 0) {
+        json["noise"] = {{"objective", o.noise[0]}};
+        for (size_t i = 0; i < design.constraints.size(); ++i)
+            json["noise"][design.constraints[i].name] = o.noise[static_cast<Eigen::Index>(i) + 1] / design.constraints[i].bounds.unit;
+    }
+    json["rough"] =
+        o.roughest < 0 ? Json() : Json(o.roughest == 0 ? "objective" : design.constraints[static_cast<size_t>(o.roughest - 1)].name);
+    return json;
+}
+
 Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, const std::string& out) {
     const Design& design = problem.design();
     const optimisers::OptimiserReport& report = outcome.report;
@@ -60,7 +100,8 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["failed_evaluations"] = report.failures;
     json["replayed_evaluations"] = outcome.replayed;
     json["iterations"] = report.iterations;
-    json["optimality"] = report.best.usable ? Json(report.optimality) : Json();
+    json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
+    json["stages"] = stages_json(report);
     json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
     json["terms"] = terms_json(design, outcome.final);
@@ -75,10 +116,9 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
 
 int exit_code(OptimiserStatus status) {
     switch (status) {
-        case OptimiserStatus::converged:
+        case OptimiserStatus::optimal:
             return exit_done;
         case OptimiserStatus::infeasible:
-        case OptimiserStatus::infeasible_budget:
             return exit_violated;
         default:
             return exit_undecided;
@@ -87,12 +127,11 @@ int exit_code(OptimiserStatus status) {
 
 std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, const Console& console, const std::string& out) {
     const optimisers::OptimiserReport& report = outcome.report;
-    const bool good = report.status == OptimiserStatus::converged;
+    const bool good = report.status == OptimiserStatus::optimal;
     std::string text = console.coloured(optimisers::to_string(report.status), good) + ": " + report.message + "\n";
     if (!report.best.usable) return text;
-    text +=
-        formatted("objective %.8g, from %.8g at the start; %d evaluations (%d failed), %d iterations, optimality %.2g\n",
-                  report.best.objective, report.start.objective, report.evaluations, report.failures, report.iterations, report.optimality);
+    text += formatted("objective %.8g, from %.8g at the start; %d evaluations (%d failed), %d iterations\n", report.best.objective,
+                      report.start.objective, report.evaluations, report.failures, report.iterations);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
         text += formatted("  %-24s %12.7g -> %12.7g %s\n", p.name.c_str(), description::from_si(p.value, p.unit),

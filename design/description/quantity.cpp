@@ -3,6 +3,10 @@
 
 namespace fettle::design::description {
 
+VectorX Quantity::deviations(const Simulated&) const { return {}; }
+
+void Quantity::add_deviation_seeds(const Simulated&, int, double, Seeds&) const {}
+
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }
 
 Errors check_body(const core::model::Model& model, int body) {

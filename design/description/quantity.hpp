@@ -46,6 +46,15 @@ public:
     /// Adds scale * d(value) to the seeds. `measured` is what value() returned for the same `simulated`.
     virtual void add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const = 0;
 
+    /// The deviations r_i of which the value is the sum of squares; empty: it is no such sum. For Gauss-Newton's curvature.
+    virtual VectorX deviations(const Simulated& simulated) const;
+
+    /// Adds scale * d(r_i) to the seeds. Contract: 0 <= i < deviations().size().
+    virtual void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const;
+
+    /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
+    virtual bool is_at_rest() const { return false; }
+
     /// What makes it meaningless for these bodies and this number of steps: a body that is not there, a volume of an open mesh. Asked once,
     /// of the scene as written. `where` is left to the caller.
     virtual Errors check(const core::model::Model& model, int steps) const;

@@ -21,10 +21,11 @@ std::string bits_of(const VectorX& x) {
 Evaluation checked(Evaluation e, int variables, int constraints) {
     if (!e.usable) return e;
     FETTLE_ASSERT(e.gradient.size() == variables && e.constraints.size() == constraints && e.jacobian.rows() == constraints &&
-                      e.jacobian.cols() == variables,
+                      e.jacobian.cols() == variables && e.residual_jacobian.rows() == e.residuals.size() &&
+                      (e.residuals.size() == 0 || e.residual_jacobian.cols() == variables),
                   "an evaluation has the problem's sizes");
     const bool finite = std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
-                        std::isfinite(e.violation);
+                        e.residual_jacobian.allFinite() && std::isfinite(e.violation);
     if (!finite) {
         e.usable = false;
         e.reason = "the evaluation gave a number that is not finite";
@@ -51,6 +52,11 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
     }
     rethrow();
     fix_scaling();
+}
+
+std::optional<Evaluation> Evaluator::scaled_reference() const {
+    if (!options_.reference) return std::nullopt;
+    return scaled(*options_.reference);
 }
 
 void Evaluator::fix_scaling() {
@@ -85,6 +91,8 @@ Evaluation Evaluator::scaled(const Evaluation& e) const {
     s.gradient = e.gradient.cwiseProduct(range_) * objective_scale_;
     s.constraints = e.constraints.cwiseProduct(constraint_scale_);
     s.jacobian = constraint_scale_.asDiagonal() * e.jacobian * range_.asDiagonal();
+    s.residuals = std::sqrt(objective_scale_) * e.residuals;
+    if (e.residual_jacobian.rows() > 0) s.residual_jacobian = std::sqrt(objective_scale_) * e.residual_jacobian * range_.asDiagonal();
     return s;
 }
 
@@ -95,7 +103,14 @@ const Evaluation& Evaluator::at(const VectorX& point) {
     return evaluate_new(clamped).scaled_evaluation;
 }
 
-const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point) {
+const Evaluation& Evaluator::look(const VectorX& point) {
+    const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
+    const auto found = index_.find(bits_of(clamped));
+    if (found != index_.end()) return records_[static_cast<size_t>(found->second)].scaled_evaluation;
+    return evaluate_new(clamped, false).scaled_evaluation;
+}
+
+const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, bool may_be_best) {
     if (evaluations() >= options_.max_evaluations) stop(StopReason::budget);
     if (options_.should_stop && options_.should_stop()) stop(StopReason::interrupted);
     Record record;
@@ -114,7 +129,7 @@ const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point) {
     records_.push_back(std::move(record));
     index_[bits_of(scaled_point)] = evaluations() - 1;
     const int best_before = best_index_;
-    keep_best();
+    if (may_be_best) keep_best();
     if (options_.on_evaluation) {
         const Record& last = records_.back();
         options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);

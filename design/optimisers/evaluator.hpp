@@ -9,6 +9,7 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "fettle/design/optimisers/problem.hpp"
@@ -20,6 +21,9 @@ struct EvaluatorOptions {
     std::function<bool()> should_stop;  ///< optional; asked before each evaluation
     /// Optional: after each evaluation, with its number (1, 2, ...) and whether it became the best.
     std::function<void(int, const VectorX&, const Evaluation&, bool)> on_evaluation;
+    /// Optional: of a smoother model of the same thing, near the start. Where this one's derivatives tell its own values worse, they stand
+    /// in (local_model.hpp).
+    std::optional<Evaluation> reference = {};
 };
 
 /// Thrown out of a callback to end the native optimiser; Evaluator::stop_reason says why. Never leaves minimise().
@@ -42,10 +46,20 @@ public:
     /// Throws StopOptimisation when the run is over.
     const Evaluation& at(const VectorX& scaled);
 
+    /// The same, but the point does not become the best one: to find out how rough the problem is.
+    const Evaluation& look(const VectorX& scaled);
+
+    /// So many evaluations more.
+    void allow(int evaluations) { options_.max_evaluations += evaluations; }
+
     const VectorX& scaled_start() const { return scaled_start_; }
     const VectorX& scaled_constraint_lower() const { return scaled_constraint_lower_; }
     const VectorX& scaled_constraint_upper() const { return scaled_constraint_upper_; }
+    std::optional<Evaluation> scaled_reference() const;
     VectorX unscaled(const VectorX& scaled) const;
+    double objective_scale() const { return objective_scale_; }            ///< scaled f / f
+    const VectorX& constraint_scale() const { return constraint_scale_; }  ///< scaled c / c
+    const VectorX& range() const { return range_; }                        ///< of the variables
 
     const Evaluation& start_evaluation() const { return start_evaluation_; }
     bool has_best() const { return best_index_ >= 0; }
@@ -53,6 +67,10 @@ public:
     const VectorX& best_scaled_point() const;   ///< Contract: has_best
     const Evaluation& best_evaluation() const;  ///< unscaled. Contract: has_best
     Evaluation best_scaled_evaluation() const;  ///< Contract: has_best
+
+    /// What has been evaluated, in that order; scaled.
+    const VectorX& scaled_point(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_point; }
+    const Evaluation& scaled_evaluation(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_evaluation; }
 
     int evaluations() const { return static_cast<int>(records_.size()); }
     int failures() const { return failures_; }
@@ -66,7 +84,7 @@ private:
     };
     Evaluation scaled(const Evaluation& evaluation) const;
     void fix_scaling();
-    const Record& evaluate_new(const VectorX& scaled_point);
+    const Record& evaluate_new(const VectorX& scaled_point, bool may_be_best = true);
     void keep_best();
     void stop(StopReason reason);
 

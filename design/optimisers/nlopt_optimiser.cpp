@@ -182,7 +182,7 @@ std::string NloptOptimiser::name() const {
 NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
     const int n = evaluator.variables();
     if (n == 0) return {0, "no variables"};
-    VectorX start = evaluator.scaled_start();
+    VectorX start = evaluator.best_scaled_point();
     double radius = 1;
     NativeOutcome outcome;
     for (int restart = 0; restart <= most_restarts; ++restart) {

@@ -1,31 +1,196 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/optimisers/optimality.hpp"
 
-#include <limits>
-#include <vector>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 
-#include "fettle/design/optimisers/nonnegative_least_squares.hpp"
+#include "fettle/design/optimisers/local_model.hpp"
+#include "fettle/design/optimisers/noise.hpp"
 
 namespace fettle::design::optimisers {
 
-double optimality_residual(const Evaluator& evaluator, const VectorX& x, const Evaluation& e, double active) {
-    if (!e.usable) return std::numeric_limits<double>::infinity();
-    std::vector<VectorX> normals;
-    for (int i = 0; i < x.size(); ++i) {
-        const VectorX unit = VectorX::Unit(x.size(), i);
-        if (x[i] <= active) normals.push_back(unit);
-        if (x[i] >= 1 - active) normals.push_back(-unit);
+namespace {
+
+constexpr double first_radius = 0.1, step_shrink = 0.35;
+constexpr double smallest_radius = 3e-4;  // below it a gain is one of microns: whether it is there does not matter to a design
+constexpr int most_probes = 5;
+constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
+constexpr double exact_penalty = 1e3;
+constexpr int noise_values = 7;
+constexpr double noise_spacing = 1e-3;
+constexpr double telling_share = 0.1;  // of a gain, below which a variable is not named; of a gradient, below which a constraint is not
+
+// From the evaluations next to the best one, the farthest first.
+RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, const Evaluation& at, const VectorX& multipliers) {
+    std::vector<std::pair<double, int>> order;
+    for (int k = 0; k < evaluator.evaluations(); ++k) {
+        const double distance = (evaluator.scaled_point(k) - best).norm();
+        if (distance > 0 && distance < near && evaluator.scaled_evaluation(k).usable) order.emplace_back(distance, k);
     }
-    for (int i = 0; i < evaluator.constraints(); ++i) {
-        const VectorX row = e.jacobian.row(i).transpose();
-        if (e.constraints[i] <= evaluator.scaled_constraint_lower()[i] + active) normals.push_back(row);
-        if (e.constraints[i] >= evaluator.scaled_constraint_upper()[i] - active) normals.push_back(-row);
-    }
-    if (normals.empty()) return e.gradient.size() > 0 ? e.gradient.lpNorm<Eigen::Infinity>() : 0.0;
-    MatrixX a(x.size(), static_cast<Eigen::Index>(normals.size()));
-    for (size_t k = 0; k < normals.size(); ++k) a.col(static_cast<Eigen::Index>(k)) = normals[k];
-    const VectorX multipliers = nonnegative_least_squares(a, e.gradient);
-    return (a * multipliers - e.gradient).lpNorm<Eigen::Infinity>();
+    std::sort(order.begin(), order.end());
+    order.resize(std::min(order.size(), static_cast<size_t>(2 * best.size() + 2)));
+    RestCurvature rest(static_cast<int>(best.size()));
+    for (auto it = order.rbegin(); it != order.rend(); ++it)
+        rest.learn(evaluator.scaled_point(it->second), evaluator.scaled_evaluation(it->second), best, at, multipliers);
+    return rest;
 }
+
+double predicted_gain(const Evaluation& at, const MatrixX& rest, const VectorX& step) {
+    const MatrixX curvature = residual_curvature(at) + rest;
+    return std::max(0.0, -(at.gradient.dot(step) + 0.5 * std::max(0.0, step.dot(curvature * step))));
+}
+
+// Inward from the nearest bounds, all variables alike, so that no value is left out of the noise.
+VectorX inward(const VectorX& point) {
+    VectorX direction(point.size());
+    for (Eigen::Index k = 0; k < point.size(); ++k) direction[k] = point[k] > 0.5 ? -1 : 1;
+    return direction / std::max(1.0, direction.norm());
+}
+
+class Judgement {
+public:
+    Judgement(Evaluator& evaluator, const OptimiserOptions& options)
+        : evaluator_(evaluator), options_(options), point_(evaluator.best_scaled_point()), at_(evaluator.best_scaled_evaluation()) {}
+
+    Optimality judge(bool& moved) {
+        moved = false;
+        try {
+            moved = probe();
+            if (!moved) measure_noise();
+            result_.judged = true;
+        } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
+        }
+        tell();
+        return result_;
+    }
+
+private:
+    // @return whether a probe became the best point.
+    bool probe() {
+        double radius = first_radius;
+        for (int k = 0;; ++k) {
+            look(radius);
+            if (!solution_.solved || gain_ <= worth_ || k >= most_probes || radius < smallest_radius) return false;
+            const VectorX before = evaluator_.best_point();
+            const Evaluation& seen = evaluator_.at(point_ + solution_.step);
+            if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
+                return true;
+            if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
+                point_ = evaluator_.best_scaled_point();
+                at_ = evaluator_.best_scaled_evaluation();
+            }
+            radius = step_shrink * std::min(radius, seen.usable ? solution_.step.lpNorm<Eigen::Infinity>() : 0.5 * radius);
+        }
+    }
+
+    void look(double radius) {
+        worth_ = least_gain(evaluator_, options_, at_.objective);
+        radius_ = radius;
+        at_ = with_telling_derivatives(evaluator_, point_, evaluator_.best_scaled_evaluation());
+        const VectorX none = VectorX::Zero(evaluator_.constraints());
+        const VectorX& y = solution_.multipliers.size() == none.size() ? solution_.multipliers : none;
+        RestCurvature rest = curvature_near(evaluator_, point_, at_, y);
+        solution_ = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
+        if (!solution_.solved) return;
+        gain_ = predicted_gain(at_, rest.matrix(), solution_.step);
+    }
+
+    void measure_noise() {
+        const int m = evaluator_.constraints();
+        MatrixX values(noise_values, 1 + m);
+        const VectorX direction = inward(point_);
+        for (int i = 0; i < noise_values; ++i) {
+            const Evaluation& e = evaluator_.look(point_ + i * noise_spacing * direction);
+            if (!e.usable) return;
+            values(i, 0) = e.objective;
+            values.row(i).tail(m) = e.constraints.transpose();
+        }
+        result_.noise.resize(1 + m);
+        const std::vector<NoiseLevel> levels = estimate_noise_by_column(values, noise_spacing);
+        for (int q = 0; q <= m; ++q) {
+            const double scale = q == 0 ? evaluator_.objective_scale() : evaluator_.constraint_scale()[q - 1];
+            const NoiseLevel& level = levels[static_cast<size_t>(q)];
+            result_.noise[q] = level.noise / scale;
+            const double weight = q == 0 ? 1 : solution_.solved ? std::abs(solution_.multipliers[q - 1]) : 0;
+            const double effect = weight * level.noise;
+            if (level.status == NoiseStatus::spacing_too_large) continue;  // only a bound on it, made of what is smooth
+            if (effect > worth_ && effect > result_.noise_in_objective) result_.roughest = q;
+            result_.noise_in_objective = std::max(result_.noise_in_objective, effect);
+        }
+        result_.noise_in_objective /= evaluator_.objective_scale();
+    }
+
+    Held what_holds(Eigen::Index k) const {
+        const double z = solution_.box_multipliers[k], d = solution_.step[k];
+        const bool at_lower = point_[k] + d <= 1e-9, at_upper = point_[k] + d >= 1 - 1e-9;
+        const double size = std::max({std::abs(at_.gradient[k]), 1e-12});
+        if (std::abs(z) > 1e-6 + telling_share * size && (z > 0 ? at_lower : at_upper))
+            return z > 0 ? Held::lower_bound : Held::upper_bound;
+        if (std::abs(d) >= radius_ * (1 - 1e-6) && gain_ > worth_) return Held::free;
+        for (Eigen::Index i = 0; i < solution_.multipliers.size(); ++i)
+            if (std::abs(solution_.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
+        return Held::stationary;
+    }
+
+    void tell() {
+        if (!solution_.solved) return;
+        const double f = evaluator_.objective_scale();
+        const auto n = point_.size();
+        result_.worth = worth_ / f;
+        result_.predicted_gain = gain_ / f;
+        result_.radius = radius_;
+        result_.step = solution_.step.cwiseProduct(evaluator_.range());
+        result_.multipliers = solution_.multipliers.cwiseProduct(evaluator_.constraint_scale()) / f;
+        result_.residual = VectorX::Zero(n);
+        result_.held.resize(static_cast<size_t>(n));
+        for (Eigen::Index k = 0; k < n; ++k) {
+            result_.held[static_cast<size_t>(k)] = what_holds(k);
+            const Held held = result_.held[static_cast<size_t>(k)];
+            if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = solution_.box_multipliers[k] / f;
+        }
+        if (gain_ <= worth_) return;
+        const VectorX share = (solution_.box_multipliers.cwiseProduct(solution_.step)).cwiseAbs();
+        std::vector<int> order(static_cast<size_t>(n));
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
+        for (const int k : order)
+            if (share[k] > telling_share * share.maxCoeff() || result_.improvable.empty()) result_.improvable.push_back(k);
+    }
+
+    Evaluator& evaluator_;
+    const OptimiserOptions& options_;
+    VectorX point_;
+    Evaluation at_;
+    QuadraticSolution solution_;
+    double radius_ = 0, gain_ = 0, worth_ = 0;
+    Optimality result_;
+};
+
+}  // namespace
+
+const char* to_string(Held held) {
+    switch (held) {
+        case Held::stationary:
+            return "stationary";
+        case Held::lower_bound:
+            return "lower bound";
+        case Held::upper_bound:
+            return "upper bound";
+        case Held::constraints:
+            return "constraints";
+        case Held::free:
+            return "nothing";
+    }
+    return "unknown";
+}
+
+double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective) {
+    const Evaluation& start = evaluator.start_evaluation();
+    const double from = start.usable ? 1e-4 * std::abs(start.objective) * evaluator.objective_scale() : 0;
+    return options.tolerance * std::max({std::abs(scaled_objective), from, 1e-12});
+}
+
+Optimality judge(Evaluator& evaluator, const OptimiserOptions& options, bool& moved) { return Judgement(evaluator, options).judge(moved); }
 
 }  // namespace fettle::design::optimisers

@@ -1,18 +1,41 @@
 // SPDX-License-Identifier: MIT
-/// First-order optimality of a design: what the verdict of a run rests on, and where the native optimisers stop.
+/// The verdict on a design: is there anything left to gain, as far as can be told?
+///
+/// At the best point the local model (local_model.hpp: derivatives, Gauss-Newton, the curvature that the evaluations near it show) predicts
+/// how much the objective falls along the best step that keeps the constraints, within a tenth of each range. Where that is below the
+/// tolerance, the design is optimal. Where it is not, the step is tried: a gain that comes true is kept, and the run goes on from there; a
+/// gain that does not teaches the model, and the step is shortened. Values that scatter by more than the tolerance (noise.hpp: the
+/// objective's own noise, and each constraint's times its multiplier) show no optimum, whatever the derivatives say.
 #pragma once
 
-#include "fettle/design/optimisers/evaluator.hpp"
+#include <vector>
+
+#include "fettle/design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 
-/// A design counts as optimal when its optimality residual is at most this (the objective's largest derivative at the start is 1) ...
-inline constexpr double nearly_optimal = 5e-2;
-/// ... where bounds and constraints within this (scaled) distance count as holding with equality.
-inline constexpr double nearly_active = 1e-2;
+enum class Held { stationary, lower_bound, upper_bound, constraints, free };
+const char* to_string(Held held);
 
-/// Largest component of grad f - sum l_i n_i over l >= 0, all scaled, where n_i are the inward normals of the bounds and constraints that
-/// hold with equality to within `active` (scaled): 0 at a point that satisfies the first-order conditions.
-double optimality_residual(const Evaluator& evaluator, const VectorX& scaled_point, const Evaluation& scaled_evaluation, double active);
+struct Optimality {
+    bool judged = false;        ///< false: the budget or the user ended it before; then nothing below is complete
+    double predicted_gain = 0;  ///< in the objective, of the last step looked at
+    double worth = 0;           ///< the gain that counts
+    double radius = 0;          ///< of that step, of the variables' ranges
+    VectorX step;               ///< n, in the variables' units
+    VectorX multipliers;     ///< m: objective per unit of the bound, > 0: raising the lower bound costs, < 0: lowering the upper one does
+    VectorX residual;        ///< n: objective per range that neither bounds nor constraints hold
+    std::vector<Held> held;  ///< n
+    std::vector<int> improvable;    ///< variables that could still move, largest gain first; empty where the predicted gain does not count
+    VectorX noise;                  ///< 1 + m: of objective and constraints; empty: not measured
+    double noise_in_objective = 0;  ///< what the noise does to the objective at most
+    int roughest = -1;              ///< which of `noise` does most of that, if it is above `worth`; else -1
+
+    bool is_optimal() const { return judged && improvable.empty() && roughest < 0; }
+};
+
+/// Judges the evaluator's best point, which is feasible; evaluates probes and noise as needed.
+/// @param moved  Set where a probe became the new best: the run can go on from it.
+Optimality judge(Evaluator& evaluator, const OptimiserOptions& options, bool& moved);
 
 }  // namespace fettle::design::optimisers

@@ -3,24 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "fettle/design/optimisers/ipopt_optimiser.hpp"
 #include "fettle/design/optimisers/nlopt_optimiser.hpp"
+#include "fettle/design/optimisers/sequential_optimiser.hpp"
 
 namespace fettle::design::optimisers {
 
 const char* to_string(OptimiserStatus status) {
     switch (status) {
-        case OptimiserStatus::converged:
-            return "converged";
-        case OptimiserStatus::budget_spent:
-            return "budget_spent";
+        case OptimiserStatus::optimal:
+            return "optimal";
+        case OptimiserStatus::feasible:
+            return "feasible";
         case OptimiserStatus::infeasible:
             return "infeasible";
-        case OptimiserStatus::infeasible_budget:
-            return "infeasible_budget_spent";
-        case OptimiserStatus::not_converged:
-            return "not_converged";
         case OptimiserStatus::interrupted:
             return "interrupted";
         case OptimiserStatus::start_failed:
@@ -35,7 +32,7 @@ const std::vector<std::string>& optimiser_names() {
 }
 
 Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const std::string& where) {
-    if (name == "ipopt") return std::unique_ptr<Optimiser>(std::make_unique<IpoptOptimiser>());
+    if (name == "ipopt") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>());
     if (name == "mma") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::mma));
     if (name == "ccsaq") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::ccsaq));
     if (name == "slsqp") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::slsqp));
@@ -45,55 +42,191 @@ Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const
 
 namespace {
 
-// What stopped the run, and the best design's feasibility and optimality, as one verdict.
-OptimiserStatus verdict(const Evaluator& evaluator, double optimality, bool feasible) {
-    switch (evaluator.stop_reason()) {
-        case StopReason::interrupted:
-            return OptimiserStatus::interrupted;
-        case StopReason::budget:
-            return feasible ? OptimiserStatus::budget_spent : OptimiserStatus::infeasible_budget;
-        default:
-            break;
+constexpr int starts_tried = 6;
+constexpr double early_tolerance = 10;  // of the smoother models, times the one asked for
+constexpr double later_radius = 0.1;    // of the first step in a model that begins where another one ended
+constexpr int most_rounds = 4;          // of optimising on from a probe that gained
+
+class StagedRun {
+public:
+    StagedRun(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options)
+        : problem_(problem), optimiser_(optimiser), options_(options), reserve_(options.max_evaluations >= 40 ? 12 : 0) {}
+
+    OptimiserReport run() {
+        report_.point = problem_.start;
+        bool begun = false;
+        VectorX point = problem_.prepared && !problem_.smoother.empty() ? problem_.prepared(problem_.start) : problem_.start;
+        if (!problem_.smoother.empty()) evaluate_start();
+        for (const SmootherModel& model : problem_.smoother) {
+            if (stopped_ != StopReason::none) break;
+            begun = optimise_smoother(model, begun, point) || begun;
+        }
+        optimise_problem(begun, point);
+        return std::move(report_);
     }
-    if (!feasible) return OptimiserStatus::infeasible;
-    return optimality <= nearly_optimal ? OptimiserStatus::converged : OptimiserStatus::not_converged;
-}
+
+private:
+    int left() const { return std::max(0, options_.max_evaluations - report_.evaluations); }
+
+    EvaluatorOptions limits(int evaluations) {
+        EvaluatorOptions limits{evaluations, options_.should_stop, {}, reference_};
+        if (options_.on_evaluation) {
+            limits.on_evaluation = [this](int number, const VectorX& point, const Evaluation& e, bool best) {
+                options_.on_evaluation(report_.evaluations + number, point, e, best);
+            };
+        }
+        return limits;
+    }
+
+    void count(const Evaluator& evaluator) {
+        report_.evaluations += evaluator.evaluations();
+        report_.failures += evaluator.failures();
+        stopped_ = evaluator.stop_reason();
+    }
+
+    Problem begun_at(const VectorX& point, const SmootherModel* model) const {
+        Problem problem = problem_;
+        problem.start = point.cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+        if (model != nullptr) problem.evaluate = model->evaluate;
+        return problem;
+    }
+
+    void evaluate_start() {
+        Evaluator evaluator(problem_, limits(std::min(1, left())));
+        report_.start = evaluator.start_evaluation();
+        count(evaluator);
+    }
+
+    // The start, and points on the way from it to the middle of the bounds.
+    VectorX candidate(const VectorX& start, int k) const {
+        const VectorX middle = 0.5 * (problem_.lower + problem_.upper);
+        const VectorX point = k == 0 ? start : VectorX(middle + std::pow(0.5, k) * (start - middle));
+        return k > 0 && problem_.prepared ? problem_.prepared(point) : point;
+    }
+
+    // @return whether the model could be evaluated; then `point` is its best one.
+    bool optimise_smoother(const SmootherModel& model, bool begun, VectorX& point) {
+        StageReport stage;
+        stage.model = model.name;
+        const VectorX start = point;
+        for (int k = 0; k < (begun ? 1 : starts_tried) && stopped_ == StopReason::none; ++k) {
+            const Problem problem = begun_at(candidate(start, k), &model);
+            Evaluator evaluator(problem, limits(std::max(1, left() - reserve_)));
+            stage.message = evaluator.start_evaluation().reason;
+            if (evaluator.start_evaluation().usable) {
+                OptimiserOptions options = options_;
+                options.tolerance *= early_tolerance;
+                if (begun) options.radius = std::min(options.radius, later_radius);
+                const NativeOutcome native = minimise(evaluator, options);
+                point = evaluator.best_point();
+                reference_ = evaluator.best_evaluation();
+                stage.message = native.message;
+                stage.objective = evaluator.best_evaluation().objective;
+                stage.violation = evaluator.best_evaluation().violation;
+                report_.iterations += native.iterations;
+            }
+            const bool usable = evaluator.start_evaluation().usable;
+            stage.evaluations += evaluator.evaluations();
+            count(evaluator);
+            evaluator.rethrow();
+            if (stopped_ == StopReason::budget) stopped_ = StopReason::none;  // what is left is the problem's own
+            if (!usable) continue;
+            report_.stages.push_back(stage);
+            return true;
+        }
+        report_.stages.push_back(stage);
+        return false;
+    }
+
+    NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
+        try {
+            return optimiser_.minimise(evaluator, options);
+        } catch (const StopOptimisation&) {  // thrown in the optimiser's own evaluations, outside its native callbacks
+            return {0, "stopped"};
+        }
+    }
+
+    void optimise_problem(bool begun, const VectorX& from) {
+        const VectorX middle = 0.5 * (problem_.lower + problem_.upper);
+        for (int k = 0; k < starts_tried; ++k) {
+            if (stopped_ == StopReason::interrupted) break;
+            const Problem problem = begun_at(candidate(from, k), nullptr);
+            const int native = std::max(std::min(1, left()), left() - reserve_);
+            Evaluator evaluator(problem, limits(native));
+            if (k == 0 && problem_.smoother.empty()) report_.start = evaluator.start_evaluation();
+            if (evaluator.start_evaluation().usable) {
+                finish(evaluator, begun, left() - native);
+                return;
+            }
+            count(evaluator);
+            const std::string reason = evaluator.start_evaluation().reason;
+            if (k == 0) report_.message = "the start cannot be evaluated: " + reason;
+            if (stopped_ != StopReason::none) break;
+        }
+        report_.status = stopped_ == StopReason::interrupted ? OptimiserStatus::interrupted : OptimiserStatus::start_failed;
+        report_.budget_spent = stopped_ == StopReason::budget;
+    }
+
+    // @param spare  Evaluations that the native optimiser has not been given: they are the verdict's.
+    void finish(Evaluator& evaluator, bool begun, int spare) {
+        OptimiserOptions options = options_;
+        if (begun) options.radius = std::min(options.radius, later_radius);
+        StageReport stage;
+        NativeOutcome native = minimise(evaluator, options);
+        report_.iterations += native.iterations;
+        evaluator.allow(spare);
+        const StopReason ended = evaluator.stop_reason();
+        if (evaluator.best_evaluation().violation <= 0 && (ended == StopReason::none || ended == StopReason::budget))
+            judge_and_go_on(evaluator, options);
+        evaluator.rethrow();
+        report_.point = evaluator.best_point();
+        report_.best = evaluator.best_evaluation();
+        report_.feasible = report_.best.violation <= 0;
+        stage.evaluations = evaluator.evaluations();
+        stage.objective = report_.best.objective;
+        stage.violation = report_.best.violation;
+        stage.message = native.message;
+        report_.stages.push_back(stage);
+        count(evaluator);
+        conclude(native.message);
+    }
+
+    // A probe that gains is where the optimiser goes on.
+    void judge_and_go_on(Evaluator& evaluator, OptimiserOptions options) {
+        options.radius = std::min(options.radius, later_radius);
+        for (int round = 0; round < most_rounds; ++round) {
+            bool moved = false;
+            report_.optimality = judge(evaluator, options, moved);
+            if (!moved || evaluator.stop_reason() != StopReason::none) return;
+            report_.iterations += minimise(evaluator, options).iterations;
+        }
+    }
+
+    void conclude(const std::string& native) {
+        report_.budget_spent = stopped_ == StopReason::budget;
+        report_.status = !report_.feasible                 ? OptimiserStatus::infeasible
+                         : report_.optimality.is_optimal() ? OptimiserStatus::optimal
+                                                           : OptimiserStatus::feasible;
+        report_.message = optimiser_.name() + ": " + native;
+        if (report_.budget_spent) report_.message = "stopped after max_evaluations = " + std::to_string(options_.max_evaluations);
+        if (stopped_ != StopReason::interrupted) return;
+        report_.status = OptimiserStatus::interrupted;
+        report_.message = "stopped as asked after " + std::to_string(report_.evaluations) + " evaluations";
+    }
+
+    const Problem& problem_;
+    const Optimiser& optimiser_;
+    const OptimiserOptions& options_;
+    int reserve_;
+    StopReason stopped_ = StopReason::none;
+    std::optional<Evaluation> reference_;  // of the last smoother model, at its end
+    OptimiserReport report_;
+};
 
 }  // namespace
 
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options) {
-    Evaluator evaluator(problem, {options.max_evaluations, options.should_stop, options.on_evaluation});
-    OptimiserReport report;
-    report.start = evaluator.start_evaluation();
-    report.point = problem.start;
-    NativeOutcome native;
-    if (report.start.usable) {
-        try {
-            native = optimiser.minimise(evaluator, options);
-        } catch (const StopOptimisation&) {  // thrown in the optimiser's own evaluations, outside its native callbacks
-        }
-        evaluator.rethrow();
-    }
-    report.evaluations = evaluator.evaluations();
-    report.failures = evaluator.failures();
-    report.iterations = native.iterations;
-    if (!report.start.usable) {
-        const bool interrupted = evaluator.stop_reason() == StopReason::interrupted;
-        report.status = interrupted ? OptimiserStatus::interrupted : OptimiserStatus::start_failed;
-        report.message = "the start cannot be evaluated: " + report.start.reason;
-        return report;
-    }
-    report.point = evaluator.best_point();
-    report.best = evaluator.best_evaluation();
-    report.feasible = report.best.violation <= 0;
-    report.optimality = optimality_residual(evaluator, evaluator.best_scaled_point(), evaluator.best_scaled_evaluation(), nearly_active);
-    report.status = verdict(evaluator, report.optimality, report.feasible);
-    report.message = optimiser.name() + ": " + native.message;
-    if (evaluator.stop_reason() == StopReason::budget)
-        report.message = "stopped after max_evaluations = " + std::to_string(options.max_evaluations);
-    if (evaluator.stop_reason() == StopReason::interrupted)
-        report.message = "stopped as asked after " + std::to_string(report.evaluations) + " evaluations";
-    return report;
+    return StagedRun(problem, optimiser, options).run();
 }
 
 }  // namespace fettle::design::optimisers

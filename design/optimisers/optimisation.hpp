@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The run of an optimiser: start, native optimiser, our own verdict. A native return code is never the verdict:
-/// NLopt can return a wrong answer with a success code, Ipopt a good one with a failure's. Feasibility is judged by the evaluation's
-/// `violation` (certificates), optimality by the residual of the Karush-Kuhn-Tucker conditions at the best point.
+/// The run of an optimiser: a start that can be evaluated, the smoother models one after another (each begun where the last one ended),
+/// then the problem itself, and our own verdict on its best point. A native return code is never the verdict: NLopt can return a wrong
+/// answer with a success code. Feasibility is judged by the evaluation's `violation` (certificates), optimality as optimality.hpp says.
 #pragma once
 
 #include <memory>
@@ -14,28 +14,35 @@
 
 namespace fettle::design::optimisers {
 
-/// Of the best design: `feasible` is a violation of 0, `optimal` an optimality residual of at most nearly_optimal (optimality.hpp).
-/// However the native optimiser ended, a run that was not cut short is one of converged, not_converged and infeasible.
 enum class OptimiserStatus {
-    converged,          ///< feasible and optimal
-    not_converged,      ///< feasible, but not optimal
-    infeasible,         ///< a requirement is violated
-    budget_spent,       ///< max_evaluations ended the run; feasible, optimal or not
-    infeasible_budget,  ///< max_evaluations ended the run before a feasible design was found
-    interrupted,        ///< should_stop ended the run; the best design so far
-    start_failed        ///< the start cannot be evaluated
+    optimal,      ///< every requirement is met, and no gain above the tolerance is in sight (Optimality::is_optimal)
+    feasible,     ///< every requirement is met; more could be gained, or it cannot be told
+    infeasible,   ///< a requirement is violated
+    interrupted,  ///< should_stop ended the run; the best design so far
+    start_failed  ///< neither the start nor a point on the way to the middle of the bounds can be evaluated
 };
 const char* to_string(OptimiserStatus status);
+
+/// One model, optimised.
+struct StageReport {
+    std::string model;     ///< empty: the problem itself
+    int evaluations = 0;   ///< 0: it was left out, see `message`
+    double objective = 0;  ///< at its best point, by its own values
+    double violation = 0;
+    std::string message;
+};
 
 struct OptimiserReport {
     OptimiserStatus status = OptimiserStatus::start_failed;
     std::string message;  ///< for people: what ended it, in the native optimiser's words too
-    Evaluation start;
-    VectorX point;  ///< the best design (the start if nothing could be evaluated)
+    Evaluation start;     ///< of the problem itself, at its start
+    VectorX point;        ///< the best design (the start if nothing could be evaluated)
     Evaluation best;
     bool feasible = false;  ///< best.violation <= 0
-    double optimality = 0;  ///< residual of the optimality conditions at the best point, scaled; see optimality_residual
+    Optimality optimality;
     int evaluations = 0, failures = 0, iterations = 0;
+    bool budget_spent = false;        ///< max_evaluations ended the run
+    std::vector<StageReport> stages;  ///< of the smoother models, then of the problem itself
 };
 
 /// Deterministic: the same problem and options give the same sequence of evaluations.

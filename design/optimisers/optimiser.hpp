@@ -13,10 +13,14 @@ namespace fettle::design::optimisers {
 
 struct OptimiserOptions {
     int max_evaluations = 200;
-    double tolerance = 1e-4;            ///< relative change of the scaled objective, and optimality residual, below which it is done
+    double tolerance = 1e-4;            ///< of the objective: a gain that is smaller is not worth an evaluation (least_gain)
+    double radius = 0.25;               ///< of the first step, of each variable's range
     std::function<bool()> should_stop;  ///< optional (Ctrl-C)
     std::function<void(int, const VectorX&, const Evaluation&, bool best)> on_evaluation;  ///< optional
 };
+
+/// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a ten thousandth of that at the start.
+double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective);
 
 /// What a native optimiser says of itself, for people. Whether it calls its end a success decides nothing: the verdict is our own
 /// (optimisation.hpp).
@@ -29,8 +33,8 @@ class Optimiser {
 public:
     virtual ~Optimiser() = default;
     virtual std::string name() const = 0;
-    /// Works in the evaluator's scaled variables, from evaluator.scaled_start(). A point that cannot be evaluated is handed to the native
-    /// optimiser as a failure (it shortens its step), never as a number. Keeps StopOptimisation inside.
+    /// Works in the evaluator's scaled variables, from its best point so far, the start at first. A point that cannot be evaluated is
+    /// handed to the native optimiser as a failure (it shortens its step), never as a number. Keeps StopOptimisation inside.
     virtual NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions& options) const = 0;
 };
 

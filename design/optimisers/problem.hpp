@@ -7,6 +7,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "fettle/core/base/types.hpp"
 
@@ -20,13 +21,25 @@ struct Evaluation {
     VectorX gradient;      ///< n
     VectorX constraints;   ///< c, m
     MatrixX jacobian;      ///< dc/dx, m x n
+    /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
+    VectorX residuals;
+    MatrixX residual_jacobian;
     double violation = 0;  ///< largest violation of the true requirements, in their own scale (constraint.hpp); 0: feasible
+};
+
+/// A model of the same thing that is smoother than the one asked for: optimisers begin there.
+struct SmootherModel {
+    std::string name;  ///< for people
+    std::function<Evaluation(const VectorX&)> evaluate;
 };
 
 struct Problem {
     VectorX start, lower, upper;                 ///< n; finite, lower <= start <= upper
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     std::function<Evaluation(const VectorX&)> evaluate;
+    std::vector<SmootherModel> smoother;  ///< the smoothest first; empty: none
+    /// Optional: the nearest point that meets all that can be known without a simulation, as far as it was found. Starts are moved there.
+    std::function<VectorX(const VectorX&)> prepared;
     /// Optional: the nearest point that can be written down exactly (to a few units of rounding), the one that is evaluated in its place.
     std::function<VectorX(const VectorX&)> representable;
 };

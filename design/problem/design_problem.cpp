@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -94,6 +95,47 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     return evaluation;
 }
 
+std::vector<int> DesignProblem::rest_constraints() const {
+    std::vector<int> indices;
+    for (size_t i = 0; i < design_.constraints.size(); ++i)
+        if (design_.constraints[i].quantity->is_at_rest()) indices.push_back(static_cast<int>(i));
+    return indices;
+}
+
+std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const {
+    const Result<MovedScene> moved = move_scene(design_, p);
+    if (!moved) return std::nullopt;
+    const Result<Model> model = build(moved->scene);
+    if (!model) return std::nullopt;
+    core::stepper::SimulationOptions nothing;
+    nothing.steps = 0;
+    const core::stepper::Trajectory start = core::stepper::simulate(*model, nothing).trajectory;
+    const Simulated simulated{*model, start, design_.clearance_tolerance};
+    optimisers::Rows rows;
+    std::vector<adjoint::Seeds> seeds;
+    const std::vector<int> indices = rest_constraints();
+    rows.values.resize(static_cast<Eigen::Index>(indices.size()));
+    for (const int i : indices) {
+        const description::Quantity& quantity = *design_.constraints[static_cast<size_t>(i)].quantity;
+        const description::Measurement measured = quantity.value(simulated);
+        rows.values[static_cast<Eigen::Index>(seeds.size())] = measured.value;
+        seeds.push_back(adjoint::zero_seeds(*model, 0));
+        quantity.add_seeds(simulated, measured, 1, seeds.back());
+    }
+    const Result<std::vector<adjoint::ModelGradient>> gradients = adjoint::stepper::seeded_sweep(*model, start, std::move(seeds));
+    if (!gradients) return std::nullopt;
+    rows.jacobian.resize(rows.values.size(), parameter_count());
+    for (Eigen::Index i = 0; i < rows.jacobian.rows(); ++i)
+        rows.jacobian.row(i) = pull_back(*moved, *model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+    return rows;
+}
+
+Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
+    Design design = design_;
+    design.scene.dhat = dhat;
+    return create(std::move(design));
+}
+
 // Sets the reason where it did not end well.
 void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const {
     core::stepper::SimulationOptions simulation;
@@ -132,6 +174,17 @@ void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& eva
         seeds.push_back(zero());
         design_.constraints[i].quantity->add_seeds(simulated, evaluation.constraints[i], 1, seeds.back());
     }
+    const size_t first_residual = seeds.size();
+    std::vector<double> residuals;
+    for (const description::ObjectiveTerm& term : design_.objective) {
+        const double root = std::sqrt(std::max(0.0, term.weight / term.unit));
+        const VectorX deviations = root > 0 ? term.quantity->deviations(simulated) : VectorX();
+        for (Eigen::Index i = 0; i < deviations.size(); ++i) {
+            residuals.push_back(root * deviations[i]);
+            seeds.push_back(zero());
+            term.quantity->add_deviation_seeds(simulated, static_cast<int>(i), root, seeds.back());
+        }
+    }
     const Result<std::vector<adjoint::ModelGradient>> gradients =
         adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
     if (!gradients) {
@@ -144,6 +197,12 @@ void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& eva
     evaluation.jacobian.resize(static_cast<Eigen::Index>(design_.constraints.size()), n);
     for (Eigen::Index i = 0; i < evaluation.jacobian.rows(); ++i) {
         evaluation.jacobian.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i) + 1], n).transpose();
+    }
+    evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+    evaluation.residual_jacobian.resize(static_cast<Eigen::Index>(gradients->size() - first_residual), n);
+    for (Eigen::Index i = 0; i < evaluation.residual_jacobian.rows(); ++i) {
+        evaluation.residual_jacobian.row(i) =
+            pull_back(moved, *evaluation.model, (*gradients)[first_residual + static_cast<size_t>(i)], n).transpose();
     }
 }
 

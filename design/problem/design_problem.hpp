@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/optimisers/projection.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
@@ -37,6 +39,8 @@ struct DesignEvaluation {
     double violation = 0;                               ///< largest of the constraints' violations (description/constraint.hpp)
     VectorX gradient;                                   ///< d objective / d parameters, SI; empty unless asked for
     MatrixX jacobian;                                   ///< d constraint values / d parameters, SI
+    VectorX residuals;                                  ///< the objective's deviations (optimisers/problem.hpp)
+    MatrixX residual_jacobian;                          ///< of the objective's squared deviations (optimisers/problem.hpp), a row each
     double forward_seconds = 0;                         ///< parts, model, simulation, values
     double backward_seconds = 0;                        ///< seeds, sweep, chain
 };
@@ -56,6 +60,14 @@ public:
 
     /// The model at parameter values p (SI).
     Result<core::model::Model> model_at(const VectorX& p) const;
+
+    /// Indices of the constraints that a simulation changes nothing of.
+    std::vector<int> rest_constraints() const;
+    /// Their values and Jacobian at p, without a simulation; nothing where the parts cannot be made or intersect.
+    std::optional<optimisers::Rows> rest_rows(const VectorX& p) const;
+
+    /// The same design with contact of another width dhat [m], and the stiffness that goes with it.
+    Result<DesignProblem> with_contact_width(double dhat) const;
 
     /// Deterministic. A trial that cannot be built or simulated is not usable, and says why; no number stands in for it.
     DesignEvaluation evaluate(const VectorX& p, const EvaluateOptions& options = {}) const;

@@ -5,6 +5,22 @@
 
 namespace fettle::design::problem {
 
+namespace {
+
+// Onto the constraints that a simulation changes nothing of.
+std::function<VectorX(const VectorX&)> prepared(const DesignProblem& design_problem, const optimisers::Problem& problem) {
+    const std::vector<int> rest = design_problem.rest_constraints();
+    optimisers::CheapConstraints cheap;
+    cheap.lower = problem.lower;
+    cheap.upper = problem.upper;
+    cheap.row_lower = problem.constraint_lower(rest);
+    cheap.row_upper = problem.constraint_upper(rest);
+    cheap.rows = [&design_problem](const VectorX& p) { return design_problem.rest_rows(p); };
+    return [cheap](const VectorX& start) { return optimisers::project(start, cheap); };
+}
+
+}  // namespace
+
 optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const EvaluateOptions& options) {
     const description::Design& design = design_problem.design();
     const auto n = static_cast<Eigen::Index>(design.parameters.size()), m = static_cast<Eigen::Index>(design.constraints.size());
@@ -27,6 +43,7 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
         problem.constraint_lower[i] = description::target_lower(design.constraints[static_cast<size_t>(i)].bounds);
         problem.constraint_upper[i] = description::target_upper(design.constraints[static_cast<size_t>(i)].bounds);
     }
+    if (!design_problem.rest_constraints().empty()) problem.prepared = prepared(design_problem, problem);
     problem.evaluate = [&design_problem, options](const VectorX& p) { return optimiser_evaluation(design_problem.evaluate(p, options)); };
     return problem;
 }
@@ -43,6 +60,8 @@ optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) 
     for (size_t i = 0; i < evaluation.constraints.size(); ++i)
         e.constraints[static_cast<Eigen::Index>(i)] = evaluation.constraints[i].value;
     e.jacobian = evaluation.jacobian;
+    e.residuals = evaluation.residuals;
+    e.residual_jacobian = evaluation.residual_jacobian;
     e.violation = evaluation.violation;
     if (std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
         std::isfinite(e.violation))

@@ -73,6 +73,30 @@ void MarkerPath::add_seeds(const Simulated& simulated, const Measurement&, doubl
     }
 }
 
+VectorX MarkerPath::deviations(const Simulated& simulated) const {
+    const std::vector<Place> found = places(simulated);
+    VectorX r(3 * static_cast<Eigen::Index>(found.size()));
+    for (size_t k = 0; k < found.size(); ++k)
+        r.segment<3>(3 * static_cast<Eigen::Index>(k)) =
+            (found[k].position - targets_[k]) / std::sqrt(static_cast<double>(targets_.size()));
+    return r;
+}
+
+// Where timing is free and the place is inside a piece of the path, the place moves along with the path, so that only the distance across
+// it changes.
+void MarkerPath::add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const {
+    const Place found = places(simulated)[static_cast<size_t>(i / 3)];
+    Vector3 direction = Vector3::Unit(i % 3) * scale / std::sqrt(static_cast<double>(targets_.size()));
+    if (times_.empty() && found.fraction > 0 && found.fraction < 1) {
+        const Vector3 along =
+            (marker_position(simulated, found.index + 1, body_, point_) - marker_position(simulated, found.index, body_, point_))
+                .normalized();
+        direction -= along * along.dot(direction);
+    }
+    add_marker_seed(simulated, found.index, body_, point_, (1 - found.fraction) * direction, seeds);
+    add_marker_seed(simulated, found.index + 1, body_, point_, found.fraction * direction, seeds);
+}
+
 Errors MarkerPath::check(const core::model::Model& model, int steps) const {
     Errors errors = description::check_body(model, body_);
     if (steps < 1) errors.push_back({ErrorCode::out_of_range, "", "a marker's path needs a step"});

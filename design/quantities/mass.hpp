@@ -25,6 +25,7 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    bool is_at_rest() const override { return true; }
     /// Bodies that have no mass of their kind: an open mesh has no volume.
     Errors check(const core::model::Model& model, int steps) const override;
 

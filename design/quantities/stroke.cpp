@@ -41,13 +41,20 @@ Measurement Stroke::value(const Simulated& simulated) const {
 }
 
 void Stroke::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
-    const double outer = target_ ? 2 * (stroke(simulated) - *target_) : 1;
+    add_deviation_seeds(simulated, 0, scale * (target_ ? 2 * (stroke(simulated) - *target_) : 1), seeds);
+}
+
+VectorX Stroke::deviations(const Simulated& simulated) const {
+    return target_ ? VectorX(VectorX::Constant(1, stroke(simulated) - *target_)) : VectorX();
+}
+
+void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, Seeds& seeds) const {
     for (const double sign : {1.0, -1.0}) {
         const Extreme extreme = smooth_maximum(coordinates(simulated, sign));
         for (size_t k = 0; k < 3; ++k) {
             if (extreme.weights[k] == 0) continue;
             seeds.trajectory_bar.pose_bar[static_cast<size_t>(extreme.first) + k][static_cast<size_t>(body_)].col(3) +=
-                scale * outer * extreme.weights[k] * sign * axis_;
+                scale * extreme.weights[k] * sign * axis_;
         }
     }
 }

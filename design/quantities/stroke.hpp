@@ -35,6 +35,8 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    VectorX deviations(const description::Simulated& simulated) const override;
+    void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 private:

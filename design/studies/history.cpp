@@ -30,6 +30,23 @@ VectorX to_vector(const Json& json) {
     return Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+Json rows_json(const MatrixX& matrix) {
+    Json rows = Json::array();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(to_json(matrix.row(i).transpose()));
+    return rows;
+}
+
+// Throws if a row has another length.
+MatrixX to_matrix(const Json& rows, Eigen::Index columns) {
+    MatrixX matrix(static_cast<Eigen::Index>(rows.size()), columns);
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        const VectorX row = to_vector(rows[static_cast<size_t>(i)]);
+        if (row.size() != columns) throw std::runtime_error("sizes do not match the header");
+        matrix.row(i) = row.transpose();
+    }
+    return matrix;
+}
+
 Json named(const std::vector<std::pair<std::string, double>>& values) {
     Json json = Json::object();
     for (const auto& [name, value] : values) json[name] = value;
@@ -57,6 +74,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     Json json;
     json["evaluation"] = number;
     json["usable"] = e.usable;
+    if (!entry.model.empty()) json["model"] = entry.model;
     if (!e.usable) json["reason"] = e.reason;
     Json parameters = Json::object();
     for (size_t k = 0; k < header.parameters.size(); ++k) parameters[header.parameters[k]] = entry.point[static_cast<Eigen::Index>(k)];
@@ -65,9 +83,11 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
         json["objective"] = e.objective;
         json["gradient"] = to_json(e.gradient);
         json["constraints"] = to_json(e.constraints);
-        Json rows = Json::array();
-        for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i) rows.push_back(to_json(e.jacobian.row(i).transpose()));
-        json["jacobian"] = rows;
+        json["jacobian"] = rows_json(e.jacobian);
+        if (e.residuals.size() > 0) {
+            json["residuals"] = to_json(e.residuals);
+            json["residual_jacobian"] = rows_json(e.residual_jacobian);
+        }
         json["violation"] = e.violation;
         json["terms"] = named(entry.terms);
         json["certified"] = named(entry.certified);
@@ -80,6 +100,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
 HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {
     const Json json = Json::parse(line);
     HistoryEntry entry;
+    entry.model = json.value("model", std::string());
     const auto n = static_cast<Eigen::Index>(header.parameters.size());
     entry.point.resize(n);
     for (Eigen::Index k = 0; k < n; ++k) entry.point[k] = json.at("parameters").at(header.parameters[static_cast<size_t>(k)]).get<double>();
@@ -94,9 +115,11 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     e.objective = json.at("objective").get<double>();
     e.gradient = to_vector(json.at("gradient"));
     e.constraints = to_vector(json.at("constraints"));
-    e.jacobian.resize(static_cast<Eigen::Index>(json.at("jacobian").size()), n);
-    for (Eigen::Index i = 0; i < e.jacobian.rows(); ++i)
-        e.jacobian.row(i) = to_vector(json.at("jacobian")[static_cast<size_t>(i)]).transpose();
+    e.jacobian = to_matrix(json.at("jacobian"), n);
+    if (json.contains("residuals")) {
+        e.residuals = to_vector(json.at("residuals"));
+        e.residual_jacobian = to_matrix(json.at("residual_jacobian"), n);
+    }
     e.violation = json.at("violation").get<double>();
     entry.terms = named_values(json.at("terms"));
     entry.certified = named_values(json.at("certified"));
@@ -234,13 +257,16 @@ History& History::operator=(History&& other) noexcept {
     return *this;
 }
 
-std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate) {
+std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate,
+                                                               const std::string& model) {
     std::map<std::string, optimisers::Evaluation> known;
-    for (const HistoryEntry& entry : history.replayed()) known[bits_of(entry.point)] = entry.evaluation;
-    return [&history, known = std::move(known), evaluate = std::move(evaluate)](const VectorX& point) {
+    for (const HistoryEntry& entry : history.replayed())
+        if (entry.model == model) known[bits_of(entry.point)] = entry.evaluation;
+    return [&history, model, known = std::move(known), evaluate = std::move(evaluate)](const VectorX& point) {
         const auto found = known.find(bits_of(point));
         if (found != known.end()) return found->second;
-        const HistoryEntry entry = evaluate(point);
+        HistoryEntry entry = evaluate(point);
+        entry.model = model;
         history.append(entry);
         return entry.evaluation;
     };

@@ -3,8 +3,10 @@
 /// as it happens. Doubles are written so that they read back bit for bit. A resumed run is the same run again, its evaluations answered
 /// from here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
 ///   header      fettle_history 1, design (hash of all that an evaluation depends on), program, parameters, constraints (names)
-///   evaluation  evaluation (1, 2, ...), usable, reason, parameters (by name, SI), objective, gradient, constraints, jacobian (rows),
-///               violation, terms (by name), certified (lower bounds by constraint), forward_seconds, backward_seconds
+///   evaluation  evaluation (1, 2, ...), model (a smoother one's name; not there: the file's own), usable, reason, parameters (by name,
+///   SI),
+///               objective, gradient, constraints, jacobian (rows), residuals and residual_jacobian (rows; where the objective has squared
+///               deviations), violation, terms (by name), certified (lower bounds by constraint), forward_seconds, backward_seconds
 #pragma once
 
 #include <functional>
@@ -23,6 +25,7 @@ struct HistoryHeader {
 };
 
 struct HistoryEntry {
+    std::string model;  ///< a smoother model's name; empty: the design's own
     VectorX point;
     optimisers::Evaluation evaluation;
     std::vector<std::pair<std::string, double>> terms;      ///< of the objective, for people
@@ -66,8 +69,9 @@ private:
     std::string kept_as_;
 };
 
-/// Wraps problem.evaluate: a point that the history has (by the bits of its coordinates) is answered from it, others are computed by
-/// `evaluate` and appended. The history must outlive the function.
-std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate);
+/// Wraps an evaluation: a point that the history has of this model (by the bits of its coordinates) is answered from it, others are
+/// computed by `evaluate` and appended. The history must outlive the function.
+std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate,
+                                                               const std::string& model = {});
 
 }  // namespace fettle::design::studies

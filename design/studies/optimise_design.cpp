@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "fettle/design/problem/optimiser_problem.hpp"
+#include "fettle/design/problem/smoother_models.hpp"
 
 namespace fettle::design::studies {
 
@@ -78,10 +79,21 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
         ++computed;
         return history_entry(design, p, problem.evaluate(p, evaluate));
     };
-    if (options.history != nullptr) {
-        seen.evaluate = recorded(*options.history, compute);
-    } else {
-        seen.evaluate = [&](const VectorX& p) { return compute(p).evaluation; };
+    const auto answered = [&](const auto& compute_entry,
+                              const std::string& model) -> std::function<optimisers::Evaluation(const VectorX&)> {
+        if (options.history != nullptr) return recorded(*options.history, compute_entry, model);
+        return [compute_entry](const VectorX& p) { return compute_entry(p).evaluation; };
+    };
+    seen.evaluate = answered(compute, {});
+    const VectorX first = seen.prepared ? seen.prepared(seen.start) : seen.start;
+    const std::vector<problem::SmootherDesign> smoother = problem::smoother_models(problem, first);
+    for (const problem::SmootherDesign& model : smoother) {
+        const auto compute_smoother = [&](const VectorX& p) {
+            ++computed;
+            return history_entry(design, p, model.problem.evaluate(p, evaluate));
+        };
+        seen.smoother.push_back({model.name, answered(compute_smoother, model.name)});
+        if (options.narrate) options.narrate("to begin with: " + model.name);
     }
     optimisers::OptimiserOptions settings;
     settings.max_evaluations = design.optimiser.max_evaluations;

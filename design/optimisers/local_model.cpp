@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/optimisers/local_model.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace fettle::design::optimisers {
+
+namespace {
+
+MatrixX positive_part(const MatrixX& symmetric) {
+    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(symmetric);
+    const VectorX values = eigen.eigenvalues().cwiseMax(0);
+    return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+double lagrangian(const Evaluation& e, const VectorX& y) { return e.objective - y.dot(e.constraints); }
+VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) { return e.gradient - e.jacobian.transpose() * y; }
+
+// The nearest evaluations to a point, it excepted.
+std::vector<int> nearest(const Evaluator& evaluator, const VectorX& point) {
+    constexpr size_t most = 5;
+    constexpr double within = 0.3;
+    std::vector<std::pair<double, int>> order;
+    for (int k = 0; k < evaluator.evaluations(); ++k) {
+        const double distance = (evaluator.scaled_point(k) - point).norm();
+        if (distance > 0 && distance < within && evaluator.scaled_evaluation(k).usable) order.emplace_back(distance, k);
+    }
+    std::sort(order.begin(), order.end());
+    order.resize(std::min(order.size(), most));
+    std::vector<int> indices;
+    indices.reserve(order.size());
+    for (const auto& each : order) indices.push_back(each.second);
+    return indices;
+}
+
+// Replaces the rows of `own` whose linear prediction of the values at the other points is worse than that of `reference`.
+// @param changes  others x rows: values there less the value here.  @param steps  others x n.
+void choose_rows(const MatrixX& changes, const MatrixX& steps, const MatrixX& reference, MatrixX& own) {
+    for (Eigen::Index i = 0; i < own.rows(); ++i) {
+        const VectorX by_own = changes.col(i) - steps * own.row(i).transpose();
+        const VectorX by_reference = changes.col(i) - steps * reference.row(i).transpose();
+        if (by_reference.norm() <= by_own.norm()) own.row(i) = reference.row(i);
+    }
+}
+
+}  // namespace
+
+Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& point, const Evaluation& e) {
+    const std::optional<Evaluation> reference = evaluator.scaled_reference();
+    if (!reference || !reference->usable || reference->residuals.size() != e.residuals.size()) return e;
+    const std::vector<int> others = nearest(evaluator, point);
+    const auto count = static_cast<Eigen::Index>(others.size());
+    MatrixX steps(count, point.size()), constraints(count, e.constraints.size()), residuals(count, e.residuals.size());
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const int other = others[static_cast<size_t>(k)];
+        const VectorX step = evaluator.scaled_point(other) - point;
+        const double length = step.norm();  // near ones count as much as far ones
+        steps.row(k) = step.transpose() / length;
+        constraints.row(k) = (evaluator.scaled_evaluation(other).constraints - e.constraints).transpose() / length;
+        residuals.row(k) = (evaluator.scaled_evaluation(other).residuals - e.residuals).transpose() / length;
+    }
+    Evaluation telling = e;
+    choose_rows(constraints, steps, reference->jacobian, telling.jacobian);
+    if (e.residuals.size() == 0) return telling;
+    choose_rows(residuals, steps, reference->residual_jacobian, telling.residual_jacobian);
+    telling.gradient += 2 * (telling.residual_jacobian - e.residual_jacobian).transpose() * e.residuals;
+    return telling;
+}
+
+MatrixX residual_curvature(const Evaluation& e) {
+    const auto n = e.gradient.size();
+    if (e.residual_jacobian.rows() == 0) return MatrixX::Zero(n, n);
+    return 2 * e.residual_jacobian.transpose() * e.residual_jacobian;
+}
+
+void RestCurvature::learn(const VectorX& from_point, const Evaluation& from, const VectorX& to_point, const Evaluation& to,
+                          const VectorX& y) {
+    const VectorX s = to_point - from_point;
+    const MatrixX known = residual_curvature(to);
+    const VectorX rest = lagrangian_gradient(to, y) - lagrangian_gradient(from, y) - known * s - matrix_ * s;
+    const double denominator = rest.dot(s);
+    if (!(std::abs(denominator) > 1e-8 * rest.norm() * s.norm()) || rest.norm() == 0) return;
+    const MatrixX updated = matrix_ + rest * rest.transpose() / denominator;
+    // Does it tell the value that was seen at the other end?
+    const double seen = lagrangian(from, y) - lagrangian(to, y) + lagrangian_gradient(to, y).dot(s);
+    const double with = 0.5 * s.dot((known + updated) * s), without = 0.5 * s.dot((known + matrix_) * s);
+    if (std::abs(seen - with) < std::abs(seen - without)) matrix_ = updated;
+}
+
+QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
+                            double penalty) {
+    QuadraticProgram program;
+    program.gradient = e.gradient;
+    program.hessian = residual_curvature(e);
+    if (rest != nullptr) program.hessian = positive_part(program.hessian + *rest);
+    program.rows = e.jacobian;
+    program.lower = evaluator.scaled_constraint_lower() - e.constraints;
+    program.upper = evaluator.scaled_constraint_upper() - e.constraints;
+    program.box_lower = (-point).cwiseMax(-radius);
+    program.box_upper = (VectorX::Ones(point.size()) - point).cwiseMin(radius);
+    program.penalty = penalty;
+    return solve(program);
+}
+
+double target_violation(const Evaluator& evaluator, const Evaluation& e) {
+    return row_violation(e.constraints, evaluator.scaled_constraint_lower(), evaluator.scaled_constraint_upper());
+}
+
+double merit(const Evaluator& evaluator, const Evaluation& e, double penalty) {
+    return e.objective + penalty * target_violation(evaluator, e);
+}
+
+}  // namespace fettle::design::optimisers

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+/// What is known of a problem round one evaluated point, and what it promises.
+#pragma once
+
+#include <optional>
+
+#include "fettle/design/optimisers/evaluator.hpp"
+#include "fettle/design/optimisers/quadratic_program.hpp"
+
+namespace fettle::design::optimisers {
+
+/// Curvature of the Lagrangian f - y.c beside the residuals' own (Gauss-Newton): a symmetric rank-one estimate (Nocedal and Wright,
+/// section 6.2) from the gradients at pairs of points, taken up only where it explains their values better than without it.
+class RestCurvature {
+public:
+    explicit RestCurvature(int n) : matrix_(MatrixX::Zero(n, n)) {}
+    const MatrixX& matrix() const { return matrix_; }
+    /// @param y  Multipliers of the constraints, scaled.
+    void learn(const VectorX& from_point, const Evaluation& from, const VectorX& to_point, const Evaluation& to, const VectorX& y);
+
+private:
+    MatrixX matrix_;
+};
+
+/// 2 sum_i dr_i dr_i^T of the squared deviations that the objective has; zero if it has none.
+MatrixX residual_curvature(const Evaluation& e);
+
+/// The best step from a scaled point within |d_k| <= radius and the bounds, by what the evaluation there says.
+/// @param rest  Curvature beside the residuals'; null: none.
+QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
+                            double penalty);
+
+/// The evaluation at a scaled point with, row by row (residuals, constraints), those derivatives that tell the values at the other points
+/// near it better: its own, or those of the smoother model (EvaluatorOptions::reference). A rough function's own derivatives hold over
+/// microns. With no other point to compare, the smoother model's.
+Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& point, const Evaluation& e);
+
+/// f + penalty * violation of the targets, scaled: what a step has to bring down.
+double merit(const Evaluator& evaluator, const Evaluation& e, double penalty);
+
+/// The sum by which the targets are missed, scaled.
+double target_violation(const Evaluator& evaluator, const Evaluation& e);
+
+}  // namespace fettle::design::optimisers

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// A convex quadratic programme whose rows may be violated at a price, so that it always has a solution:
+///   minimise g.d + 1/2 d.H d + penalty sum_i v_i   subject to   box_lower <= d <= box_upper,
+///   v_i = max(0, lower_i - (A d)_i, (A d)_i - upper_i)
+/// Solved by Ipopt (Waechter and Biegler 2006), to 1e-9 of the numbers in it; n and m are tens.
+#pragma once
+
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::design::optimisers {
+
+struct QuadraticProgram {
+    VectorX gradient;              ///< g, n
+    MatrixX hessian;               ///< H, n x n, positive semi-definite
+    MatrixX rows;                  ///< A, m x n
+    VectorX lower, upper;          ///< m; infinite where there is none
+    VectorX box_lower, box_upper;  ///< n; finite, box_lower <= 0 <= box_upper
+    double penalty = 1;            ///< > 0
+};
+
+struct QuadraticSolution {
+    bool solved = false;      ///< false: Ipopt failed, a number is not finite, or the box is a point; then nothing else means anything
+    VectorX step;             ///< d
+    VectorX multipliers;      ///< y, m: g + H d = A^T y + z; y_i > 0 where the lower side holds, < 0 where the upper does, |y_i| <= penalty
+    VectorX box_multipliers;  ///< z, n: what the box has to hold, > 0 at its lower side, < 0 at its upper
+    double violation = 0;     ///< sum_i v_i at d
+    double decrease = 0;      ///< of the function to be minimised, from d = 0; at least 0
+};
+
+/// Deterministic. One solve in a process at a time: Debian's MUMPS is not safe for threads, so a mutex stands round Ipopt.
+QuadraticSolution solve(const QuadraticProgram& program);
+
+/// sum_i v_i of rows with these values.
+double row_violation(const VectorX& values, const VectorX& lower, const VectorX& upper);
+
+}  // namespace fettle::design::optimisers

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/smoother_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fettle/core/clearance/clearance.hpp"
+
+namespace fettle::design::problem {
+
+namespace {
+
+constexpr double worth_a_stage = 1.25;  // a width that is less than this times the design's own is none of its own
+
+std::vector<core::clearance::PairRequest> pairs_that_may_meet(const core::model::Model& model) {
+    std::vector<core::clearance::PairRequest> pairs;
+    for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a) {
+        for (int b = a + 1; b < static_cast<int>(model.bodies.size()); ++b) {
+            if (core::model::may_collide(model, a, b)) pairs.push_back({a, b, 0});
+        }
+    }
+    return pairs;
+}
+
+}  // namespace
+
+double play_of_fits(const DesignProblem& problem, const VectorX& p) {
+    const Result<core::model::Model> model = problem.model_at(p);
+    if (!model) return 0;
+    core::stepper::SimulationOptions nothing;
+    nothing.steps = 0;
+    const core::stepper::Trajectory start = core::stepper::simulate(*model, nothing).trajectory;
+    core::clearance::ClearanceOptions options;
+    options.measure_overlap = false;
+    std::vector<double> plays;
+    for (const auto& pair : core::clearance::certify_clearance(*model, start, pairs_that_may_meet(*model), options)) {
+        if (pair.lower > 0 && pair.upper < fit_reach * model->dhat) plays.push_back(pair.upper);
+    }
+    if (plays.empty()) return 0;
+    const auto middle = plays.begin() + static_cast<long>((plays.size() - 1) / 2);
+    std::nth_element(plays.begin(), middle, plays.end());
+    return *middle;
+}
+
+std::vector<SmootherDesign> smoother_models(const DesignProblem& problem, const VectorX& p) {
+    std::vector<SmootherDesign> models;
+    const Result<core::model::Model> model = problem.model_at(p);
+    if (!model) return models;
+    const double unit = problem.design().scene.length_unit;
+    for (double width = widest_share * play_of_fits(problem, p); width > worth_a_stage * model->dhat; width *= 0.5) {
+        Result<DesignProblem> wide = problem.with_contact_width(width);
+        if (!wide) continue;
+        char name[80];
+        std::snprintf(name, sizeof name, "contact %.3g wide (in the file's unit), not %.3g", width / unit, model->dhat / unit);
+        models.push_back({name, width, std::move(wide).value()});
+    }
+    return models;
+}
+
+}  // namespace fettle::design::problem
