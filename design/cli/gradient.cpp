@@ -117,6 +117,7 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
                         {"difference", row.difference * factor},
                         {"relative_error", row.relative_error},
                         {"difference_error", finite_or_null(row.difference_error)},
+                        {"kink", row.kink * factor},
                         {"resolved", row.resolved}});
     }
     json["check"] = rows;
@@ -164,6 +165,11 @@ std::string check_text(const Design& design, const CheckReport& report) {
     for (const CheckRow& row : report.rows) {
         text += formatted("%-40s %-20s %14.7g %14.7g %10.2e %10.2e%s\n", row.quantity.c_str(), row.parameter.c_str(), row.adjoint,
                           row.difference, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
+    }
+    for (const CheckRow& row : report.rows) {
+        if (row.kink != 0)
+            text += formatted("%s has a kink in %s: slope %.7g below, %.7g above\n", row.quantity.c_str(), row.parameter.c_str(),
+                              row.difference - row.kink / 2, row.difference + row.kink / 2);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
     return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
@@ -223,7 +229,8 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
         const CheckReport report = run_check(*problem, values, evaluation, options.check_limit, console);
         add_check(design, report, json);
         text += check_text(design, report);
-        const bool resolved = std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved; });
+        const bool resolved =
+            std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });
         const bool good =
             report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() && !report.interrupted;
         if (!good) code = exit_undecided;

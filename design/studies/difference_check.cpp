@@ -20,6 +20,7 @@ using core::base::infinity;
 // What the roughness of the quantities says about differences; steps and derivatives in parameters scaled by their ranges.
 struct DifferenceSteps {
     double first = 0;   ///< step that differences begin with
+    VectorX values;     ///< per quantity: where the gradients are checked
     VectorX noise;      ///< per quantity: its rounding
     VectorX size;       ///< per quantity: its largest value
     VectorX tolerance;  ///< per quantity: what need not be told apart
@@ -32,7 +33,7 @@ struct DifferenceSteps {
 // would be best for a quantity whose third derivative is its own size (the next size is that): a wrong adjoint, whose prediction holds
 // nowhere, must not lead to steps at which noise hides that.
 DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX& values, const CheckOptions& options) {
-    DifferenceSteps steps{options.usual_step, std::numeric_limits<double>::epsilon() * values.cwiseAbs(), values.cwiseAbs(),
+    DifferenceSteps steps{options.usual_step, values, std::numeric_limits<double>::epsilon() * values.cwiseAbs(), values.cwiseAbs(),
                           VectorX::Zero(values.size())};
     double least = 0;
     for (Eigen::Index q = 0; q < values.size() && roughness.measured; ++q) {
@@ -49,6 +50,7 @@ DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX
 
 struct ParameterDifferences {
     std::vector<DifferenceEstimate> estimates;  ///< per quantity, per unit of the parameter's range
+    VectorX kinks;                              ///< per quantity: slope above minus slope below, where they differ however small the step
     std::string failure;
     bool interrupted = false;
 };
@@ -72,6 +74,7 @@ public:
             result_.estimates = estimates(step);
             if (result_.interrupted || good_enough(step)) break;
         }
+        result_.kinks = kinks(step);
         return std::move(result_);
     }
 
@@ -96,9 +99,11 @@ private:
             result_.interrupted = up.interrupted || down.interrupted;
             result_.failure = up.usable ? down.reason : up.reason;
             differences_.clear();
+            bends_.clear();
             return;
         }
         result_.failure.clear();
+        bends_.push_back((quantities_of(up) - 2 * steps_.values + quantities_of(down)) / step);
         differences_.push_back((quantities_of(up) - quantities_of(down)) * (range_ / (above[parameter_] - below[parameter_])));
     }
 
@@ -113,6 +118,21 @@ private:
             result.push_back(ridders_estimate(column, options_.ratio, steps_.noise_error(q, first)));
         }
         return result;
+    }
+
+    // The slope above minus that below shrinks with the step where the quantity is smooth. Where it stays, it is a kink, if it is more than
+    // noise, and counts beside the slope.
+    // @param step  No more than the newest difference's.
+    VectorX kinks(double step) const {
+        VectorX found = VectorX::Zero(steps_.values.size());
+        if (bends_.size() < 2) return found;
+        const VectorX &last = bends_.back(), &before = bends_[bends_.size() - 2];
+        for (Eigen::Index q = 0; q < found.size(); ++q) {
+            const double slope = std::max({std::abs(differences_.back()[q]), options_.size_fraction * steps_.size[q], steps_.tolerance[q]});
+            const bool stays = std::abs(last[q]) > 0.6 * std::abs(before[q]) && last[q] * before[q] > 0;
+            if (stays && std::abs(last[q]) > std::max(1e-3 * slope, 4 * steps_.noise_error(q, step))) found[q] = last[q];
+        }
+        return found;
     }
 
     // Each estimate is a hundred times better than asked for, or noise at the next size would outweigh the error that it has.
@@ -136,7 +156,7 @@ private:
     const DifferenceSteps& steps_;
     const CheckOptions& options_;
     const std::function<void()>& on_simulation_;
-    std::vector<VectorX> differences_;
+    std::vector<VectorX> differences_, bends_;
     ParameterDifferences result_;
 };
 
@@ -169,6 +189,7 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
             row.parameter = problem.design().parameters[static_cast<size_t>(k)].name;
             row.adjoint = adjoint(q, k);
             row.difference = estimate.value / ranges[k];
+            row.kink = differences.kinks[q] / ranges[k];
             report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
             report.rows.push_back(std::move(row));
         }

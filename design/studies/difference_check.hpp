@@ -48,6 +48,9 @@ struct CheckRow {
     double adjoint = 0, difference = 0;  ///< SI
     double difference_error = 0;         ///< that the difference estimates of itself, relative like relative_error
     double relative_error = 0;
+    /// Slope above minus slope below [SI], where they differ however small the step: there is no derivative, and the adjoint is that of one
+    /// side (witnesses of a clearance that tie ...). 0: nothing of the kind was met.
+    double kink = 0;
     bool resolved = true;  ///< false: noise leaves more open than `limit`, so that nothing is shown
 };
 

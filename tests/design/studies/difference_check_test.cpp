@@ -131,3 +131,16 @@ TEST_CASE("check: steps keep within the length over which a kinked quantity's gr
     CHECK(report.first_step <= 1.2 * kink);
     CHECK(report.largest_relative_error < 1e-7);
 }
+
+TEST_CASE("check: a kink is named, with the slopes of both sides") {
+    const DesignProblem problem =
+        density_problem(2, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + std::max(2 * u[0], -u[0]) + std::exp(u[1]); },
+                                                          [](const VectorX& u) { return VectorX(Vector2(2, std::exp(u[1]))); })});
+    const VectorX p = values_of(problem.design().parameters);
+    const CheckReport report = check_gradients(problem, p, problem.evaluate(p));
+    REQUIRE(report.rows.size() == 2);
+    CHECK(report.rows[0].kink == Approx(3e-3));
+    CHECK(report.rows[0].difference == Approx(0.5e-3));
+    CHECK(report.rows[1].kink == 0);
+    CHECK(report.rows[1].relative_error < 1e-6);
+}
