@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// fettle gradient DESIGN: objective, constraints and their gradients; --check audits them against differences of whole simulations.
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/design_line.hpp"
 #include "fettle/design/studies/difference_check.hpp"
 
 namespace fettle::design::cli {
@@ -19,6 +23,8 @@ using problem::DesignEvaluation;
 using problem::DesignProblem;
 using studies::CheckReport;
 using studies::CheckRow;
+using studies::QuantityRoughness;
+using studies::RoughnessReport;
 
 struct GradientArguments {
     std::string path;
@@ -70,6 +76,37 @@ double factor_of(const Design& design, const std::string& parameter) {
     return 1;
 }
 
+Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json direction_json(const Design& design, const VectorX& direction) {
+    Json json = Json::object();
+    for (size_t k = 0; k < design.parameters.size(); ++k) json[design.parameters[k].name] = direction[static_cast<Eigen::Index>(k)];
+    return json;
+}
+
+Json roughness_json(const Design& design, const RoughnessReport& report) {
+    Json json;
+    json["measured"] = report.measured;
+    if (!report.failures.empty()) json["failures"] = report.failures;
+    if (!report.measured) return json;
+    json["direction"] = direction_json(design, report.direction);
+    json["spacing"] = report.spacing;
+    Json list = Json::array();
+    for (const QuantityRoughness& quantity : report.quantities) {
+        list.push_back({{"quantity", quantity.name},
+                        {"noise", quantity.noise.noise},
+                        {"noise_status", to_string(quantity.noise.status)},
+                        {"rounding", quantity.rounding},
+                        {"holds", quantity.holds},
+                        {"breaks", finite_or_null(quantity.breaks)},
+                        {"tolerance", quantity.tolerance},
+                        {"rough", quantity.rough}});
+    }
+    json["quantities"] = list;
+    json["remedies"] = studies::roughness_remedies(design, report);
+    return json;
+}
+
 void add_check(const Design& design, const CheckReport& report, Json& json) {
     Json rows = Json::array();
     for (const CheckRow& row : report.rows) {
@@ -79,22 +116,64 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
                         {"adjoint", row.adjoint * factor},
                         {"difference", row.difference * factor},
                         {"relative_error", row.relative_error},
-                        {"difference_error", row.difference_error}});
+                        {"difference_error", finite_or_null(row.difference_error)},
+                        {"kink", row.kink * factor},
+                        {"resolved", row.resolved}});
     }
     json["check"] = rows;
     json["largest_relative_error"] = report.largest_relative_error;
     json["check_simulations"] = report.simulations;
+    json["first_step"] = report.first_step;
     json["not_checked"] = report.failures;
+    json["roughness"] = roughness_json(design, report.roughness);
 }
 
-std::string check_text(const CheckReport& report) {
+// The parameter that moves most along the line, and by how much.
+std::string length_text(const Design& design, const RoughnessReport& report, double share) {
+    Eigen::Index k = 0;
+    report.direction.cwiseAbs().maxCoeff(&k);
+    const Parameter& parameter = design.parameters[static_cast<size_t>(k)];
+    const double moved = share * studies::parameter_ranges(design)[k] / to_si(1, parameter.unit);
+    return formatted("%.3g %s", moved, std::string(parameter.unit.name).c_str());
+}
+
+std::string roughness_text(const Design& design, const RoughnessReport& report) {
+    if (!report.measured) return "roughness: not measured" + (report.failures.empty() ? "" : ", " + report.failures.front()) + "\n";
+    Eigen::Index most = 0;
+    report.direction.cwiseAbs().maxCoeff(&most);
+    std::string text = formatted("along the objective's gradient, as %s moves (most):\n%-40s %12s %12s %14s %14s\n",
+                                 design.parameters[static_cast<size_t>(most)].name.c_str(), "quantity", "noise", "tolerance",
+                                 "gradient holds", "not over");
+    std::string rough;
+    for (size_t q = 0; q < report.quantities.size(); ++q) {
+        const QuantityRoughness& quantity = report.quantities[q];
+        const bool bound = quantity.noise.status == optimisers::NoiseStatus::spacing_too_large;
+        const double unit = q == 0 ? 1 : design.constraints[q - 1].bounds.unit;
+        text += formatted("%-40s %1s%11.3g %12.3g %14s %14s\n", quantity.name.c_str(), bound ? "<" : "", quantity.noise.noise / unit,
+                          quantity.tolerance / unit, length_text(design, report, quantity.holds).c_str(),
+                          std::isfinite(quantity.breaks) ? length_text(design, report, quantity.breaks).c_str() : "-");
+        if (quantity.rough) rough += (rough.empty() ? "" : ", ") + quantity.name;
+    }
+    if (rough.empty()) return text;
+    text += "rougher than the tolerance: " + rough + ". What would help:\n";
+    for (const std::string& remedy : studies::roughness_remedies(design, report)) text += "  - " + remedy + "\n";
+    return text;
+}
+
+std::string check_text(const Design& design, const CheckReport& report) {
     std::string text = formatted("%-40s %-20s %14s %14s %10s %10s\n", "quantity", "parameter", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
-        text += formatted("%-40s %-20s %14.7g %14.7g %10.2e %10.2e\n", row.quantity.c_str(), row.parameter.c_str(), row.adjoint,
-                          row.difference, row.relative_error, row.difference_error);
+        text += formatted("%-40s %-20s %14.7g %14.7g %10.2e %10.2e%s\n", row.quantity.c_str(), row.parameter.c_str(), row.adjoint,
+                          row.difference, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
+    }
+    for (const CheckRow& row : report.rows) {
+        if (row.kink != 0)
+            text += formatted("%s has a kink in %s: slope %.7g below, %.7g above\n", row.quantity.c_str(), row.parameter.c_str(),
+                              row.difference - row.kink / 2, row.difference + row.kink / 2);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
-    return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations);
+    return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
+           roughness_text(design, report.roughness);
 }
 
 std::string values_text(const Design& design, const DesignEvaluation& e) {
@@ -112,6 +191,19 @@ std::string values_text(const Design& design, const DesignEvaluation& e) {
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
     }
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
+}
+
+CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, double limit, Console& console) {
+    studies::CheckOptions check;
+    check.limit = limit;
+    const int cost = studies::check_cost(problem.parameter_count(), check), threads = core::base::thread_count();
+    console.narrate(formatted("the check takes up to %d simulations of about %.2g s each, on %d thread%s", cost, at.forward_seconds,
+                              threads, threads == 1 ? "" : "s"));
+    check.on_simulation = [&](int done, int of) { console.progress("differences", done, of); };
+    check.should_stop = interrupted;
+    CheckReport report = studies::check_gradients(problem, values, at, check);
+    console.end_progress();
+    return report;
 }
 
 int run_gradient(const GradientArguments& options, const CommonOptions& common, Console& console) {
@@ -134,13 +226,13 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     std::string text = values_text(design, evaluation);
     int code = exit_done;
     if (options.check) {
-        studies::CheckOptions check;
-        check.on_parameter = [&](int done, int of) { console.progress("differences", done, of); };
-        check.should_stop = interrupted;
-        const CheckReport report = studies::check_gradients(*problem, values, evaluation, check);
+        const CheckReport report = run_check(*problem, values, evaluation, options.check_limit, console);
         add_check(design, report, json);
-        text += check_text(report);
-        const bool good = report.largest_relative_error <= options.check_limit && report.failures.empty() && !report.interrupted;
+        text += check_text(design, report);
+        const bool resolved =
+            std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });
+        const bool good =
+            report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() && !report.interrupted;
         if (!good) code = exit_undecided;
         if (!good) json["status"] = report.interrupted ? "interrupted" : "check_failed";
     }

@@ -9,41 +9,72 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/design/studies/design_line.hpp"
 
 namespace fettle::design::studies {
 
 namespace {
 
-// Objective, then constraints.
-VectorX quantities(const problem::DesignEvaluation& e) {
-    VectorX q(static_cast<Eigen::Index>(e.constraints.size()) + 1);
-    q[0] = e.objective;
-    for (size_t i = 0; i < e.constraints.size(); ++i) q[static_cast<Eigen::Index>(i) + 1] = e.constraints[i].value;
-    return q;
+using core::base::infinity;
+
+// What the roughness of the quantities says about differences; steps and derivatives in parameters scaled by their ranges.
+struct DifferenceSteps {
+    double first = 0;   ///< step that differences begin with
+    VectorX values;     ///< per quantity: where the gradients are checked
+    VectorX noise;      ///< per quantity: its rounding
+    VectorX size;       ///< per quantity: its largest value
+    VectorX tolerance;  ///< per quantity: what need not be told apart
+
+    // Of (q(s) - q(-s)) / 2s: standard deviation noise / (sqrt(2) s), three of it.
+    double noise_error(Eigen::Index q, double step) const { return 3 / std::sqrt(2.0) * noise[q] / step; }
+};
+
+// Differences begin where the gradients of all quantities hold, or at the usual step if they do so farther. But never below the step that
+// would be best for a quantity whose third derivative is its own size (the next size is that): a wrong adjoint, whose prediction holds
+// nowhere, must not lead to steps at which noise hides that.
+DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX& values, const CheckOptions& options) {
+    DifferenceSteps steps{options.usual_step, values, std::numeric_limits<double>::epsilon() * values.cwiseAbs(), values.cwiseAbs(),
+                          VectorX::Zero(values.size())};
+    double least = 0;
+    for (Eigen::Index q = 0; q < values.size() && roughness.measured; ++q) {
+        const QuantityRoughness& quantity = roughness.quantities[static_cast<size_t>(q)];
+        steps.noise[q] = quantity.rounding;
+        steps.size[q] = quantity.size;
+        steps.tolerance[q] = quantity.tolerance;
+        steps.first = std::min(steps.first, quantity.holds);
+        if (quantity.size > 0) least = std::max(least, optimisers::best_central_step(quantity.rounding, quantity.size));
+    }
+    steps.first = std::max(steps.first, std::min(least * options.ratio, options.largest_step));
+    return steps;
 }
 
 struct ParameterDifferences {
-    std::vector<DifferenceEstimate> estimates;  ///< per quantity
-    int simulations = 0;
+    std::vector<DifferenceEstimate> estimates;  ///< per quantity, per unit of the parameter's range
+    VectorX kinks;                              ///< per quantity: slope above minus slope below, where they differ however small the step
     std::string failure;
     bool interrupted = false;
 };
 
 class ParameterCheck {
 public:
-    ParameterCheck(const problem::DesignProblem& problem, const VectorX& p, int parameter, const CheckOptions& options)
-        : problem_(problem), p_(p), parameter_(parameter), options_(options) {}
+    ParameterCheck(const problem::DesignProblem& problem, const VectorX& p, int parameter, const DifferenceSteps& steps,
+                   const CheckOptions& options, const std::function<void()>& on_simulation)
+        : problem_(problem),
+          p_(p),
+          parameter_(parameter),
+          range_(parameter_ranges(problem.design())[parameter]),
+          steps_(steps),
+          options_(options),
+          on_simulation_(on_simulation) {}
 
     ParameterDifferences run() {
-        const description::Parameter& parameter = problem_.design().parameters[static_cast<size_t>(parameter_)];
-        const double range =
-            parameter.upper > parameter.lower ? parameter.upper - parameter.lower : std::max(std::abs(parameter.value), 1e-6);
-        double step = options_.first_step * range;
+        double step = steps_.first;
         for (int size = 0; size < options_.sizes; ++size, step /= options_.ratio) {
             add_difference(step);
-            if (result_.interrupted || getting_worse()) break;
+            result_.estimates = estimates(step);
+            if (result_.interrupted || good_enough(step)) break;
         }
-        result_.estimates = estimates();
+        result_.kinks = kinks(step);
         return std::move(result_);
     }
 
@@ -52,125 +83,173 @@ private:
     // size: extrapolation needs one ratio throughout.
     void add_difference(double step) {
         VectorX above = p_, below = p_;
-        above[parameter_] += step;
-        below[parameter_] -= step;
+        above[parameter_] += step * range_;
+        below[parameter_] -= step * range_;
         problem::EvaluateOptions options;
         options.gradients = false;
         options.should_stop = options_.should_stop;
         const problem::DesignEvaluation up = problem_.evaluate(above, options);
-        const problem::DesignEvaluation down = up.usable ? problem_.evaluate(below, options) : problem::DesignEvaluation{};
-        result_.simulations += 2;
+        on_simulation_();
+        problem::DesignEvaluation down;
+        if (up.usable) {
+            down = problem_.evaluate(below, options);
+            on_simulation_();
+        }
         if (!up.usable || !down.usable) {
             result_.interrupted = up.interrupted || down.interrupted;
             result_.failure = up.usable ? down.reason : up.reason;
             differences_.clear();
+            bends_.clear();
             return;
         }
         result_.failure.clear();
-        differences_.push_back((quantities(up) - quantities(down)) / (above[parameter_] - below[parameter_]));
+        bends_.push_back((quantities_of(up) - 2 * steps_.values + quantities_of(down)) / step);
+        differences_.push_back((quantities_of(up) - quantities_of(down)) * (range_ / (above[parameter_] - below[parameter_])));
     }
 
-    std::vector<DifferenceEstimate> estimates() const {
+    // @param step  Of the newest difference.
+    std::vector<DifferenceEstimate> estimates(double step) const {
         std::vector<DifferenceEstimate> result;
         if (differences_.empty()) return result;
+        const double first = step * std::pow(options_.ratio, static_cast<double>(differences_.size()) - 1);
         for (Eigen::Index q = 0; q < differences_.front().size(); ++q) {
             std::vector<double> column;
             for (const VectorX& d : differences_) column.push_back(d[q]);
-            result.push_back(ridders_estimate(column, options_.ratio));
+            result.push_back(ridders_estimate(column, options_.ratio, steps_.noise_error(q, first)));
         }
         return result;
     }
 
-    // All quantities' newest differences disagree more than those before: rounding has taken over.
-    bool getting_worse() const {
-        const size_t n = differences_.size();
-        if (n < 4) return false;
-        const VectorX now = (differences_[n - 1] - differences_[n - 2]).cwiseAbs(),
-                      before = (differences_[n - 2] - differences_[n - 3]).cwiseAbs();
-        return (now.array() >= 2 * before.array()).all();
+    // The slope above minus that below shrinks with the step where the quantity is smooth. Where it stays, it is a kink, if it is more than
+    // noise, and counts beside the slope.
+    // @param step  No more than the newest difference's.
+    VectorX kinks(double step) const {
+        VectorX found = VectorX::Zero(steps_.values.size());
+        if (bends_.size() < 2) return found;
+        const VectorX &last = bends_.back(), &before = bends_[bends_.size() - 2];
+        for (Eigen::Index q = 0; q < found.size(); ++q) {
+            const double slope = std::max({std::abs(differences_.back()[q]), options_.size_fraction * steps_.size[q], steps_.tolerance[q]});
+            const bool stays = std::abs(last[q]) > 0.6 * std::abs(before[q]) && last[q] * before[q] > 0;
+            if (stays && std::abs(last[q]) > std::max(1e-3 * slope, 4 * steps_.noise_error(q, step))) found[q] = last[q];
+        }
+        return found;
+    }
+
+    // Each estimate is a hundred times better than asked for, or noise at the next size would outweigh the error that it has.
+    bool good_enough(double step) const {
+        if (differences_.size() < 3) return false;
+        for (size_t k = 0; k < result_.estimates.size(); ++k) {
+            const DifferenceEstimate& estimate = result_.estimates[k];
+            const Eigen::Index q = static_cast<Eigen::Index>(k);
+            const double scale = std::max({std::abs(estimate.value), options_.size_fraction * steps_.size[q], steps_.tolerance[q]});
+            const bool accurate = estimate.error <= 1e-2 * options_.limit * scale;
+            const bool noisy = steps_.noise_error(q, step / options_.ratio) >= estimate.error;
+            if (!accurate && !noisy) return false;
+        }
+        return true;
     }
 
     const problem::DesignProblem& problem_;
     const VectorX& p_;
     int parameter_;
+    double range_;
+    const DifferenceSteps& steps_;
     const CheckOptions& options_;
-    std::vector<VectorX> differences_;
+    const std::function<void()>& on_simulation_;
+    std::vector<VectorX> differences_, bends_;
     ParameterDifferences result_;
 };
 
-// Per quantity: scale_fraction * norm of the gradient in parameters scaled by their ranges.
-VectorX comparison_scales(const MatrixX& adjoint, const VectorX& ranges, double fraction) {
-    VectorX scales(adjoint.rows());
-    for (Eigen::Index q = 0; q < adjoint.rows(); ++q) scales[q] = fraction * adjoint.row(q).transpose().cwiseProduct(ranges).norm();
-    return scales;
+// a, d: adjoint and difference; floor: what is less is compared at that. All per unit of the parameter's range. What noise leaves open in
+// the difference counts as no error beyond the limit, and as not resolved.
+CheckRow compared(double a, const DifferenceEstimate& d, double floor, double limit) {
+    const double own = std::max({std::abs(a), std::abs(d.value), floor});
+    const double scale = std::max(own, d.noise_error / limit);
+    CheckRow row;
+    if (!(scale > 0)) return row;
+    row.difference_error = d.error / scale;
+    row.relative_error = std::abs(a - d.value) / scale;
+    row.resolved = d.noise_error <= limit * own;
+    return row;
+}
+
+void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, const std::vector<ParameterDifferences>& found,
+             const DifferenceSteps& steps, const CheckOptions& options, CheckReport& report) {
+    const std::vector<std::string> names = quantity_names(problem.design());
+    const VectorX ranges = parameter_ranges(problem.design());
+    for (Eigen::Index q = 0; q < adjoint.rows(); ++q) {
+        const double norm = adjoint.row(q).transpose().cwiseProduct(ranges).norm();
+        const double floor = std::max({options.scale_fraction * norm, options.size_fraction * steps.size[q], steps.tolerance[q]});
+        for (Eigen::Index k = 0; k < adjoint.cols(); ++k) {
+            const ParameterDifferences& differences = found[static_cast<size_t>(k)];
+            if (differences.estimates.empty()) continue;
+            const DifferenceEstimate& estimate = differences.estimates[static_cast<size_t>(q)];
+            CheckRow row = compared(adjoint(q, k) * ranges[k], estimate, floor, options.limit);
+            row.quantity = names[static_cast<size_t>(q)];
+            row.parameter = problem.design().parameters[static_cast<size_t>(k)].name;
+            row.adjoint = adjoint(q, k);
+            row.difference = estimate.value / ranges[k];
+            row.kink = differences.kinks[q] / ranges[k];
+            report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
+            report.rows.push_back(std::move(row));
+        }
+    }
 }
 
 }  // namespace
 
-DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio) {
+DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio, double noise_error) {
     FETTLE_ASSERT(!differences.empty() && ratio > 1, "differences of shrinking step size");
-    DifferenceEstimate best{differences.front(), infinity};
+    DifferenceEstimate best{differences.front(), infinity, noise_error};
     std::vector<double> previous, row;
     for (const double difference : differences) {
         row.assign(1, difference);
         double factor = ratio * ratio;
         for (size_t j = 1; j <= previous.size(); ++j, factor *= ratio * ratio) {
             row.push_back(row[j - 1] + (row[j - 1] - previous[j - 1]) / (factor - 1));
-            const double error = std::max(std::abs(row[j] - row[j - 1]), std::abs(row[j] - previous[j - 1]));
-            if (error < best.error) best = {row[j], error};
+            const double error = std::max({std::abs(row[j] - row[j - 1]), std::abs(row[j] - previous[j - 1]), noise_error});
+            if (error < best.error) best = {row[j], error, noise_error};
         }
         previous = row;
+        noise_error *= ratio;
     }
     return best;
+}
+
+int check_cost(int parameters, const CheckOptions& options) {
+    return options.roughness.intervals * (options.roughness.fine_spacing > 0 ? 2 : 1) + options.roughness.distances +
+           2 * options.sizes * parameters;
 }
 
 CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX& p, const problem::DesignEvaluation& at,
                             const CheckOptions& options) {
     FETTLE_ASSERT(at.usable && at.gradient.size() == p.size(), "the gradients to check");
-    const description::Design& design = problem.design();
     const int n = problem.parameter_count();
-    std::vector<ParameterDifferences> found(static_cast<size_t>(n));
-    std::mutex progress;
-    int done = 0;
-    core::base::parallel_for(n, 1, [&](int k) {
-        found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, options).run();
-        const std::lock_guard<std::mutex> lock(progress);
-        if (options.on_parameter) options.on_parameter(++done, n);
-    });
-
     CheckReport report;
-    MatrixX adjoint(at.jacobian.rows() + 1, n);
-    adjoint << at.gradient.transpose(), at.jacobian;
-    VectorX ranges(n);
-    for (int k = 0; k < n; ++k) {
-        const description::Parameter& parameter = design.parameters[static_cast<size_t>(k)];
-        ranges[k] = parameter.upper > parameter.lower ? parameter.upper - parameter.lower : std::max(std::abs(parameter.value), 1e-6);
-    }
-    const VectorX scales = comparison_scales(adjoint, ranges, options.scale_fraction);
-    for (Eigen::Index q = 0; q < adjoint.rows(); ++q) {
-        for (int k = 0; k < n; ++k) {
-            const ParameterDifferences& differences = found[static_cast<size_t>(k)];
-            if (differences.estimates.empty()) continue;
-            const DifferenceEstimate& estimate = differences.estimates[static_cast<size_t>(q)];
-            const double a = adjoint(q, k) * ranges[k], d = estimate.value * ranges[k];
-            const double scale = std::max({std::abs(a), std::abs(d), scales[q]});
-            CheckRow row;
-            row.quantity = q == 0 ? "objective" : design.constraints[static_cast<size_t>(q) - 1].name;
-            row.parameter = design.parameters[static_cast<size_t>(k)].name;
-            row.adjoint = adjoint(q, k);
-            row.difference = estimate.value;
-            row.difference_error = scale > 0 ? estimate.error * ranges[k] / scale : 0;
-            row.relative_error = scale > 0 ? std::abs(a - d) / scale : 0;
-            report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
-            report.rows.push_back(std::move(row));
-        }
-    }
+    std::mutex progress;
+    const std::function<void()> count = [&] {
+        const std::lock_guard<std::mutex> lock(progress);
+        ++report.simulations;
+        if (options.on_simulation) options.on_simulation(report.simulations, std::max(check_cost(n, options), report.simulations));
+    };
+    RoughnessOptions roughness = options.roughness;
+    roughness.should_stop = options.should_stop;
+    roughness.on_simulation = [&](int, int) { count(); };
+    report.roughness = measure_roughness(problem, p, at, roughness);
+    report.interrupted = report.roughness.interrupted;
+    if (report.interrupted) return report;
+
+    const DifferenceSteps steps = difference_steps(report.roughness, quantities_of(at), options);
+    report.first_step = steps.first;
+    std::vector<ParameterDifferences> found(static_cast<size_t>(n));
+    core::base::parallel_for(n, 1,
+                             [&](int k) { found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, count).run(); });
+    compare(problem, quantity_gradients(at), found, steps, options, report);
     for (int k = 0; k < n; ++k) {
         const ParameterDifferences& differences = found[static_cast<size_t>(k)];
-        report.simulations += differences.simulations;
         report.interrupted = report.interrupted || differences.interrupted;
         if (differences.estimates.empty())
-            report.failures.push_back(design.parameters[static_cast<size_t>(k)].name + ": " + differences.failure);
+            report.failures.push_back(problem.design().parameters[static_cast<size_t>(k)].name + ": " + differences.failure);
     }
     return report;
 }

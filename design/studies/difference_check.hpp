@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Audit of a design's gradients: central differences of whole simulations. The step size is chosen from the differences alone, never by
-/// comparing them with the adjoint.
+/// Audit of a design's gradients: central differences of whole simulations. How the differences are weighed goes by themselves and by the
+/// noise of the quantities, never by comparing them with the adjoint.
 #pragma once
 
 #include <functional>
@@ -9,28 +9,38 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/roughness.hpp"
 
 namespace fettle::design::studies {
 
 /// The best derivative estimate from central differences D(s) of shrinking step size, by Richardson extrapolation
 ///   T(i, 0) = D(s_i),  T(i, j) = T(i, j-1) + (T(i, j-1) - T(i-1, j-1)) / (r^(2j) - 1)    with r = s_i-1 / s_i
-/// Of all T(i, j) the one with the smallest estimated error, max(|T(i, j) - T(i, j-1)|, |T(i, j) - T(i-1, j-1)|), is taken.
+/// Of all T(i, j) the one with the smallest estimated error is taken: max(|T(i, j) - T(i, j-1)|, |T(i, j) - T(i-1, j-1)|), and no less
+/// than what noise makes of D(s_i).
 /// Source: Ridders 1982, Advances in Engineering Software 4(2).
 struct DifferenceEstimate {
     double value = 0;
-    double error = 0;  ///< estimated; infinity for a single difference
+    double error = 0;        ///< estimated; infinity for a single difference
+    double noise_error = 0;  ///< of which noise makes up this
 };
-DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio);
+/// @param noise_error  Error that noise gives the first difference; it grows with r, as steps shrink.
+DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio, double noise_error = 0);
 
 struct CheckOptions {
-    double first_step = 1e-3;  ///< of the parameter's range upper - lower
-    double ratio = 4;          ///< of successive step sizes
-    int sizes = 5;             ///< largest number of step sizes; fewer when estimates get worse
-    /// Components below this fraction of the norm of their quantity's gradient, in parameters scaled by their ranges, are compared at that
-    /// scale: relative error = |a - d| / max(|a|, |d|, fraction * norm).
-    double scale_fraction = 1e-3;
-    std::function<void(int done, int of)> on_parameter;  ///< optional
-    std::function<bool()> should_stop;                   ///< optional
+    /// Steps of a central difference, in shares of the parameter's range: the first where gradients hold farther, and the largest, where
+    /// noise asks for more.
+    double usual_step = 1e-3, largest_step = 1e-2;
+    double ratio = 4;     ///< of successive step sizes
+    int sizes = 5;        ///< largest number of step sizes; fewer where noise, or the accuracy that `limit` needs, is reached before
+    double limit = 1e-5;  ///< relative error that is asked for
+    /// relative error = |a - d| / max(|a|, |d|, scale_fraction |gradient of the quantity|, size_fraction |quantity|, its tolerance, e /
+    /// limit) per unit of the parameter's range, e the error that noise makes in d: a component that is nothing beside the others, or
+    /// changes nothing that counts over the whole range of its parameter, is compared at their scale.
+    double scale_fraction = 1e-3, size_fraction = 1e-4;
+    /// Spacing of noise and rounding, distances; its callbacks are not used.
+    RoughnessOptions roughness = {.fine_spacing = 1e-6, .distances = 6};
+    std::function<void(int done, int of)> on_simulation;  ///< optional; `of` is the most that it can take
+    std::function<bool()> should_stop;                    ///< optional
 };
 
 struct CheckRow {
@@ -38,16 +48,27 @@ struct CheckRow {
     double adjoint = 0, difference = 0;  ///< SI
     double difference_error = 0;         ///< that the difference estimates of itself, relative like relative_error
     double relative_error = 0;
+    /// Slope above minus slope below [SI], where they differ however small the step: there is no derivative, and the adjoint is that of one
+    /// side (witnesses of a clearance that tie ...). 0: nothing of the kind was met.
+    double kink = 0;
+    bool resolved = true;  ///< false: noise leaves more open than `limit`, so that nothing is shown
 };
 
 struct CheckReport {
     std::vector<CheckRow> rows;  ///< per quantity and parameter
     double largest_relative_error = 0;
+    RoughnessReport roughness;  ///< along downhill_direction, unless told otherwise
+    double first_step = 0;      ///< step, in shares of the parameters' ranges, that differences begin with
     int simulations = 0;
     std::vector<std::string> failures;  ///< parameters whose neighbours could not be simulated: not checked
     bool interrupted = false;
 };
 
+/// The most simulations that the check of `parameters` parameters takes, unless trials fail.
+int check_cost(int parameters, const CheckOptions& options = {});
+
+/// First the roughness. Differences begin at the length over which the gradients of all quantities hold, and end where noise outweighs what
+/// a smaller step gains.
 /// @param at  Evaluated at p with gradients.
 CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX& p, const problem::DesignEvaluation& at,
                             const CheckOptions& options = {});

@@ -110,6 +110,16 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(g.at("constraints").at(0).contains("gradient"));
     CHECK(g.at("largest_relative_error").get<double>() < 1e-5);
     CHECK(g.at("check").size() == 30);
+    for (const Json& row : g.at("check")) CHECK(row.at("resolved") == true);
+    const Json& roughness = g.at("roughness");
+    CHECK(roughness.at("measured") == true);
+    CHECK(roughness.at("spacing") == 1e-3);
+    CHECK(roughness.at("direction").size() == 5);
+    REQUIRE(roughness.at("quantities").size() == 6);
+    for (const char* key : {"quantity", "noise", "noise_status", "rounding", "holds", "breaks", "tolerance", "rough"})
+        CHECK(roughness.at("quantities").at(0).contains(key));
+    CHECK(roughness.at("remedies").is_array());
+    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 68 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));
 

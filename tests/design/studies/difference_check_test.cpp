@@ -2,8 +2,10 @@
 #include "fettle/design/studies/difference_check.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "fettle/tests/design/small_problem.hpp"
+#include "fettle/tests/design/studies/density_design.hpp"
 
 namespace {
 
@@ -60,4 +62,85 @@ TEST_CASE("a wrong gradient is noticed by the check", "[slow]") {
     CheckOptions quick;
     quick.sizes = 3;
     CHECK(check_gradients(problem, p, at, quick).largest_relative_error > 5e-4);
+}
+
+TEST_CASE("ridders: with noise, the estimate that noise spoils least") {
+    // 2 + s^2 + s^4, and noise of 1e-6: the smallest step has the worst difference, and says so.
+    std::vector<double> differences;
+    double step = 0.1, sign = 1;
+    for (int i = 0; i < 6; ++i, step /= 4, sign = -sign)
+        differences.push_back(2 + step * step + step * step * step * step + sign * 1e-6 / step);
+    const DifferenceEstimate estimate = ridders_estimate(differences, 4, 1e-6 / 0.1);
+    CHECK(std::abs(estimate.value - 2) < 1e-3);
+    CHECK(std::abs(estimate.value - 2) < 3 * estimate.error);
+    CHECK(estimate.noise_error >= 1e-5);
+    CHECK(estimate.error >= estimate.noise_error);
+}
+
+TEST_CASE("check: nothing against rounding is no error, and noise that hides a gradient is told") {
+    const auto none = [](const VectorX& u) { return VectorX(VectorX::Zero(u.size())); };
+    const auto first = [](const VectorX& u) { return VectorX(VectorX::Unit(u.size(), 0)); };
+    const DesignProblem problem =
+        density_problem(2, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + u[0]; }, first),
+                            // a clearance that nothing moves, but for its last bits
+                            std::make_shared<OfDensities>([](const VectorX& u) { return 1e-4 + 1e-19 * scatter(u[0] + 3 * u[1]); }, none),
+                            // nothing at all but rounding
+                            std::make_shared<OfDensities>([](const VectorX& u) { return 1e-17 * scatter(u[0] - u[1]); }, none),
+                            // its gradient is hidden at every step that is tried
+                            std::make_shared<OfDensities>([](const VectorX& u) { return u[0] + 1e-3 * scatter(u[0] + u[1]); }, first)});
+    const VectorX p = values_of(problem.design().parameters);
+    const DesignEvaluation at = problem.evaluate(p);
+    REQUIRE(at.usable);
+    const CheckReport report = check_gradients(problem, p, at);
+    REQUIRE(report.rows.size() == 8);
+    for (const CheckRow& row : report.rows) {
+        INFO(row.quantity << " " << row.parameter << ": " << row.adjoint << " against " << row.difference << " +- "
+                          << row.difference_error);
+        CHECK(row.relative_error <= 1e-5);
+        CHECK(row.resolved == (row.quantity != "constraint 3"));
+    }
+    CHECK(report.simulations <= check_cost(2));
+    CHECK(report.roughness.quantities[3].rough);
+    CHECK_FALSE(report.roughness.quantities[2].rough);
+}
+
+TEST_CASE("check: a gradient that is wrong is found out, however small the steps it leads to") {
+    for (const double factor : {1.001, -1.0, 0.0, 1e6}) {
+        const DesignProblem problem = density_problem(
+            1, {std::make_shared<OfDensities>([](const VectorX& u) { return std::exp(u[0]) + 1e-13 * scatter(u[0]); },
+                                              [=](const VectorX& u) { return VectorX(VectorX::Constant(1, factor * std::exp(u[0]))); })});
+        const VectorX p = values_of(problem.design().parameters);
+        const CheckReport report = check_gradients(problem, p, problem.evaluate(p));
+        INFO("factor " << factor << ", steps from " << report.first_step);
+        REQUIRE(report.rows.size() == 1);
+        CHECK(report.rows[0].resolved);
+        CHECK(report.rows[0].relative_error > 5e-4);
+        CHECK(report.rows[0].difference == Approx(1e-3).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("check: steps keep within the length over which a kinked quantity's gradient holds") {
+    const double kink = 2e-4;
+    const DesignProblem problem =
+        density_problem(1, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 - u[0]; },
+                                                          [](const VectorX&) { return VectorX(-VectorX::Ones(1)); }),
+                            std::make_shared<OfDensities>([=](const VectorX& u) { return std::exp(u[0]) + std::max(0.0, u[0] - kink); },
+                                                          [](const VectorX& u) { return VectorX(VectorX::Constant(1, std::exp(u[0]))); })});
+    const VectorX p = values_of(problem.design().parameters);
+    const CheckReport report = check_gradients(problem, p, problem.evaluate(p));
+    CHECK(report.first_step <= 1.2 * kink);
+    CHECK(report.largest_relative_error < 1e-7);
+}
+
+TEST_CASE("check: a kink is named, with the slopes of both sides") {
+    const DesignProblem problem =
+        density_problem(2, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + std::max(2 * u[0], -u[0]) + std::exp(u[1]); },
+                                                          [](const VectorX& u) { return VectorX(Vector2(2, std::exp(u[1]))); })});
+    const VectorX p = values_of(problem.design().parameters);
+    const CheckReport report = check_gradients(problem, p, problem.evaluate(p));
+    REQUIRE(report.rows.size() == 2);
+    CHECK(report.rows[0].kink == Approx(3e-3));
+    CHECK(report.rows[0].difference == Approx(0.5e-3));
+    CHECK(report.rows[1].kink == 0);
+    CHECK(report.rows[1].relative_error < 1e-6);
 }
