@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/design/problem/check_design.hpp"
 
@@ -63,9 +65,40 @@ Result<Model> DesignProblem::model_at(const VectorX& p) const {
     return build(moved->scene);
 }
 
+optimisers::Relations DesignProblem::relations(const VectorX& p) const {
+    const auto k = static_cast<Eigen::Index>(design_.relations.size());
+    optimisers::Relations all{VectorX(k), MatrixX(k, parameter_count())};
+    for (Eigen::Index i = 0; i < k; ++i) {
+        const description::RelationValue at = design_.relations[static_cast<size_t>(i)].at(p);
+        FETTLE_ASSERT(at.gradient.size() == p.size(), "a relation's gradient has one entry per parameter");
+        all.values[i] = at.value;
+        all.jacobian.row(i) = at.gradient.transpose();
+    }
+    return all;
+}
+
+// Of the first relation that is not defined there; empty: all are.
+std::string DesignProblem::undefined(const optimisers::Relations& relations) const {
+    for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
+        if (std::isfinite(relations.values[i]) && relations.jacobian.row(i).allFinite()) continue;
+        return "relation `" + design_.relations[static_cast<size_t>(i)].name + "` or its derivative is not a finite number here";
+    }
+    return {};
+}
+
+std::string DesignProblem::refusal(const VectorX& p) const {
+    std::string reason = undefined(relations(p));
+    if (!reason.empty()) return reason;
+    const Result<Model> model = model_at(p);
+    return model ? std::string() : first_reason(model.errors());
+}
+
 DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions& options) const {
     const Stopwatch forward;
     DesignEvaluation evaluation;
+    evaluation.relations = relations(p);
+    evaluation.reason = undefined(evaluation.relations);
+    if (!evaluation.reason.empty()) return evaluation;
     const Result<MovedScene> moved = move_scene(design_, p);
     if (!moved) {
         evaluation.reason = first_reason(moved.errors());
@@ -116,6 +149,10 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     for (const auto& constraint : design_.constraints) {
         evaluation.constraints.push_back(constraint.quantity->value(simulated));
         evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
+    }
+    for (size_t i = 0; i < design_.relations.size(); ++i) {
+        const double value = evaluation.relations.values[static_cast<Eigen::Index>(i)];
+        evaluation.violation = std::max(evaluation.violation, description::violation(design_.relations[i], value));
     }
 }
 
