@@ -65,6 +65,13 @@ Result<Model> DesignProblem::model_at(const VectorX& p) const {
     return build(moved->scene);
 }
 
+// A trial stands in no file: what is wrong with it is told by bodies and dimensions alone.
+Result<MovedScene> DesignProblem::trial_scene(const VectorX& p) const {
+    Result<MovedScene> moved = move_scene(design_, p);
+    if (moved) moved->scene.path.clear();
+    return moved;
+}
+
 optimisers::Relations DesignProblem::relations(const VectorX& p) const {
     const auto k = static_cast<Eigen::Index>(design_.relations.size());
     optimisers::Relations all{VectorX(k), MatrixX(k, parameter_count())};
@@ -77,29 +84,40 @@ optimisers::Relations DesignProblem::relations(const VectorX& p) const {
     return all;
 }
 
-// Of the first relation that is not defined there; empty: all are.
-std::string DesignProblem::undefined(const optimisers::Relations& relations) const {
+// The relations that are not defined there.
+Errors DesignProblem::undefined(const optimisers::Relations& relations) const {
+    Errors errors;
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
         if (std::isfinite(relations.values[i]) && relations.jacobian.row(i).allFinite()) continue;
-        return "relation `" + design_.relations[static_cast<size_t>(i)].name + "` or its derivative is not a finite number here";
+        errors.push_back({ErrorCode::not_finite, "relation `" + design_.relations[static_cast<size_t>(i)].name + "`",
+                          "its value or its derivative is not a finite number here"});
     }
-    return {};
+    return errors;
+}
+
+Errors DesignProblem::obstacles(const VectorX& p) const {
+    Errors errors = undefined(relations(p));
+    if (!errors.empty()) return errors;
+    const Result<MovedScene> moved = trial_scene(p);
+    if (!moved) return moved.errors();
+    const Result<Model> model = build(moved->scene);
+    return model ? Errors() : model.errors();
 }
 
 std::string DesignProblem::refusal(const VectorX& p) const {
-    std::string reason = undefined(relations(p));
-    if (!reason.empty()) return reason;
-    const Result<Model> model = model_at(p);
-    return model ? std::string() : first_reason(model.errors());
+    const Errors errors = obstacles(p);
+    return errors.empty() ? std::string() : first_reason(errors);
 }
 
 DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions& options) const {
     const Stopwatch forward;
     DesignEvaluation evaluation;
     evaluation.relations = relations(p);
-    evaluation.reason = undefined(evaluation.relations);
-    if (!evaluation.reason.empty()) return evaluation;
-    const Result<MovedScene> moved = move_scene(design_, p);
+    if (const Errors errors = undefined(evaluation.relations); !errors.empty()) {
+        evaluation.reason = first_reason(errors);
+        return evaluation;
+    }
+    const Result<MovedScene> moved = trial_scene(p);
     if (!moved) {
         evaluation.reason = first_reason(moved.errors());
         return evaluation;

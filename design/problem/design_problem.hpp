@@ -60,8 +60,10 @@ public:
     /// The design's relations at p: k values and their k x n Jacobian, exact; nothing is built.
     optimisers::Relations relations(const VectorX& p) const;
 
-    /// Why the design at p cannot be simulated at all: a relation that is not defined there, a part that cannot be made, parts that
-    /// intersect as assembled; empty: nothing of the kind. Builds the model, simulates nothing. `evaluate` gives the same reason.
+    /// Why the design at p cannot be simulated at all: a relation that is not defined there, a part that cannot be made (`where` names body
+    /// and dimension), parts that intersect as assembled; empty: nothing of the kind. Builds the model, simulates nothing.
+    Errors obstacles(const VectorX& p) const;
+    /// The same as one text, which is also the reason that `evaluate` gives.
     std::string refusal(const VectorX& p) const;
 
     /// Deterministic. A trial that cannot be built or simulated is not usable, and says why; no number stands in for it.
@@ -70,7 +72,8 @@ public:
 private:
     DesignProblem() = default;
     Result<core::model::Model> build(const core::scene::Scene& scene) const;
-    std::string undefined(const optimisers::Relations& relations) const;
+    Result<MovedScene> trial_scene(const VectorX& p) const;
+    Errors undefined(const optimisers::Relations& relations) const;
     void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
     void measure(DesignEvaluation& evaluation) const;
     void differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const;

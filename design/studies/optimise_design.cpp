@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/optimise_design.hpp"
 
-#include <cmath>
 #include <cstdio>
 
+#include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/optimiser_problem.hpp"
+#include "fettle/design/studies/limits.hpp"
 
 namespace fettle::design::studies {
 
 namespace {
 
-using description::Bounds;
 using description::Design;
-using description::Parameter;
 using problem::DesignEvaluation;
 
 std::string evaluation_line(int number, const optimisers::Evaluation& e, bool best) {
@@ -23,30 +22,6 @@ std::string evaluation_line(int number, const optimisers::Evaluation& e, bool be
     }
     std::snprintf(line, sizeof line, "%4d  objective %-13.8g violation %-11.4g%s", number, e.objective, e.violation, best ? " best" : "");
     return line;
-}
-
-std::vector<std::string> limits_of(const Design& design, const VectorX& point, const DesignEvaluation& final) {
-    std::vector<std::string> limits;
-    char text[300];
-    for (size_t i = 0; i < design.constraints.size() && i < final.constraints.size(); ++i) {
-        const description::Measurement& measured = final.constraints[i];
-        const Bounds& bounds = design.constraints[i].bounds;
-        if (description::violation(bounds, measured) <= 0) continue;
-        const double unit = bounds.unit;
-        std::snprintf(text, sizeof text, "%s is proven within [%.6g, %.6g], required is [%.6g, %.6g]", design.constraints[i].name.c_str(),
-                      measured.lower / unit, measured.upper / unit, bounds.lower / unit, bounds.upper / unit);
-        limits.push_back(text + (measured.fault.empty() ? "" : ": " + measured.fault));
-    }
-    for (size_t k = 0; k < design.parameters.size(); ++k) {
-        const Parameter& p = design.parameters[k];
-        const double value = point[static_cast<Eigen::Index>(k)], near = 1e-3 * (p.upper - p.lower);
-        const bool at_lower = value <= p.lower + near, at_upper = value >= p.upper - near;
-        if (!at_lower && !at_upper) continue;
-        std::snprintf(text, sizeof text, "parameter %s is at its %s bound %.6g %s", p.name.c_str(), at_lower ? "lower" : "upper",
-                      description::from_si(at_lower ? p.lower : p.upper, p.unit), std::string(p.unit.name).c_str());
-        limits.emplace_back(text);
-    }
-    return limits;
 }
 
 }  // namespace
@@ -87,11 +62,27 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     settings.max_evaluations = design.optimiser.max_evaluations;
     settings.tolerance = design.optimiser.tolerance;
     settings.should_stop = options.should_stop;
-    settings.on_evaluation = [&](int number, const VectorX&, const optimisers::Evaluation& e, bool best) {
+    std::vector<FailedTrial> failures;
+    settings.on_evaluation = [&](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
+        if (!e.usable) failures.push_back({p, e.reason});
         if (options.narrate) options.narrate(evaluation_line(number, e, best));
     };
 
+    int refused = 0;
+    seen.refusal = [&, ask = seen.refusal](const VectorX& p) {
+        std::string reason = ask(p);
+        if (!reason.empty()) {
+            ++refused;
+            failures.push_back({p, reason});
+        }
+        return reason;
+    };
+
     OptimiseOutcome outcome;
+    outcome.unbuildable = problem::described(design, problem::try_bounds(problem));
+    for (const std::string& line : outcome.unbuildable) {
+        if (options.narrate) options.narrate("bounds: " + line);
+    }
     outcome.report = optimisers::optimise(seen, **optimiser, settings);
     outcome.replayed = outcome.report.evaluations - computed;
     if (!outcome.report.best.usable) return outcome;
@@ -101,7 +92,9 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     for (const description::Measurement& measured : outcome.final.constraints) {
         if (measured.clearance) outcome.clearance.push_back(*measured.clearance);
     }
-    if (!outcome.report.feasible) outcome.limits = limits_of(design, outcome.report.point, outcome.final);
+    if (outcome.report.feasible) return outcome;
+    outcome.limits = limits_of(problem, outcome.report.point, outcome.final, outcome.report.best.jacobian, failures,
+                               outcome.report.evaluations + refused);
     return outcome;
 }
 
