@@ -191,7 +191,7 @@ std::string shown(const HierarchyElement& element) {
 
 class Messages {
 public:
-    explicit Messages(const Model& model) : model_(model) {
+    explicit Messages(const Model& model) {
         for (const char* name : {"um", "mm", "cm", "in", "ft"}) {
             if (base::metres_per_unit(name).value() == model.length_unit) unit_ = name;
         }
@@ -206,7 +206,6 @@ public:
     std::string length(double metres) const { return base::format_length(metres, unit_); }
 
 private:
-    const Model& model_;
     std::string unit_ = "m";
 };
 
@@ -233,17 +232,16 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
 /// Might one lie inside the other, where "inside" is not defined? Only of meshes that are meant to be closed: a sheet has no inside.
 std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBody& b) {
     if (gap_squared(a.box, b.box) > 0) return std::nullopt;
-    for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-        const geometry::Mesh& mesh = outer->body->mesh;
+    for (const bool swapped : {false, true}) {
+        const PlacedBody &inner = swapped ? b : a, &outer = swapped ? a : b;
+        const geometry::Mesh& mesh = outer.body->mesh;
         if (mesh.triangles.empty()) continue;
-        const auto within = [&](int v) {
-            return ((inner->vertices.col(v) - outer->box.center).cwiseAbs() - outer->box.half).maxCoeff() <= 0;
-        };
-        const std::vector<int> tried = samples(inner->body->mesh);
+        const auto within = [&](int v) { return ((inner.vertices.col(v) - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() <= 0; };
+        const std::vector<int> tried = samples(inner.body->mesh);
         if (std::none_of(tried.begin(), tried.end(), within)) continue;
         if (geometry::bounds_a_solid(mesh) || !geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) continue;
-        return "whether `" + inner->body->name + "` lies inside `" + outer->body->name +
-               "` at the start cannot be verified: the mesh of `" + outer->body->name + "` is not closed";
+        return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +
+               outer.body->name + "` is not closed";
     }
     return std::nullopt;
 }

@@ -63,12 +63,13 @@ void write_checkpoint(files::JsonWriter& out, const stepper::Checkpoint& checkpo
     out.number(checkpoint.step);
     out.key("kappa");
     out.number(checkpoint.state.kappa);
-    for (const auto& [name, list] : {std::pair{"velocities", &history.velocities},
-                                     {"poses_before", &history.poses_before},
-                                     {"velocities_before", &history.velocities_before},
-                                     {"accelerations", &history.accelerations}}) {
-        out.key(name);
-        out.list(12 * list->size(), ",", [&](std::size_t i) { out.number((*list)[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)]); });
+    for (const auto& entry : {std::pair{"velocities", &history.velocities},
+                              {"poses_before", &history.poses_before},
+                              {"velocities_before", &history.velocities_before},
+                              {"accelerations", &history.accelerations}}) {
+        out.key(entry.first);
+        const auto& list = *entry.second;
+        out.list(12 * list.size(), ",", [&](std::size_t i) { out.number(list[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)]); });
     }
     out.key("scene");
     out.list(scene.size(), ",", [&](std::size_t i) {

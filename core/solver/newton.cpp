@@ -220,7 +220,8 @@ private:
         const double remaining = direction.drive * direction.remaining_norm;
         if (remaining > 0) drive_.outweigh(direction.slope, remaining, least_penalty(remaining));
         const double slope = direction.slope - drive_.penalty() * remaining;
-        for (double fraction = limiting_.fraction; fraction > smallest_step; fraction *= 0.5) {
+        double fraction = 2 * limiting_.fraction;
+        while ((fraction *= 0.5) > smallest_step) {
             std::vector<ChartPoint> trial = moved_by(direction, fraction);
             std::vector<Pose> poses = poses_of(problem_, trial);
             const double value = potential(trial, poses);

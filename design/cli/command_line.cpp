@@ -86,7 +86,7 @@ Option& Option::between(double low, double high) {
 Option& Option::one_of(std::vector<std::string> words) {
     option_->check([words = std::move(words)](const std::string& text) -> std::string {
         if (std::find(words.begin(), words.end(), text) != words.end()) return {};
-        return "\"" + text + "\" is not one of " + joined(words);
+        return "\"" + text + "\" is not one of " + core::base::joined(words);
     });
     return *this;
 }

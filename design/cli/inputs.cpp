@@ -80,10 +80,7 @@ Result<LoadedModel> load_design(const std::string& path, const CommonOptions& co
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
     loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
-    // A design's own models take its meshes as sound: what is odd about them is asked for here.
-    std::vector<std::string> warnings = core::model::check_scene(loaded.problem->design().scene, true).warnings;
-    warnings.insert(warnings.end(), loaded.model.warnings.begin(), loaded.model.warnings.end());
-    loaded.model.warnings = std::move(warnings);
+    loaded.model.warnings = loaded.problem->warnings();  // a design's own models take its meshes as sound
     return loaded;
 }
 

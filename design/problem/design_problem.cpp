@@ -42,6 +42,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     DesignProblem problem;
     for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
     problem.kappa_ = model->kappa;
+    problem.warnings_ = model->warnings;
     // Their defaults are functions of the scene's size, which parameters change.
     design.scene.dhat = model->dhat;
     design.scene.velocity_tolerance = model->velocity_tolerance;

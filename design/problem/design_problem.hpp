@@ -53,6 +53,8 @@ public:
     int parameter_count() const { return static_cast<int>(design_.parameters.size()); }
     /// That all designs are simulated with [N/m].
     double kappa() const { return kappa_; }
+    /// What is odd about the scene as written: its meshes, its start.
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
     /// The model at parameter values p (SI).
     Result<core::model::Model> model_at(const VectorX& p) const;
@@ -81,6 +83,7 @@ private:
     description::Design design_;
     std::vector<Vector3> reference_points_;
     double kappa_ = 0;
+    std::vector<std::string> warnings_;
 };
 
 }  // namespace fettle::design::problem
