@@ -89,7 +89,7 @@ void Evaluator::fix_scaling() {
 VectorX Evaluator::unscaled(const VectorX& scaled_point) const {
     // The start is answered exactly: lower + (start - lower) / range * range can differ from it in the last bit.
     if (scaled_point == scaled_start_) return problem_.start;
-    const VectorX point = (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+    VectorX point = (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
     if (!problem_.representable) return point;
     return problem_.representable(point).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
 }

@@ -81,7 +81,7 @@ TEST_CASE("where a bound limits the design it is told, with the requirement; oth
 
 TEST_CASE("a run tells of parts that cannot be made before it simulates, and blames them at its end") {
     // 0 mm of play can only be reached through the wall.
-    const DesignFolder folder(replaced(wanted_near("0", "43"), "\"max_evaluations\": 8", "\"max_evaluations\": 12"));
+    const DesignFolder folder(replaced(wanted_near("0", "43"), "\"max_evaluations\": 8", "\"max_evaluations\": 4"));
     const problem::DesignProblem problem = problem_of(folder);
     std::vector<std::string> told;
     OptimiseOptions options;
