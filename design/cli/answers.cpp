@@ -82,6 +82,32 @@ Json gradient_json(const description::Design& design, const VectorX& gradient) {
     return json;
 }
 
+Json relations_json(const description::Design& design, const optimisers::Rows& relations) {
+    Json list = Json::array();
+    for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
+        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        list.push_back({{"name", relation.name},
+                        {"value", relations.values[i]},
+                        {"lower", relation.bounds.lower},
+                        {"upper", relation.bounds.upper},
+                        {"met", description::violation(relation, relations.values[i]) <= 0},
+                        {"gradient", gradient_json(design, relations.jacobian.row(i).transpose())}});
+    }
+    return list;
+}
+
+std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console) {
+    std::string text;
+    for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
+        const auto& [name, bounds, tolerance, at] = design.relations[static_cast<size_t>(i)];
+        const bool met = description::violation(design.relations[static_cast<size_t>(i)], relations.values[i]) <= 0;
+        text += formatted("  %-40s is %.9g, required [%g, %g]: ", name.c_str(), relations.values[i] / bounds.unit,
+                          bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
+                console.coloured(met ? "met" : "VIOLATED", met) + "\n";
+    }
+    return text;
+}
+
 std::vector<std::string> body_names(const core::model::Model& model) {
     std::vector<std::string> names;
     for (const core::model::Body& body : model.bodies) names.push_back(body.name);

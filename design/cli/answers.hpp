@@ -10,6 +10,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/design/cli/console.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/optimisers/problem.hpp"
 
 namespace fettle::design::cli {
 
@@ -30,6 +31,11 @@ nlohmann::ordered_json parameters_json(const description::Design& design, const 
 nlohmann::ordered_json units_json(const description::Design& design);
 /// Derivatives by parameter name, per unit of the parameter as the file has it.
 nlohmann::ordered_json gradient_json(const description::Design& design, const VectorX& gradient);
+
+/// Per relation {name, value, lower, upper, met, gradient}: SI, bounds null where there is none, gradients as gradient_json.
+nlohmann::ordered_json relations_json(const description::Design& design, const optimisers::Rows& relations);
+/// A line per relation, for people.
+std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console);
 
 std::vector<std::string> body_names(const core::model::Model& model);
 

@@ -64,6 +64,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         list.push_back(std::move(entry));
     }
     json["constraints"] = list;
+    json["relations"] = relations_json(design, evaluation.relations);
     json["forward_seconds"] = evaluation.forward_seconds;
     json["backward_seconds"] = evaluation.backward_seconds;
     return json;
@@ -176,7 +177,7 @@ std::string check_text(const Design& design, const CheckReport& report) {
            roughness_text(design, report.roughness);
 }
 
-std::string values_text(const Design& design, const DesignEvaluation& e) {
+std::string values_text(const Design& design, const DesignEvaluation& e, const Console& console) {
     std::string text = formatted("objective %.10g\n", e.objective);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const Parameter& p = design.parameters[k];
@@ -190,6 +191,7 @@ std::string values_text(const Design& design, const DesignEvaluation& e) {
                           measured.lower / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit);
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
     }
+    text += relations_text(design, e.relations, console);
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
 }
 
@@ -223,7 +225,7 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
         return exit_undecided;
     }
     Json json = values_json(design, evaluation);
-    std::string text = values_text(design, evaluation);
+    std::string text = values_text(design, evaluation, console);
     int code = exit_done;
     if (options.check) {
         const CheckReport report = run_check(*problem, values, evaluation, options.check_limit, console);

@@ -81,8 +81,10 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
         for (size_t i = 0; i < design.constraints.size(); ++i)
             json["noise"][design.constraints[i].name] = o.noise[static_cast<Eigen::Index>(i) + 1] / design.constraints[i].bounds.unit;
     }
-    json["rough"] =
-        o.roughest < 0 ? Json() : Json(o.roughest == 0 ? "objective" : design.constraints[static_cast<size_t>(o.roughest - 1)].name);
+    const auto rough = static_cast<size_t>(std::max(0, o.roughest - 1));
+    json["rough"] = Json();
+    if (o.roughest >= 0)
+        json["rough"] = o.roughest == 0 || rough >= design.constraints.size() ? "objective" : design.constraints[rough].name;
     return json;
 }
 
@@ -106,9 +108,11 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
     json["terms"] = terms_json(design, outcome.final);
     json["constraints"] = constraints_json(design, outcome.final);
+    json["relations"] = relations_json(design, outcome.final.relations);
     std::vector<std::string> names;
     for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
     json["clearance"] = clearance_json(outcome.clearance, names);
+    json["unbuildable"] = outcome.unbuildable;
     if (!outcome.limits.empty()) json["limits"] = outcome.limits;
     json["out"] = out;
     return json;
@@ -145,6 +149,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
                           measured.upper / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
                 console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
+    text += relations_text(design, outcome.final.relations, console);
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
     return text + "written to " + out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
 }

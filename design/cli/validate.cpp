@@ -14,6 +14,7 @@
 #include "fettle/design/cli/body_facts.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/validate_certificate.hpp"
+#include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
@@ -103,6 +104,12 @@ Verdict validate_model(const std::string& path, const CommonOptions& common) {
     Json names = Json::array();
     for (const auto& constraint : design.constraints) names.push_back(constraint.name);
     verdict.facts["constraints"] = names;
+    names = Json::array();
+    for (const auto& relation : design.relations) names.push_back(relation.name);
+    verdict.facts["relations"] = names;
+    for (std::string& line : problem::described(design, problem::try_bounds(*loaded->problem))) {
+        verdict.warnings.push_back("bounds: " + line);
+    }
     return verdict;
 }
 

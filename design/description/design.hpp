@@ -20,6 +20,7 @@
 #include "fettle/design/description/constraint.hpp"
 #include "fettle/design/description/parameter.hpp"
 #include "fettle/design/description/quantity.hpp"
+#include "fettle/design/description/relation.hpp"
 #include "fettle/design/description/shape.hpp"
 
 namespace fettle::design::description {
@@ -46,6 +47,7 @@ struct Design {
     std::vector<Parameter> parameters;
     std::vector<ObjectiveTerm> objective;
     std::vector<Constraint> constraints;
+    std::vector<Relation> relations;  ///< between parameters; judged before anything is simulated
     OptimiserSettings optimiser;
 };
 

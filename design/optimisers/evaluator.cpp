@@ -33,20 +33,34 @@ Evaluation checked(Evaluation e, int variables, int constraints) {
     return e;
 }
 
+VectorX joined(const VectorX& a, const VectorX& b) {
+    VectorX both(a.size() + b.size());
+    both.head(a.size()) = a;
+    both.tail(b.size()) = b;
+    return both;
+}
+
+MatrixX stacked(const MatrixX& a, const MatrixX& b) {
+    MatrixX both(a.rows() + b.rows(), a.cols());
+    both.topRows(a.rows()) = a;
+    both.bottomRows(b.rows()) = b;
+    return both;
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem_(problem), options_(std::move(options)) {
     FETTLE_ASSERT(problem.lower.size() == variables() && problem.upper.size() == variables(), "one bound per variable");
     FETTLE_ASSERT((problem.lower.array() <= problem.start.array()).all() && (problem.start.array() <= problem.upper.array()).all(),
                   "the start lies within the bounds");
-    FETTLE_ASSERT(problem.constraint_upper.size() == constraints(), "one bound per constraint");
+    FETTLE_ASSERT(problem.constraint_upper.size() == problem.constraint_lower.size(), "one bound per constraint");
+    FETTLE_ASSERT(problem.relation_upper.size() == problem.relation_lower.size(), "one bound per relation");
     // A variable whose bounds coincide stays where it is; any range scales it.
     range_ = (problem.upper - problem.lower).unaryExpr([](double r) { return r > 0 ? r : 1.0; });
     scaled_start_ = (problem.start - problem.lower).cwiseQuotient(range_).cwiseMax(0).cwiseMin(1);
     constraint_scale_ = VectorX::Ones(constraints());
     try {
-        const Record& record = evaluate_new(scaled_start_);
-        start_evaluation_ = record.evaluation;
+        start_evaluation_ = evaluate_new(scaled_start_).evaluation;
     } catch (const StopOptimisation&) {
         start_evaluation_.reason = stop_reason_ == StopReason::interrupted ? "interrupted" : "no evaluation allowed";
     }
@@ -55,8 +69,11 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
 }
 
 std::optional<Evaluation> Evaluator::scaled_reference() const {
-    if (!options_.reference) return std::nullopt;
-    return scaled(*options_.reference);
+    if (!options_.reference || !options_.reference->usable) return std::nullopt;
+    Record record;
+    record.evaluation = *options_.reference;
+    record.relations = records_.front().relations;  // of no model: not asked for
+    return scaled(record);
 }
 
 void Evaluator::fix_scaling() {
@@ -65,34 +82,37 @@ void Evaluator::fix_scaling() {
         const double size = variables() > 0 ? g.lpNorm<Eigen::Infinity>() : 0;
         const double objective_size = std::max(size, 1e-3 * std::abs(start_evaluation_.objective));
         if (objective_size > 0) objective_scale_ = 1 / objective_size;
+        const VectorX values = joined(start_evaluation_.constraints, records_.front().relations.values);
+        const MatrixX jacobian = stacked(start_evaluation_.jacobian, records_.front().relations.jacobian);
         for (int i = 0; i < constraints(); ++i) {
-            const double row = start_evaluation_.jacobian.row(i).cwiseProduct(range_.transpose()).lpNorm<Eigen::Infinity>();
-            const double row_size = std::max(row, 1e-3 * std::abs(start_evaluation_.constraints[i]));
+            const double row = jacobian.row(i).cwiseProduct(range_.transpose()).lpNorm<Eigen::Infinity>();
+            const double row_size = std::max(row, 1e-3 * std::abs(values[i]));
             if (row_size > 0) constraint_scale_[i] = 1 / row_size;
         }
     }
-    scaled_constraint_lower_ = problem_.constraint_lower.cwiseProduct(constraint_scale_);
-    scaled_constraint_upper_ = problem_.constraint_upper.cwiseProduct(constraint_scale_);
-    for (Record& record : records_) record.scaled_evaluation = scaled(record.evaluation);
+    scaled_constraint_lower_ = joined(problem_.constraint_lower, problem_.relation_lower).cwiseProduct(constraint_scale_);
+    scaled_constraint_upper_ = joined(problem_.constraint_upper, problem_.relation_upper).cwiseProduct(constraint_scale_);
+    for (Record& record : records_) record.scaled_evaluation = scaled(record);
 }
 
 VectorX Evaluator::unscaled(const VectorX& scaled_point) const {
     // The start is answered exactly: lower + (start - lower) / range * range can differ from it in the last bit.
     if (scaled_point == scaled_start_) return problem_.start;
-    const VectorX point = (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+    VectorX point = (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
     if (!problem_.representable) return point;
     return problem_.representable(point).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
 }
 
-Evaluation Evaluator::scaled(const Evaluation& e) const {
+Evaluation Evaluator::scaled(const Record& record) const {
+    const Evaluation& e = record.evaluation;
     Evaluation s = e;
     if (!e.usable) return s;
     s.objective = e.objective * objective_scale_;
     s.gradient = e.gradient.cwiseProduct(range_) * objective_scale_;
-    s.constraints = e.constraints.cwiseProduct(constraint_scale_);
-    s.jacobian = constraint_scale_.asDiagonal() * e.jacobian * range_.asDiagonal();
+    s.constraints = joined(e.constraints, record.relations.values).cwiseProduct(constraint_scale_);
+    s.jacobian = constraint_scale_.asDiagonal() * stacked(e.jacobian, record.relations.jacobian) * range_.asDiagonal();
     s.residuals = std::sqrt(objective_scale_) * e.residuals;
-    if (e.residual_jacobian.rows() > 0) s.residual_jacobian = std::sqrt(objective_scale_) * e.residual_jacobian * range_.asDiagonal();
+    if (e.residuals.size() > 0) s.residual_jacobian = std::sqrt(objective_scale_) * e.residual_jacobian * range_.asDiagonal();
     return s;
 }
 
@@ -110,6 +130,20 @@ const Evaluation& Evaluator::look(const VectorX& point) {
     return evaluate_new(clamped, false).scaled_evaluation;
 }
 
+void Evaluator::evaluate(Record& record) const {
+    const auto relations = static_cast<int>(problem_.relation_lower.size());
+    record.evaluation = checked(problem_.evaluate(record.point), variables(), constraints() - relations);
+    record.relations.jacobian.resize(0, variables());
+    if (relations == 0) return;
+    record.relations = problem_.relations(record.point);
+    FETTLE_ASSERT(record.relations.values.size() == relations && record.relations.jacobian.rows() == relations &&
+                      record.relations.jacobian.cols() == variables(),
+                  "one value and one gradient per relation");
+    if (!record.evaluation.usable || (record.relations.values.allFinite() && record.relations.jacobian.allFinite())) return;
+    record.evaluation.usable = false;
+    record.evaluation.reason = "a relation between the parameters is not a finite number";
+}
+
 const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, bool may_be_best) {
     if (evaluations() >= options_.max_evaluations) stop(StopReason::budget);
     if (options_.should_stop && options_.should_stop()) stop(StopReason::interrupted);
@@ -117,14 +151,14 @@ const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, bo
     record.scaled_point = scaled_point;
     record.point = unscaled(scaled_point);
     try {
-        record.evaluation = checked(problem_.evaluate(record.point), variables(), constraints());
+        evaluate(record);
     } catch (const Interrupted&) {
         stop(StopReason::interrupted);
     } catch (...) {
         exception_ = std::current_exception();
         stop(StopReason::exception);
     }
-    record.scaled_evaluation = scaled(record.evaluation);
+    record.scaled_evaluation = scaled(record);
     if (!record.evaluation.usable) ++failures_;
     records_.push_back(std::move(record));
     index_[bits_of(scaled_point)] = evaluations() - 1;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// The one door between an optimiser and a problem. It scales (variables to [0, 1] by their bounds; f and each c by the largest derivative
-/// at the start, so that all are of order one), evaluates each point once (cached by the exact bits of the point, since Ipopt and NLopt ask
-/// for values and derivatives of one point separately), counts, keeps the best design, and stops a run that is over. Scaling and the order
-/// of evaluations are functions of the problem alone: a run repeated has the same bits.
+/// at the start, so that all are of order one; relations between the variables are further rows of c here), evaluates each point once
+/// (cached by the exact bits of the point, since Ipopt and NLopt ask for values and derivatives of one point separately), counts, keeps the
+/// best design, and stops a run that is over. Scaling and the order of evaluations are functions of the problem alone: a run repeated has
+/// the same bits.
 #pragma once
 
 #include <deque>
@@ -40,14 +41,19 @@ public:
     Evaluator(const Problem& problem, EvaluatorOptions options);
 
     int variables() const { return static_cast<int>(problem_.start.size()); }
-    int constraints() const { return static_cast<int>(problem_.constraint_lower.size()); }
+    int constraints() const { return static_cast<int>(problem_.constraint_lower.size() + problem_.relation_lower.size()); }
 
-    /// Scaled evaluation: x in [0, 1] (clamped), f, c and derivatives scaled. `usable` may be false.
+    int simulated_constraints() const { return static_cast<int>(problem_.constraint_lower.size()); }  ///< the others are relations
+
+    /// Scaled evaluation: x in [0, 1] (clamped), f, (c, r) and derivatives scaled. `usable` may be false.
     /// Throws StopOptimisation when the run is over.
     const Evaluation& at(const VectorX& scaled);
 
     /// The same, but the point does not become the best one: to find out how rough the problem is.
     const Evaluation& look(const VectorX& scaled);
+
+    /// Why a point cannot be evaluated, without the cost of an evaluation; empty: nothing known against it.
+    std::string refusal(const VectorX& scaled) const { return problem_.refusal ? problem_.refusal(unscaled(scaled)) : std::string(); }
 
     /// So many evaluations more.
     void allow(int evaluations) { options_.max_evaluations += evaluations; }
@@ -81,8 +87,10 @@ private:
     struct Record {
         VectorX scaled_point, point;
         Evaluation evaluation, scaled_evaluation;
+        Rows relations;
     };
-    Evaluation scaled(const Evaluation& evaluation) const;
+    void evaluate(Record& record) const;
+    Evaluation scaled(const Record& record) const;
     void fix_scaling();
     const Record& evaluate_new(const VectorX& scaled_point, bool may_be_best = true);
     void keep_best();

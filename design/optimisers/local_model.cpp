@@ -51,7 +51,7 @@ void choose_rows(const MatrixX& changes, const MatrixX& steps, const MatrixX& re
 
 Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& point, const Evaluation& e) {
     const std::optional<Evaluation> reference = evaluator.scaled_reference();
-    if (!reference || !reference->usable || reference->residuals.size() != e.residuals.size()) return e;
+    if (!reference || reference->residuals.size() != e.residuals.size()) return e;
     const std::vector<int> others = nearest(evaluator, point);
     const auto count = static_cast<Eigen::Index>(others.size());
     MatrixX steps(count, point.size()), constraints(count, e.constraints.size()), residuals(count, e.residuals.size());
@@ -64,7 +64,10 @@ Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& p
         residuals.row(k) = (evaluator.scaled_evaluation(other).residuals - e.residuals).transpose() / length;
     }
     Evaluation telling = e;
-    choose_rows(constraints, steps, reference->jacobian, telling.jacobian);
+    const Eigen::Index simulated = evaluator.simulated_constraints();
+    MatrixX rows = telling.jacobian.topRows(simulated);
+    choose_rows(constraints.leftCols(simulated), steps, reference->jacobian.topRows(simulated), rows);
+    telling.jacobian.topRows(simulated) = rows;
     if (e.residuals.size() == 0) return telling;
     choose_rows(residuals, steps, reference->residual_jacobian, telling.residual_jacobian);
     telling.gradient += 2 * (telling.residual_jacobian - e.residual_jacobian).transpose() * e.residuals;

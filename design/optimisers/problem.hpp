@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// What an optimiser sees of a design: a smooth function with bounds and constraints, each evaluation of which is expensive and can fail.
 /// No physics here, so that optimisers are tested on problems with known answers. Made from a design by design_problem.hpp.
-///   minimise f(x)   subject to   lower <= x <= upper,   constraint_lower <= c(x) <= constraint_upper
+///   minimise f(x)   subject to   lower <= x <= upper,   constraint_lower <= c(x) <= constraint_upper,
+///                                relation_lower <= r(x) <= relation_upper
+/// r and what `refusal` says are cheap, and known before f and c are.
 #pragma once
 
 #include <functional>
@@ -24,7 +26,13 @@ struct Evaluation {
     /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
     VectorX residuals;
     MatrixX residual_jacobian;
-    double violation = 0;  ///< largest violation of the true requirements, in their own scale (constraint.hpp); 0: feasible
+    double violation = 0;  ///< largest violation of the true requirements, relations too, in their own scale (constraint.hpp); 0: feasible
+};
+
+/// Values that cost nothing, at one point: relations between the variables alone, constraints of the parts as assembled.
+struct Rows {
+    VectorX values;    ///< k
+    MatrixX jacobian;  ///< k x n
 };
 
 /// A model of the same thing that is smoother than the one asked for: optimisers begin there.
@@ -36,10 +44,15 @@ struct SmootherModel {
 struct Problem {
     VectorX start, lower, upper;                 ///< n; finite, lower <= start <= upper
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
+    VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
     std::function<Evaluation(const VectorX&)> evaluate;
     std::vector<SmootherModel> smoother;  ///< the smoothest first; empty: none
     /// Optional: the nearest point that meets all that can be known without a simulation, as far as it was found. Starts are moved there.
     std::function<VectorX(const VectorX&)> prepared;
+    std::function<Rows(const VectorX&)> relations;  ///< pure and cheap; null where k = 0. Numbers that are not finite: no such point
+    /// Optional: why `evaluate` would fail at a point (a part that cannot be made, parts that intersect), without the cost of an
+    /// evaluation; empty: nothing known against it. Pure, so that a driver can shorten its step first.
+    std::function<std::string(const VectorX&)> refusal;
     /// Optional: the nearest point that can be written down exactly (to a few units of rounding), the one that is evaluated in its place.
     std::function<VectorX(const VectorX&)> representable;
 };

@@ -5,14 +5,9 @@
 #include <functional>
 #include <optional>
 
-#include "fettle/core/base/types.hpp"
+#include "fettle/design/optimisers/problem.hpp"
 
 namespace fettle::design::optimisers {
-
-struct Rows {
-    VectorX values;    ///< k
-    MatrixX jacobian;  ///< k x n
-};
 
 struct CheapConstraints {
     VectorX lower, upper;                                     ///< n, of the variables

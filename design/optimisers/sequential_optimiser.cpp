@@ -65,8 +65,12 @@ private:
 
     void take(const QuadraticSolution& step) {
         const VectorX trial_point = (point_ + step.step).cwiseMax(0).cwiseMin(1);
-        const Evaluation& trial = evaluator_.at(trial_point);
         const double length = step.step.lpNorm<Eigen::Infinity>();
+        if (!evaluator_.refusal(trial_point).empty()) {
+            radius_ = after_failure * std::min(radius_, length);
+            return;
+        }
+        const Evaluation& trial = evaluator_.at(trial_point);
         if (!trial.usable) {
             radius_ = after_failure * std::min(radius_, length);
             return;

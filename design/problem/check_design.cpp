@@ -13,6 +13,7 @@ using description::Design;
 using description::Move;
 using description::MoveTarget;
 using description::Parameter;
+using description::Relation;
 using description::Shape;
 
 class DesignCheck {
@@ -34,10 +35,14 @@ public:
             check_quantity(term.quantity.get(), where);
         }
         names.clear();
+        for (const auto& relation : design_.relations) {
+            if (!names.insert(relation.name).second) add(ErrorCode::inconsistent, place(relation), "another relation has this name");
+            check_relation(relation);
+        }
         for (const auto& constraint : design_.constraints) {
             const std::string where = "constraint `" + constraint.name + "`";
             const description::Bounds& bounds = constraint.bounds;
-            if (!names.insert(constraint.name).second) add(ErrorCode::inconsistent, where, "another constraint has this name");
+            if (!names.insert(constraint.name).second) add(ErrorCode::inconsistent, where, "another constraint or relation has this name");
             if (!(bounds.lower <= bounds.upper) || !(bounds.margin >= 0) || !(bounds.unit > 0))
                 add(ErrorCode::out_of_range, where, "its bounds are in order, its margin is not negative, its unit is above 0");
             check_quantity(constraint.quantity.get(), where);
@@ -98,6 +103,22 @@ private:
         }
         if (move.target == MoveTarget::motor_rate && (move.dof < 0 || move.dof > 5 || !body.prescribed[static_cast<size_t>(move.dof)]))
             add(ErrorCode::inconsistent, place(parameter), "body `" + body.name + "` has no motor on that coordinate");
+    }
+
+    static std::string place(const Relation& relation) { return "relation `" + relation.name + "`"; }
+
+    void check_relation(const Relation& relation) {
+        const description::Bounds& bounds = relation.bounds;
+        if (!(bounds.lower <= bounds.upper) || !(bounds.margin >= 0) || !(bounds.unit > 0) || !(relation.tolerance >= 0))
+            add(ErrorCode::out_of_range, place(relation),
+                "its bounds are in order, its margin and its tolerance are not negative, its unit is above 0");
+        if (!relation.at) return add(ErrorCode::missing_key, place(relation), "it has no function");
+        const VectorX start = description::values_of(design_.parameters);
+        const description::RelationValue at = relation.at(start);
+        if (at.gradient.size() != start.size())
+            return add(ErrorCode::inconsistent, place(relation), "its gradient has one entry for each parameter of the design");
+        if (!std::isfinite(at.value) || !at.gradient.allFinite())
+            add(ErrorCode::not_finite, place(relation), "its value or its derivative is not a finite number at the parameters' values");
     }
 
     void check_quantity(const description::Quantity* quantity, const std::string& where) {

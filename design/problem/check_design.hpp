@@ -9,8 +9,8 @@
 namespace fettle::design::problem {
 
 /// Every fault of the parts but the scene, which build_model judges: bodies, dimensions and motors that are not there, bounds that are not
-/// in order, names that are not unique, a shape whose part as drawn is not its body's mesh, and what quantities say of themselves.
-/// `where` names the parameter, term or constraint.
+/// in order, names that are not unique, a shape whose part as drawn is not its body's mesh, relations without a finite value at the
+/// parameters' values, and what quantities say of themselves. `where` names the parameter, term, constraint or relation.
 /// @param model  Of the scene as written.
 Errors check_design(const description::Design& design, const core::model::Model& model);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/design/problem/check_design.hpp"
 
@@ -65,10 +66,59 @@ Result<Model> DesignProblem::model_at(const VectorX& p) const {
     return build(moved->scene);
 }
 
+// A trial stands in no file: what is wrong with it is told by bodies and dimensions alone.
+Result<MovedScene> DesignProblem::trial_scene(const VectorX& p) const {
+    Result<MovedScene> moved = move_scene(design_, p);
+    if (moved) moved->scene.path.clear();
+    return moved;
+}
+
+optimisers::Rows DesignProblem::relations(const VectorX& p) const {
+    const auto k = static_cast<Eigen::Index>(design_.relations.size());
+    optimisers::Rows all{VectorX(k), MatrixX(k, parameter_count())};
+    for (Eigen::Index i = 0; i < k; ++i) {
+        const description::RelationValue at = design_.relations[static_cast<size_t>(i)].at(p);
+        FETTLE_ASSERT(at.gradient.size() == p.size(), "a relation's gradient has one entry per parameter");
+        all.values[i] = at.value;
+        all.jacobian.row(i) = at.gradient.transpose();
+    }
+    return all;
+}
+
+// The relations that are not defined there.
+Errors DesignProblem::undefined(const optimisers::Rows& relations) const {
+    Errors errors;
+    for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
+        if (std::isfinite(relations.values[i]) && relations.jacobian.row(i).allFinite()) continue;
+        errors.push_back({ErrorCode::not_finite, "relation `" + design_.relations[static_cast<size_t>(i)].name + "`",
+                          "its value or its derivative is not a finite number here"});
+    }
+    return errors;
+}
+
+Errors DesignProblem::obstacles(const VectorX& p) const {
+    Errors errors = undefined(relations(p));
+    if (!errors.empty()) return errors;
+    const Result<MovedScene> moved = trial_scene(p);
+    if (!moved) return moved.errors();
+    const Result<Model> model = build(moved->scene);
+    return model ? Errors() : model.errors();
+}
+
+std::string DesignProblem::refusal(const VectorX& p) const {
+    const Errors errors = obstacles(p);
+    return errors.empty() ? std::string() : first_reason(errors);
+}
+
 DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions& options) const {
     const Stopwatch forward;
     DesignEvaluation evaluation;
-    const Result<MovedScene> moved = move_scene(design_, p);
+    evaluation.relations = relations(p);
+    if (const Errors errors = undefined(evaluation.relations); !errors.empty()) {
+        evaluation.reason = first_reason(errors);
+        return evaluation;
+    }
+    const Result<MovedScene> moved = trial_scene(p);
     if (!moved) {
         evaluation.reason = first_reason(moved.errors());
         return evaluation;
@@ -159,6 +209,10 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     for (const auto& constraint : design_.constraints) {
         evaluation.constraints.push_back(constraint.quantity->value(simulated));
         evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
+    }
+    for (size_t i = 0; i < design_.relations.size(); ++i) {
+        const double value = evaluation.relations.values[static_cast<Eigen::Index>(i)];
+        evaluation.violation = std::max(evaluation.violation, description::violation(design_.relations[i], value));
     }
 }
 

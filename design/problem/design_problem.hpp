@@ -15,7 +15,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/description/design.hpp"
-#include "fettle/design/optimisers/projection.hpp"
+#include "fettle/design/optimisers/problem.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
@@ -35,8 +35,9 @@ struct DesignEvaluation {
     core::stepper::Simulation simulation;               ///< as far as it came
     std::vector<description::Measurement> terms;        ///< per objective term, SI
     std::vector<description::Measurement> constraints;  ///< per constraint, SI
+    optimisers::Rows relations;                         ///< values and gradients, of an unusable trial too
     double objective = 0;                               ///< sum of weight * value / unit
-    double violation = 0;                               ///< largest of the constraints' violations (description/constraint.hpp)
+    double violation = 0;                               ///< largest of the constraints' and relations' (description/constraint.hpp)
     VectorX gradient;                                   ///< d objective / d parameters, SI; empty unless asked for
     MatrixX jacobian;                                   ///< d constraint values / d parameters, SI
     VectorX residuals;                                  ///< the objective's deviations (optimisers/problem.hpp)
@@ -68,6 +69,14 @@ public:
 
     /// The same design with contact of another width dhat [m], and the stiffness that goes with it.
     Result<DesignProblem> with_contact_width(double dhat) const;
+    /// The design's relations at p: k values and their k x n Jacobian, exact; nothing is built.
+    optimisers::Rows relations(const VectorX& p) const;
+
+    /// Why the design at p cannot be simulated at all: a relation that is not defined there, a part that cannot be made (`where` names body
+    /// and dimension), parts that intersect as assembled; empty: nothing of the kind. Builds the model, simulates nothing.
+    Errors obstacles(const VectorX& p) const;
+    /// The same as one text, which is also the reason that `evaluate` gives.
+    std::string refusal(const VectorX& p) const;
 
     /// Deterministic. A trial that cannot be built or simulated is not usable, and says why; no number stands in for it.
     DesignEvaluation evaluate(const VectorX& p, const EvaluateOptions& options = {}) const;
@@ -75,6 +84,8 @@ public:
 private:
     DesignProblem() = default;
     Result<core::model::Model> build(const core::scene::Scene& scene) const;
+    Result<MovedScene> trial_scene(const VectorX& p) const;
+    Errors undefined(const optimisers::Rows& relations) const;
     void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
     void measure(DesignEvaluation& evaluation) const;
     void differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "fettle/design/optimisers/projection.hpp"
+
 namespace fettle::design::problem {
 
 namespace {
@@ -44,6 +46,15 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
         problem.constraint_upper[i] = description::target_upper(design.constraints[static_cast<size_t>(i)].bounds);
     }
     if (!design_problem.rest_constraints().empty()) problem.prepared = prepared(design_problem, problem);
+    const auto k = static_cast<Eigen::Index>(design.relations.size());
+    problem.relation_lower.resize(k);
+    problem.relation_upper.resize(k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+        problem.relation_lower[i] = description::target_lower(design.relations[static_cast<size_t>(i)].bounds);
+        problem.relation_upper[i] = description::target_upper(design.relations[static_cast<size_t>(i)].bounds);
+    }
+    if (k > 0) problem.relations = [&design_problem](const VectorX& p) { return design_problem.relations(p); };
+    problem.refusal = [&design_problem](const VectorX& p) { return design_problem.refusal(p); };
     problem.evaluate = [&design_problem, options](const VectorX& p) { return optimiser_evaluation(design_problem.evaluate(p, options)); };
     return problem;
 }

@@ -7,7 +7,8 @@
 
 namespace fettle::design::problem {
 
-/// Start, bounds narrowed by their margins, and `evaluate`, which does what `options` says. Must not outlive the problem.
+/// Start, bounds narrowed by their margins, relations, `refusal`, and `evaluate`, which does what `options` says. Must not outlive the
+/// problem.
 optimisers::Problem optimiser_problem(const DesignProblem& problem, const EvaluateOptions& options = {});
 
 /// An evaluation as optimisers take it; a number that is not finite makes it a failure. Throws optimisers::Interrupted if it was.

@@ -7,6 +7,7 @@
 
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/reading/relation_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -21,7 +22,10 @@ public:
     ConstraintReader(const ReadContext& context, double clearance_margin) : context_(context), clearance_margin_(clearance_margin) {}
 
     void read(const JsonNode& node, std::vector<Constraint>& out) {
-        const auto type = node.require("type").choice(quantity_names());
+        if (is_relation(node)) return;
+        std::vector<std::string_view> types = quantity_names();
+        types.push_back(relation_type);
+        const auto type = node.require("type").choice(types);
         if (!type) return;
         if (*type == "clearance") {
             read_clearance(node, out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads the `constraints` of a design file. Part of design_reader.hpp.
+/// Reads the `constraints` of a design file but the relations (relation_reader.hpp). Part of design_reader.hpp.
 #pragma once
 
 #include <vector>

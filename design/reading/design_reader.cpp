@@ -12,6 +12,7 @@
 #include "fettle/design/reading/constraint_reader.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/reading/relation_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::reading {
@@ -47,6 +48,7 @@ public:
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
+        design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
         file_.output = root["output"].string().value_or("");
         if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
         if (!document_.errors().empty()) return all_errors();

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/optimise_design.hpp"
 
-#include <cmath>
 #include <cstdio>
 
+#include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/optimiser_problem.hpp"
 #include "fettle/design/problem/smoother_models.hpp"
+#include "fettle/design/studies/limits.hpp"
 
 namespace fettle::design::studies {
 
 namespace {
 
-using description::Bounds;
 using description::Design;
-using description::Parameter;
 using problem::DesignEvaluation;
 
 std::string evaluation_line(int number, const optimisers::Evaluation& e, bool best) {
@@ -26,28 +25,14 @@ std::string evaluation_line(int number, const optimisers::Evaluation& e, bool be
     return line;
 }
 
-std::vector<std::string> limits_of(const Design& design, const VectorX& point, const DesignEvaluation& final) {
-    std::vector<std::string> limits;
-    char text[300];
-    for (size_t i = 0; i < design.constraints.size() && i < final.constraints.size(); ++i) {
-        const description::Measurement& measured = final.constraints[i];
-        const Bounds& bounds = design.constraints[i].bounds;
-        if (description::violation(bounds, measured) <= 0) continue;
-        const double unit = bounds.unit;
-        std::snprintf(text, sizeof text, "%s is proven within [%.6g, %.6g], required is [%.6g, %.6g]", design.constraints[i].name.c_str(),
-                      measured.lower / unit, measured.upper / unit, bounds.lower / unit, bounds.upper / unit);
-        limits.push_back(text + (measured.fault.empty() ? "" : ": " + measured.fault));
-    }
-    for (size_t k = 0; k < design.parameters.size(); ++k) {
-        const Parameter& p = design.parameters[k];
-        const double value = point[static_cast<Eigen::Index>(k)], near = 1e-3 * (p.upper - p.lower);
-        const bool at_lower = value <= p.lower + near, at_upper = value >= p.upper - near;
-        if (!at_lower && !at_upper) continue;
-        std::snprintf(text, sizeof text, "parameter %s is at its %s bound %.6g %s", p.name.c_str(), at_lower ? "lower" : "upper",
-                      description::from_si(at_lower ? p.lower : p.upper, p.unit), std::string(p.unit.name).c_str());
-        limits.emplace_back(text);
-    }
-    return limits;
+using Compute = std::function<HistoryEntry(const problem::DesignProblem&, const VectorX&)>;
+
+// Of one model: from the history, if there is one that has it, else computed. `model` and `compute` must outlive it.
+std::function<optimisers::Evaluation(const VectorX&)> answered(const problem::DesignProblem& model, const std::string& name,
+                                                               const Compute& compute, History* history) {
+    const auto entry = [&model, &compute](const VectorX& p) { return compute(model, p); };
+    if (history != nullptr) return recorded(*history, entry, name);
+    return [entry](const VectorX& p) { return entry(p).evaluation; };
 }
 
 }  // namespace
@@ -75,35 +60,42 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     evaluate.on_step = options.on_step;
     optimisers::Problem seen = problem::optimiser_problem(problem, evaluate);
     int computed = 0;
-    const auto compute = [&](const VectorX& p) {
+    const Compute compute = [&](const problem::DesignProblem& model, const VectorX& p) {
         ++computed;
-        return history_entry(design, p, problem.evaluate(p, evaluate));
+        return history_entry(design, p, model.evaluate(p, evaluate));
     };
-    const auto answered = [&](const auto& compute_entry,
-                              const std::string& model) -> std::function<optimisers::Evaluation(const VectorX&)> {
-        if (options.history != nullptr) return recorded(*options.history, compute_entry, model);
-        return [compute_entry](const VectorX& p) { return compute_entry(p).evaluation; };
-    };
-    seen.evaluate = answered(compute, {});
-    const VectorX first = seen.prepared ? seen.prepared(seen.start) : seen.start;
-    const std::vector<problem::SmootherDesign> smoother = problem::smoother_models(problem, first);
+    seen.evaluate = answered(problem, {}, compute, options.history);
+    const std::vector<problem::SmootherDesign> smoother =
+        problem::smoother_models(problem, seen.prepared ? seen.prepared(seen.start) : seen.start);
     for (const problem::SmootherDesign& model : smoother) {
-        const auto compute_smoother = [&](const VectorX& p) {
-            ++computed;
-            return history_entry(design, p, model.problem.evaluate(p, evaluate));
-        };
-        seen.smoother.push_back({model.name, answered(compute_smoother, model.name)});
+        seen.smoother.push_back({model.name, answered(model.problem, model.name, compute, options.history)});
         if (options.narrate) options.narrate("to begin with: " + model.name);
     }
     optimisers::OptimiserOptions settings;
     settings.max_evaluations = design.optimiser.max_evaluations;
     settings.tolerance = design.optimiser.tolerance;
     settings.should_stop = options.should_stop;
-    settings.on_evaluation = [&](int number, const VectorX&, const optimisers::Evaluation& e, bool best) {
+    std::vector<FailedTrial> failures;
+    settings.on_evaluation = [&](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
+        if (!e.usable) failures.push_back({p, e.reason});
         if (options.narrate) options.narrate(evaluation_line(number, e, best));
     };
 
+    int refused = 0;
+    seen.refusal = [&, ask = seen.refusal](const VectorX& p) {
+        std::string reason = ask(p);
+        if (!reason.empty()) {
+            ++refused;
+            failures.push_back({p, reason});
+        }
+        return reason;
+    };
+
     OptimiseOutcome outcome;
+    outcome.unbuildable = problem::described(design, problem::try_bounds(problem));
+    for (const std::string& line : outcome.unbuildable) {
+        if (options.narrate) options.narrate("bounds: " + line);
+    }
     outcome.report = optimisers::optimise(seen, **optimiser, settings);
     outcome.replayed = outcome.report.evaluations - computed;
     if (!outcome.report.best.usable) return outcome;
@@ -113,7 +105,9 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     for (const description::Measurement& measured : outcome.final.constraints) {
         if (measured.clearance) outcome.clearance.push_back(*measured.clearance);
     }
-    if (!outcome.report.feasible) outcome.limits = limits_of(design, outcome.report.point, outcome.final);
+    if (outcome.report.feasible) return outcome;
+    outcome.limits = limits_of(problem, outcome.report.point, outcome.final, outcome.report.best.jacobian, failures,
+                               outcome.report.evaluations + refused);
     return outcome;
 }
 

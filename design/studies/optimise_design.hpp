@@ -26,8 +26,9 @@ struct OptimiseOutcome {
     optimisers::OptimiserReport report;
     problem::DesignEvaluation final;                        ///< of report.point, without gradients; not usable if the start was not
     std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
-    std::vector<std::string> limits;  ///< what holds an infeasible design back: violated requirements, parameters at their bounds
-    int replayed = 0;                 ///< evaluations that the history answered
+    std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)
+    std::vector<std::string> unbuildable;  ///< what within the bounds makes no design, found before the first simulation (buildable.hpp)
+    int replayed = 0;                      ///< evaluations that the history answered
 };
 
 /// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.

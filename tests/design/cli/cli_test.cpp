@@ -101,6 +101,25 @@ TEST_CASE("clearance: exit codes by status, lengths with units") {
     CHECK(run("clearance " + folder.design() + " --minimum 0.1mm").code == 0);
 }
 
+TEST_CASE("relations between parameters, and bounds within which no part can be made, are told without a simulation's results") {
+    const std::string relation =
+        R"x("constraints": [ { "type": "relation", "name": "flat", "expression": "height / width", "upper": 0.45, "margin": 0 },)x";
+    const DesignFolder folder(
+        replaced(replaced(small_design, "\"constraints\": [", relation), "\"lower\": -5, \"upper\": 20", "\"lower\": -5, \"upper\": 43"));
+    const Json gradient = run("gradient " + folder.design() + " --json").json();
+    const Json& flat = gradient.at("relations").at(0);
+    CHECK(flat.at("name") == "flat");
+    CHECK(flat.at("value") == 0.5);
+    CHECK(flat.at("upper") == 0.45);
+    CHECK(flat.at("lower").is_null());
+    CHECK(flat.at("met") == false);
+    CHECK(flat.at("gradient").at("height").get<double>() == Approx(0.05));  // per mm
+    CHECK(run("gradient " + folder.design()).out.find("is 0.5, required [-inf, 0.45]: VIOLATED") != std::string::npos);
+    const Json valid = run("validate " + folder.design() + " --json").json();
+    CHECK(valid.at("relations").at(0) == "flat");
+    CHECK(valid.at("warnings").dump().find("bounds: `place` above 27.4") != std::string::npos);
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
@@ -142,4 +161,6 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(unreachable.code == 1);
     CHECK(unreachable.json()["limits"].size() > 0);
     CHECK(unreachable.json()["constraint_violation"].get<double>() > 0);
+    CHECK(unreachable.json()["relations"].empty());
+    CHECK(unreachable.json()["unbuildable"].empty());
 }

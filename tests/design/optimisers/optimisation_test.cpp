@@ -107,6 +107,48 @@ TEST_CASE("each optimiser reaches Hock and Schittkowski 71's published optimum")
     }
 }
 
+TEST_CASE("each optimiser keeps relations between the variables, as it does constraints") {
+    for (const std::string& name : optimiser_names()) {
+        // Hock and Schittkowski 71 with its product as a relation.
+        const bool equality = name == "ipopt" || name == "slsqp";
+        Problem p = hock_schittkowski_71(equality);
+        p.relation_lower = p.constraint_lower.head(1).eval();
+        p.relation_upper = p.constraint_upper.head(1).eval();
+        p.constraint_lower = p.constraint_lower.tail(1).eval();
+        p.constraint_upper = p.constraint_upper.tail(1).eval();
+        const auto both = p.evaluate;
+        p.evaluate = [both](const VectorX& x) {
+            Evaluation e = both(x);
+            e.constraints = e.constraints.tail(1).eval();
+            e.jacobian = e.jacobian.bottomRows(1).eval();
+            return e;
+        };
+        p.relations = [both](const VectorX& x) {
+            const Evaluation e = both(x);
+            return Rows{e.constraints.head(1), e.jacobian.topRows(1)};
+        };
+        const OptimiserReport report = run(p, name, tight(name == "cobyla" ? 2000 : 300));
+        INFO(name << ": " << to_string(report.status) << ", " << report.message);
+        CHECK(report.status == OptimiserStatus::optimal);
+        CHECK(report.best.objective == Approx(17.0140173).epsilon(1e-5));
+        CHECK(report.best.constraints.size() == 1);
+        CHECK(report.optimality.predicted_gain <= report.optimality.worth);
+    }
+}
+
+TEST_CASE("a point at which a relation is no number is a failure") {
+    Problem p = disc_with_cliff(infinity);
+    p.relation_lower = VectorX::Constant(1, -infinity);
+    p.relation_upper = VectorX::Constant(1, 10);
+    p.relations = [](const VectorX& x) {  // a relation that ends at x0 = 0.6, short of the optimum
+        return Rows{VectorX::Constant(1, std::sqrt(0.6 - x[0])), MatrixX::Zero(1, 2)};
+    };
+    const OptimiserReport report = run(p, "ipopt", tight(100));
+    CHECK(report.best.usable);
+    CHECK(report.failures > 0);
+    CHECK(report.point[0] <= 0.6);
+}
+
 TEST_CASE("a failing evaluation is overcome, not believed") {
     for (const std::string& name : optimiser_names()) {
         // The optimum has x + y = 1.4142; the first steps of every optimiser go beyond 1.6.

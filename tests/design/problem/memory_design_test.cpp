@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Designs without a file: shapes and quantities that a program derives, evaluated, differentiated and optimised in memory.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 
 #include "fettle/design/problem/check_design.hpp"
@@ -148,6 +149,27 @@ TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differe
     CHECK(same_bits(again->report.point, outcome->report.point));
 }
 
+TEST_CASE("a relation of one's own: the optimiser keeps it") {
+    Design design = tilted_plate();
+    const auto taper = [](const VectorX& p) {  // top / foot
+        return RelationValue{p[2] / p[1], (VectorX(4) << 0, -p[2] / (p[1] * p[1]), 1 / p[1], 0).finished()};
+    };
+    design.objective = {{"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
+    design.relations = {{.name = "taper", .bounds = {.lower = 0.6, .margin = 1e-5}, .at = taper}};
+    design.optimiser = {"ipopt", 12, 1e-4};
+    design.steps = 2;
+    const auto problem = DesignProblem::create(std::move(design));
+    REQUIRE(problem);
+    const auto outcome = studies::optimise_design(*problem);
+    REQUIRE(outcome);
+    const VectorX& p = outcome->report.point;
+    INFO(outcome->report.message << ": " << p.transpose());
+    CHECK(outcome->report.feasible);
+    CHECK(p[2] / p[1] >= 0.6);
+    CHECK(p[2] / p[1] < 0.6001);  // without it the top would shrink to 2 mm, a third of the foot
+    CHECK(p[1] == Approx(6e-3).epsilon(1e-3));
+}
+
 TEST_CASE("a design read from a file and one made in memory have the same bits") {
     const DesignFolder folder;
     const Design read = file_of(folder).design;
@@ -247,15 +269,30 @@ TEST_CASE("what is wrong with a design made in memory is told, all of it, by nam
     design.objective[1].quantity = std::make_shared<quantities::Mass>(std::vector<quantities::Mass::Of>{{7}});
     design.constraints[0].bounds.upper = 1e-3;
     design.scene.bodies[1].mesh.vertices *= 0.9;
+    design.relations = {{.name = "height"},  // the name of a constraint, and no function
+                        {.name = "short",
+                         .at =
+                             [](const VectorX&) {
+                                 return RelationValue{1, VectorX::Zero(1)};
+                             }},
+                        {.name = "infinite",
+                         .at =
+                             [](const VectorX&) {
+                                 return RelationValue{INFINITY, VectorX::Zero(4)};
+                             }},
+                        {.name = "order", .bounds = {.lower = 2, .upper = 1}, .at = [](const VectorX& p) {
+                             return RelationValue{p[0], VectorX::Unit(4, 0)};
+                         }}};
     const auto problem = DesignProblem::create(std::move(design));
     REQUIRE_FALSE(problem);
     const Errors& errors = problem.errors();
     const auto told = [&](const std::string& where) {
         return std::count_if(errors.begin(), errors.end(), [&](const Error& e) { return e.where.find(where) != std::string::npos; });
     };
-    CHECK(errors.size() == 7);
+    CHECK(errors.size() == 12);
+    CHECK(told("constraint `height`") == 2);
     for (const char* where : {"shape of body `part`", "parameter `foot`", "parameter `top`", "parameter `speed`", "objective `height`",
-                              "objective `mass`", "constraint `height`"}) {
+                              "objective `mass`", "relation `height`", "relation `short`", "relation `infinite`", "relation `order`"}) {
         INFO(where);
         CHECK(told(where) == 1);
     }

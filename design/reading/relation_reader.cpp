@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/relation_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "fettle/design/reading/expression.hpp"
+
+namespace fettle::design::reading {
+
+namespace {
+
+using core::files::JsonNode;
+using description::Bounds;
+using description::Relation;
+using description::RelationValue;
+
+constexpr double usual_slack = 1e-5;  // of what a relation changes by over the parameters' ranges: above what optimisers leave open
+
+// In which a number without a unit is understood; none: it has to have one.
+bool may_be_plain(const DimensionPowers& dimension) {
+    for (const Dimension plain : {Dimension::number, Dimension::length, Dimension::area, Dimension::mass}) {
+        if (same(dimension, powers_of(plain))) return true;
+    }
+    return false;
+}
+
+class RelationReader {
+public:
+    RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, std::set<std::string> names)
+        : context_(context), parameters_(parameters), names_(std::move(names)) {}
+
+    std::optional<Relation> read(const JsonNode& node) {
+        node.allow_keys({"type", "name", "expression", "lower", "upper", "margin", "tolerance"});
+        const auto text = node.require("expression").string();
+        const auto name = node["name"].string();
+        if (!node["lower"].exists() && !node["upper"].exists())
+            node.fail(ErrorCode::missing_key, "a relation has `lower`, `upper` or both");
+        if (!text) return std::nullopt;
+        const auto expression = read_expression(node["expression"], *text);
+        if (!expression) return std::nullopt;
+        const RelationValue start = value_at_start(node["expression"], *expression);
+        Relation relation;
+        relation.name = unique_name(name.value_or(*text), names_);
+        relation.at = [expression](const VectorX& p) { return evaluate(*expression, p); };
+        read_bounds(node, expression->dimension, change(start), relation);
+        return relation;
+    }
+
+private:
+    std::shared_ptr<const Expression> read_expression(const JsonNode& node, const std::string& text) const {
+        Result<Expression> expression = parse_expression(text, parameters_);
+        if (!expression) {
+            for (const Error& error : expression.errors()) node.fail(error.code, error.message);
+            return nullptr;
+        }
+        const auto& code = expression->code;
+        const bool depends =
+            std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.operation == Operation::parameter; });
+        if (!depends) node.fail(ErrorCode::inconsistent, "this names no parameter, so no design could change it");
+        return std::make_shared<const Expression>(std::move(expression).value());
+    }
+
+    RelationValue value_at_start(const JsonNode& node, const Expression& expression) const {
+        RelationValue start = evaluate(expression, description::values_of(parameters_));
+        if (!std::isfinite(start.value) || !start.gradient.allFinite())
+            node.fail(ErrorCode::not_finite, "its value or its derivative is not a finite number at the parameters' values");
+        return start;
+    }
+
+    // What it changes by, to first order, when every parameter goes from one bound to the other.
+    double change(const RelationValue& start) const {
+        double sum = 0;
+        for (size_t k = 0; k < parameters_.size(); ++k)
+            sum += std::abs(start.gradient[static_cast<Eigen::Index>(k)]) * (parameters_[k].upper - parameters_[k].lower);
+        return sum;
+    }
+
+    std::optional<double> amount(const JsonNode& node, const DimensionPowers& dimension) const {
+        if (!node.exists()) return std::nullopt;
+        if (!node.is_string()) {
+            const auto number = node.number();
+            if (!number) return std::nullopt;
+            if (may_be_plain(dimension)) {
+                const Dimension plain = *named_dimension(dimension);
+                return node.quantity(plain, context_.unit(plain));
+            }
+            node.fail(ErrorCode::wrong_type, "the expression is " + described(dimension) + "; write " + node.shown() + " with its unit");
+            return std::nullopt;
+        }
+        const Result<Expression> constant = parse_expression(*node.string(), {});
+        if (!constant) {
+            for (const Error& error : constant.errors()) node.fail(error.code, error.message);
+            return std::nullopt;
+        }
+        const double value = evaluate(*constant, {}).value;
+        if (!same(constant->dimension, dimension)) {
+            node.fail(ErrorCode::wrong_type,
+                      node.shown() + " is " + described(constant->dimension) + "; the expression is " + described(dimension));
+        } else if (!std::isfinite(value)) {
+            node.fail(ErrorCode::not_finite, node.shown() + " is not a finite number");
+        }
+        return value;
+    }
+
+    std::optional<double> not_negative(const JsonNode& node, const DimensionPowers& dimension) const {
+        const auto value = amount(node, dimension);
+        if (value && *value < 0) node.fail(ErrorCode::out_of_range, "this is not negative");
+        return value;
+    }
+
+    void read_bounds(const JsonNode& node, const DimensionPowers& dimension, double change, Relation& relation) const {
+        Bounds& bounds = relation.bounds;
+        if (may_be_plain(dimension)) bounds.unit = context_.unit(*named_dimension(dimension));
+        bounds.lower = amount(node["lower"], dimension).value_or(bounds.lower);
+        bounds.upper = amount(node["upper"], dimension).value_or(bounds.upper);
+        if (bounds.lower > bounds.upper) {
+            node["lower"].fail(ErrorCode::inconsistent,
+                               "the lower bound " + node["lower"].shown() + " is above the upper bound " + node["upper"].shown());
+        }
+        const bool equation = bounds.lower == bounds.upper;
+        const double usual = std::max(usual_slack * change, equation ? 1e-12 * std::abs(bounds.lower) : 0.0);
+        bounds.margin = not_negative(node["margin"], dimension).value_or(equation ? 0 : usual);
+        bounds.margin = std::clamp(bounds.margin, 0.0, std::max(0.0, (bounds.upper - bounds.lower) / 4));
+        relation.tolerance = not_negative(node["tolerance"], dimension).value_or(equation ? usual : 0);
+    }
+
+    const ReadContext& context_;
+    const std::vector<description::Parameter>& parameters_;
+    std::set<std::string> names_;
+};
+
+}  // namespace
+
+bool is_relation(const JsonNode& node) { return node.is_object() && node["type"].is_string() && *node["type"].string() == relation_type; }
+
+std::vector<Relation> read_relations(const JsonNode& node, const ReadContext& context,
+                                     const std::vector<description::Parameter>& parameters,
+                                     const std::vector<description::Constraint>& others) {
+    std::vector<Relation> result;
+    if (!node.is_array()) return result;  // told where the other constraints are read
+    std::set<std::string> names;
+    for (const description::Constraint& other : others) names.insert(other.name);
+    RelationReader reader(context, parameters, std::move(names));
+    for (const JsonNode& entry : node.elements()) {
+        if (!is_relation(entry)) continue;
+        if (auto relation = reader.read(entry)) result.push_back(std::move(*relation));
+    }
+    return result;
+}
+
+}  // namespace fettle::design::reading

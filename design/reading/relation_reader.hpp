@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// Reads the relations among the `constraints` of a design file: those of type `relation`. Part of design_reader.hpp.
+///     { "type": "relation", "expression": "crank_radius / rod_length", "upper": 0.35 }
+///     { "type": "relation", "name": "Grashof", "expression": "2 * (min(a, b, c, d) + max(a, b, c, d)) - (a + b + c + d)", "upper": 0 }
+///     { "type": "relation", "expression": "left + right", "lower": "30mm", "upper": "30mm" }
+/// The formula: expression.hpp.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/design/description/constraint.hpp"
+#include "fettle/design/description/parameter.hpp"
+#include "fettle/design/description/relation.hpp"
+#include "fettle/design/reading/read_context.hpp"
+
+namespace fettle::design::reading {
+
+inline constexpr std::string_view relation_type = "relation";
+
+/// Is this entry of `constraints` a relation? Tells no fault.
+bool is_relation(const core::files::JsonNode& node);
+
+/// A bound is a number (plain for pure numbers, lengths, areas and masses, in the file's units and grams), or a string with a unit of the
+/// expression's dimension. Margin and tolerance, where the file does not say: with c = 1e-5 sum |dr/dp_k| (upper_k - lower_k) at the
+/// parameters' values, a margin of c (at most a quarter of the band) and no tolerance, of an equation (lower = upper) no margin and a
+/// tolerance of c.
+/// @param node        The list of all constraints; those of other types are passed over.
+/// @param parameters  As read.
+/// @param others      The other constraints: relations get names that none of them has.
+/// Faults go to the node's document.
+std::vector<description::Relation> read_relations(const core::files::JsonNode& node, const ReadContext& context,
+                                                  const std::vector<description::Parameter>& parameters,
+                                                  const std::vector<description::Constraint>& others);
+
+}  // namespace fettle::design::reading

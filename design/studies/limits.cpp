@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fettle/design/problem/buildable.hpp"
+
+namespace fettle::design::studies {
+
+namespace {
+
+using description::Bounds;
+using description::Design;
+using description::Parameter;
+
+// Per parameter and direction (down, up): does it bring a violated requirement nearer, noticeably within the parameter's range?
+using Wanted = std::vector<std::array<bool, 2>>;
+
+void want(Wanted& wanted, const Design& design, const VectorX& gradient, double sign) {
+    VectorX change = sign * gradient;
+    for (Eigen::Index k = 0; k < change.size(); ++k) {
+        const Parameter& p = design.parameters[static_cast<size_t>(k)];
+        change[k] *= p.upper - p.lower;
+    }
+    constexpr double noticeable = 0.1;  // of what the most effective parameter does
+    const double threshold = noticeable * change.lpNorm<Eigen::Infinity>();
+    for (Eigen::Index k = 0; k < change.size(); ++k) {
+        if (std::abs(change[k]) > threshold) wanted[static_cast<size_t>(k)][change[k] > 0 ? 1 : 0] = true;
+    }
+}
+
+Wanted wanted_directions(const Design& design, const problem::DesignEvaluation& final, const MatrixX& jacobian) {
+    const bool known = jacobian.rows() == static_cast<Eigen::Index>(final.constraints.size());
+    Wanted wanted(design.parameters.size(), {!known, !known});
+    for (Eigen::Index i = 0; known && i < jacobian.rows(); ++i) {
+        const Bounds& bounds = design.constraints[static_cast<size_t>(i)].bounds;
+        const description::Measurement& measured = final.constraints[static_cast<size_t>(i)];
+        if (measured.lower < bounds.lower) want(wanted, design, jacobian.row(i).transpose(), 1);
+        if (measured.upper > bounds.upper) want(wanted, design, jacobian.row(i).transpose(), -1);
+    }
+    for (Eigen::Index i = 0; i < final.relations.values.size(); ++i) {
+        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const double value = final.relations.values[i];
+        if (description::violation(relation, value) <= 0) continue;
+        want(wanted, design, final.relations.jacobian.row(i).transpose(), value < relation.bounds.lower ? 1 : -1);
+    }
+    return wanted;
+}
+
+std::string amount(double si, const Unit& unit) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.6g %s", description::from_si(si, unit), std::string(unit.name).c_str());
+    return text;
+}
+
+class Limits {
+public:
+    Limits(const problem::DesignProblem& problem, const VectorX& point, const problem::DesignEvaluation& final)
+        : problem_(problem), design_(problem.design()), point_(point), final_(final) {}
+
+    std::vector<std::string> run(const MatrixX& jacobian, const std::vector<FailedTrial>& failures, int trials) {
+        add_parameters(wanted_directions(design_, final_, jacobian), jacobian.rows() > 0 || final_.relations.values.size() > 0);
+        add_failures(failures, trials);
+        if (!parts_to_blame_) add_requirements();
+        return std::move(lines_);
+    }
+
+private:
+    void add_parameters(const Wanted& wanted, bool directions_known) {
+        for (size_t k = 0; k < wanted.size(); ++k) {
+            const Parameter& p = design_.parameters[k];
+            for (const int up : {0, 1}) {
+                if (!wanted[k][static_cast<size_t>(up)]) continue;
+                const double bound = up == 1 ? p.upper : p.lower, value = point_[static_cast<Eigen::Index>(k)];
+                if (std::abs(bound - value) <= 1e-3 * (p.upper - p.lower)) {
+                    lines_.push_back("parameter " + p.name + " is at its " + (up == 1 ? "upper" : "lower") + " bound " +
+                                     amount(bound, p.unit));
+                } else if (directions_known) {
+                    add_reach(static_cast<int>(k), bound);
+                }
+            }
+        }
+    }
+
+    void add_reach(int k, double bound) {
+        const Parameter& p = design_.parameters[static_cast<size_t>(k)];
+        const problem::Reach reach = problem::reach(problem_, point_, k, bound);
+        constexpr double near = 0.1;  // of the range: what is further away is not what stopped the optimiser here
+        if (reach.obstacles.empty() || std::abs(reach.value - point_[k]) > near * (p.upper - p.lower)) return;
+        parts_to_blame_ = true;
+        lines_.push_back("parameter " + p.name + " can go no further than " + amount(reach.value, p.unit) + ", though its bound is " +
+                         amount(bound, p.unit) + ": " + problem::described(reach.obstacles.front()));
+    }
+
+    // By what keeps the parts from being made, or, of trials that were simulated, by the words of the first.
+    void add_failures(const std::vector<FailedTrial>& failures, int trials) {
+        std::vector<Errors> reasons;
+        for (const FailedTrial& failure : failures) {
+            Errors obstacles = problem_.obstacles(failure.point);
+            if (!obstacles.empty()) parts_to_blame_ = true;
+            if (obstacles.empty()) obstacles = {{ErrorCode::unsupported, "in the simulation", failure.reason}};
+            reasons.push_back(std::move(obstacles));
+        }
+        const std::string of = " of " + std::to_string(trials) + " trials failed, ";
+        for (const problem::Obstacle& obstacle : problem::tally(reasons))
+            lines_.push_back(std::to_string(obstacle.designs) + of + problem::described(obstacle.example));
+    }
+
+    void add_requirements() {
+        char text[300];
+        for (size_t i = 0; i < final_.constraints.size(); ++i) {
+            const description::Measurement& measured = final_.constraints[i];
+            const Bounds& bounds = design_.constraints[i].bounds;
+            if (description::violation(bounds, measured) <= 0) continue;
+            const double unit = bounds.unit;
+            std::snprintf(text, sizeof text, "%s is proven within [%.6g, %.6g], required is [%.6g, %.6g]",
+                          design_.constraints[i].name.c_str(), measured.lower / unit, measured.upper / unit, bounds.lower / unit,
+                          bounds.upper / unit);
+            lines_.push_back(text + (measured.fault.empty() ? "" : ": " + measured.fault));
+        }
+        for (size_t i = 0; i < design_.relations.size(); ++i) {
+            const description::Relation& relation = design_.relations[i];
+            const double value = final_.relations.values[static_cast<Eigen::Index>(i)], unit = relation.bounds.unit;
+            if (description::violation(relation, value) <= 0) continue;
+            std::snprintf(text, sizeof text, "%s is %.6g, required is [%.6g, %.6g]", relation.name.c_str(), value / unit,
+                          relation.bounds.lower / unit, relation.bounds.upper / unit);
+            lines_.emplace_back(text);
+        }
+    }
+
+    const problem::DesignProblem& problem_;
+    const Design& design_;
+    const VectorX& point_;
+    const problem::DesignEvaluation& final_;
+    std::vector<std::string> lines_;
+    bool parts_to_blame_ = false;
+};
+
+}  // namespace
+
+std::vector<std::string> limits_of(const problem::DesignProblem& problem, const VectorX& point, const problem::DesignEvaluation& final,
+                                   const MatrixX& jacobian, const std::vector<FailedTrial>& failures, int trials) {
+    return Limits(problem, point, final).run(jacobian, failures, trials);
+}
+
+}  // namespace fettle::design::studies

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/relation_reader.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/design/small_design.hpp"
+
+namespace {
+
+using namespace fettle;
+using namespace fettle::design::reading;
+using namespace fettle::tests::design_support;
+using fettle::design::description::Relation;
+using fettle::design::description::values_of;
+
+// The small design with further constraints: relation(s) as JSON.
+std::string with(const std::string& constraints) {
+    return replaced(small_design, "\"constraints\": [", "\"constraints\": [\n" + constraints + ",");
+}
+
+Result<DesignFile> read(const std::string& constraints) {
+    const DesignFolder folder(with(constraints));
+    return read_design(folder.design());
+}
+
+Relation relation(const std::string& text) {
+    const Result<DesignFile> file = read(text);
+    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(file);
+    REQUIRE(file->design.relations.size() == 1);
+    CHECK(file->design.constraints.size() == 5);
+    return file->design.relations[0];
+}
+
+struct Fault {
+    const char* text;
+    ErrorCode code;
+    const char *pointer, *words;
+};
+
+}  // namespace
+
+TEST_CASE("a ratio, a sum and a formula are read as relations between the parameters") {
+    const DesignFolder folder;
+    const VectorX p = values_of(read_design(folder.design())->design.parameters);  // 10 mm, 20 mm, 3 mm, 1000 kg/m^3, 40 deg/s
+    const Relation ratio = relation(R"({ "type": "relation", "name": "slender", "expression": "height / width", "upper": 0.6 })");
+    CHECK(ratio.name == "slender");
+    CHECK(ratio.bounds.upper == 0.6);
+    CHECK(std::isinf(ratio.bounds.lower));
+    CHECK(ratio.at(p).value == 0.5);
+    CHECK(ratio.at(p).gradient[1] == Approx(-0.01 / 4e-4));
+    // 1e-5 of what it changes by: 8 mm / 20 mm + 10 mm / 400 mm^2 * 15 mm
+    CHECK(ratio.bounds.margin == Approx(1e-5 * (0.4 + 0.375)));
+    CHECK(ratio.tolerance == 0);
+
+    const Relation sum = relation(R"({ "type": "relation", "expression": "height + width", "lower": "3cm", "upper": 30 })");
+    CHECK(sum.name == "height + width");
+    CHECK(sum.bounds.lower == 0.03);
+    CHECK(sum.bounds.upper == 0.03);
+    CHECK(sum.bounds.unit == 1e-3);
+    CHECK(sum.bounds.margin == 0);
+    CHECK(sum.tolerance == Approx(1e-5 * 23e-3));
+    CHECK(violation(sum, sum.at(p).value) == 0);
+
+    const Relation spin = relation(
+        R"({ "type": "relation", "expression": "speed * 2 s", "lower": "45 deg", "upper": "1.5 rad", "margin": "1 deg", "tolerance": "0.1 deg" })");
+    CHECK(spin.bounds.lower == Approx(std::acos(-1.0) / 4));
+    CHECK(spin.bounds.margin == Approx(std::acos(-1.0) / 180));
+    CHECK(spin.tolerance == Approx(std::acos(-1.0) / 1800));
+}
+
+TEST_CASE("relations and other constraints share their names") {
+    const Result<DesignFile> file = read(
+        R"({ "type": "relation", "expression": "height / width", "upper": 0.6 },
+           { "type": "relation", "name": "height / width", "expression": "height / width", "lower": 0.1 },
+           { "type": "relation", "name": "mass cube", "expression": "width", "lower": 15 })");
+    REQUIRE(file);
+    REQUIRE(file->design.relations.size() == 3);
+    CHECK(file->design.relations[1].name == "height / width 2");
+    CHECK(file->design.relations[2].name == "mass cube 2");
+}
+
+TEST_CASE("every fault of a relation is named, with its place") {
+    const Fault faults[] = {
+        {R"({ "type": "relatoin", "expression": "height / width", "upper": 1 })", ErrorCode::out_of_range, "/type", "relation"},
+        {R"({ "type": "relation", "expresion": "height / width", "upper": 1 })", ErrorCode::unknown_key, "/expresion", "expression"},
+        {R"({ "type": "relation", "upper": 1 })", ErrorCode::missing_key, "", "expression"},
+        {R"({ "type": "relation", "expression": 3, "upper": 1 })", ErrorCode::wrong_type, "/expression", ""},
+        {R"({ "type": "relation", "expression": "height / width" })", ErrorCode::missing_key, "", "`lower`, `upper` or both"},
+        {R"({ "type": "relation", "expression": "height / widht", "upper": 1 })", ErrorCode::out_of_range, "/expression",
+         "did you mean `width`?"},
+        {R"({ "type": "relation", "expression": "height + density", "upper": 1 })", ErrorCode::wrong_type, "/expression",
+         "a length and a density cannot be added"},
+        {R"({ "type": "relation", "expression": "2 * 3", "upper": 1 })", ErrorCode::inconsistent, "/expression", "names no parameter"},
+        {R"x({ "type": "relation", "expression": "sqrt(height / width - 1)", "upper": 1 })x", ErrorCode::not_finite, "/expression",
+         "not a finite number"},
+        {R"({ "type": "relation", "expression": "height + width", "upper": "30 g" })", ErrorCode::wrong_type, "/upper",
+         "\"30 g\" is a mass; the expression is a length"},
+        {R"({ "type": "relation", "expression": "height + width", "upper": "30 mmm" })", ErrorCode::parse, "/upper", "no such unit"},
+        {R"({ "type": "relation", "expression": "height + width", "upper": "width" })", ErrorCode::out_of_range, "/upper",
+         "there is no parameter `width`"},
+        {R"({ "type": "relation", "expression": "speed * 2 s", "upper": 1 })", ErrorCode::wrong_type, "/upper",
+         "the expression is an angle; write 1 with its unit"},
+        {R"({ "type": "relation", "expression": "height / width", "lower": 2, "upper": 1 })", ErrorCode::inconsistent, "/lower", "above"},
+        {R"({ "type": "relation", "expression": "height / width", "upper": 1, "margin": -0.1 })", ErrorCode::out_of_range, "/margin",
+         "not negative"},
+        {R"({ "type": "relation", "expression": "height / width", "upper": 1, "tolerance": -0.1 })", ErrorCode::out_of_range, "/tolerance",
+         "not negative"},
+    };
+    for (const Fault& fault : faults) {
+        const Result<DesignFile> file = read(fault.text);
+        INFO(fault.text);
+        REQUIRE_FALSE(file);
+        for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+        CHECK(file.errors().size() == (fault.code == ErrorCode::unknown_key ? 2 : 1));
+        const Error& error = file.errors()[0];
+        CHECK(error.code == fault.code);
+        CHECK(error.where.ends_with(std::string("#/constraints/0") + fault.pointer));
+        CHECK(error.message.find(fault.words) != std::string::npos);
+    }
+}
