@@ -59,7 +59,7 @@ double base_plate_volume(const Values& v, int n) {
 // Frusta between the rings of the tip.
 double follower_volume(const Values& v, int n) {
     const double r = v.at("tip_radius"), shank = v.at("shank_radius");
-    double volume = pin_area(n, shank) * v.at("shank_length") + pin_area(n, v.at("head_radius")) * v.at("head_thickness");
+    double volume = pin_area(n, v.at("head_radius")) * v.at("head_thickness");
     double lower = 0, lower_z = 0;
     for (int k = 1; k <= n / 2; ++k) {
         const double upper = 2 * k * shank / n, upper_z = r - std::sqrt(r * r - upper * upper);
@@ -67,7 +67,7 @@ double follower_volume(const Values& v, int n) {
         lower = upper;
         lower_z = upper_z;
     }
-    return volume;
+    return volume + pin_area(n, shank) * (v.at("length") - lower_z);
 }
 
 double closed_form_volume(const std::string& generator, const Values& v, int n) {
@@ -174,7 +174,7 @@ const std::vector<Range>& parameter_ranges() {
                                               {"coupler", "point_y", 0.014, 0.026},          {"base_plate", "pivot_x", 0.03, 0.07},
                                               {"base_plate", "pivot_y", -0.022, 0.005},      {"eccentric", "eccentricity", 0.003, 0.005},
                                               {"eccentric", "disc_radius", 0.01, 0.016},     {"follower", "shank_radius", 0.004, 0.00495},
-                                              {"follower", "shank_length", 0.024, 0.044},    {"follower", "tip_radius", 0.006, 0.014}};
+                                              {"follower", "length", 0.024, 0.044},          {"follower", "tip_radius", 0.006, 0.014}};
     return ranges;
 }
 
@@ -259,7 +259,8 @@ TEST_CASE("shapes: a value just inside each limit is a solid, just outside is re
         {"eccentric", "eccentricity", (0.012 - 0.0035) * flat},
         {"eccentric", "eccentricity", 0.009 * flat, {{"shaft_radius", 0.003}}},
         {"follower", "shank_radius", 0.007},
-        {"follower", "shank_radius", 0.006, {{"tip_radius", 0.006}}}};
+        {"follower", "shank_radius", 0.006, {{"tip_radius", 0.006}}},
+        {"follower", "shank_radius", 0.006, {{"length", 0.006}}}};
     for (const auto& [generator, dimension, limit, others] : limits) {
         INFO(generator << "/" << dimension);
         Values values = others;
