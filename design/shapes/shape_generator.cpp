@@ -7,15 +7,18 @@
 #include <utility>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/shapes/cam_parts.hpp"
 #include "fettle/design/shapes/engine_parts.hpp"
+#include "fettle/design/shapes/linkage_parts.hpp"
 #include "fettle/design/shapes/simple_shapes.hpp"
 
 namespace fettle::design::shapes {
 namespace {
 
 std::vector<ShapeDefinition> definitions() {
-    return {crank_definition(), rod_definition(), piston_definition(),         block_definition(),
-            box_definition(),   pin_definition(), plate_with_hole_definition()};
+    return {crank_definition(), rod_definition(),     piston_definition(),          block_definition(),
+            box_definition(),   pin_definition(),     plate_with_hole_definition(), base_plate_definition(),
+            arm_definition(),   coupler_definition(), eccentric_definition(),       follower_definition()};
 }
 
 std::string in_millimetres(double metres) {
