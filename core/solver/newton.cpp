@@ -24,6 +24,9 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
+constexpr double bold_fraction = 0.25;         // a step cut below this was too bold
+constexpr double negligible_shift = 1e-2;      // of the inertia, which is in the Hessian whole: what a step with it misses is its square
+constexpr int most_failures = 6;               // to find a step at all, each with a larger shift
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
@@ -37,6 +40,7 @@ class Minimiser {
 public:
     Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
         : problem_(std::move(problem)), model_(*problem_.model), targets_(targets), workspace_(workspace), options_(options) {
+        if (options_.caution > 0) shift_ = options_.caution;
         at_ = options_.start.empty() ? start_of_step() : Iterate{options_.start, poses_of(problem_, options_.start), {}};
         result_.path.push_back(at_.points);
     }
@@ -46,14 +50,14 @@ public:
         cover(here);
         settle(at_.poses, workspace_.candidates);
         find_contacts();
-        const bool frictional = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
+        frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
-            if (frictional) lag_friction();
+            if (frictional_) lag_friction();
             value_ = potential(at_.points, at_.poses);
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
-        } while (frictional && another_round());
+        } while (frictional_ && another_round());
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
         result_.friction = std::move(problem_.friction);
@@ -94,6 +98,15 @@ private:
         problem_.friction =
             contact::lag_friction(model_, at_.contacts, at_.poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
         ++result_.friction_rounds;
+    }
+
+    // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
+    // they are there. They are held from where caution ends.
+    void follow_friction() {
+        find_contacts();
+        lag_friction();
+        --result_.friction_rounds;
+        value_ = potential(at_.points, at_.poses);
     }
 
     // A round that needed no step has met its own normal forces: the fixed point.
@@ -141,6 +154,8 @@ private:
             projected_iterations_ = std::max(projected_iterations_, careful_iterations);
         const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * model_.dhat;
         drive_.adapt(fraction, has_arrived(*direction), relaxed);
+        if (is_cautious()) adapt_shift(*direction, fraction);
+        if (fraction > 0 && frictional_ && shift_ > 0) follow_friction();
         return fraction > 0 ? go_on_from_step(*direction, fraction) : go_on_without_step(*direction);
     }
 
@@ -148,14 +163,17 @@ private:
     std::optional<Direction> find_direction() {
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
-        const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, kind, drive_.share(), workspace_);
+        const HessianChoice hessian{kind, is_cautious() ? std::optional(shift_) : std::nullopt};
+        const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, hessian, drive_.share(), workspace_);
         if (direction && direction->kind != kind) projected_iterations_ = 1;
         return direction;
     }
 
     bool go_on_without_step(const Direction& direction) {
         if (!has_arrived(direction) && drive_.try_less()) return true;
-        if (direction.kind == HessianKind::exact) {
+        if (is_cautious()) {
+            if (++failures_ <= most_failures) return true;  // with a larger shift
+        } else if (direction.kind == HessianKind::exact) {
             projected_iterations_ = 3;
             return true;
         }
@@ -164,6 +182,7 @@ private:
     }
 
     bool go_on_from_step(const Direction& direction, double fraction) {
+        if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
         if (!has_arrived(direction) && drive_.is_stalled()) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
@@ -171,11 +190,51 @@ private:
         }
         // A full exact step this small leaves an error of its square over the gap: rounding.
         const double rounding_motion = 1e-7 * std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin);
-        const bool exact = fraction == 1 && has_arrived(direction) && direction.kind == HessianKind::exact;
+        const bool exact =
+            fraction == 1 && has_arrived(direction) && direction.kind == HessianKind::exact && direction.shift <= negligible_shift;
         if (!options_.to_rounding || !exact || direction.motion > rounding_motion) return true;
         find_contacts();  // the residual that is reported belongs to the final point
         result_.residual = residual_at(problem_, at_, workspace_);
         return is_accurate_enough(result_.residual) ? stop(NewtonStatus::converged) : true;
+    }
+
+    // What has gone farther than anything that is held would. @return empty if nothing has
+    std::string lost_bodies() const {
+        constexpr double company = 0.5;  // others that have gone half as far go with it
+        double most = 0;
+        std::vector<double> gone(at_.points.size(), 0);
+        for (std::size_t i = 0; i < gone.size(); ++i) {
+            if (!energy::has_free_dof(model_.bodies[i])) continue;
+            const double way = (at_.points[i].position - problem_.poses_t0[i].position).norm() / options_.farthest;
+            gone[i] = std::max(way, at_.points[i].rotation_vector.norm() / options_.widest_turn);
+            most = std::max(most, gone[i]);
+        }
+        if (most < 1) return {};
+        std::string names;
+        for (std::size_t i = 0; i < gone.size(); ++i)
+            if (gone[i] >= company) names += (names.empty() ? "'" : ", '") + model_.bodies[i].name + "'";
+        return names + ": not held: loads move it out of the scene, or round a whole turn, and nothing stops it";
+    }
+
+    bool is_cautious() const { return options_.caution > 0; }
+
+    // Levenberg's way: where a step was cut, the shift becomes the curvature that would have made it as short; where the quadratic model
+    // holds it falls. What is driven is in the way of what it pushes until it has arrived: until then everything is as inert as at first.
+    void adapt_shift(const Direction& direction, double fraction) {
+        if (fraction > 0) failures_ = 0;
+        shift_ = std::max(shift_, direction.shift);
+        const double largest = 1e4 * options_.caution;
+        if (!has_arrived(direction)) {
+            shift_ = fraction > 0 ? options_.caution : std::min(10 * shift_, largest);
+        } else if (fraction < bold_fraction) {
+            const double curvature = direction.inertia > 0 ? -direction.slope / direction.inertia : 0;
+            const double least = std::max(1.0, 4 * shift_);
+            shift_ = std::clamp(fraction > 0 ? curvature / fraction : 0, std::min(least, largest), largest);
+        } else if (fraction == 1) {
+            const double share = value_change_ / direction.slope;  // a quadratic's is a half
+            shift_ *= std::abs(share - 0.5) < 0.1 ? 0.01 : share > 0.25 ? 0.1 : 0.5;
+            if (shift_ < negligible_shift) shift_ = 0;
+        }
     }
 
     // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the
@@ -229,6 +288,7 @@ private:
             settle(poses, workspace_.candidates);
             at_.points = std::move(trial);
             at_.poses = std::move(poses);
+            value_change_ = value - value_;
             value_ = value;
             result_.path.push_back(at_.points);
             return fraction;
@@ -264,7 +324,11 @@ private:
     NewtonWorkspace& workspace_;
     const NewtonOptions& options_;
     Iterate at_;
-    double value_ = 0;  // of the potential, there
+    double value_ = 0;         // of the potential, there
+    double value_change_ = 0;  // by the last step
+    double shift_ = 0;         // of the next Hessian, if cautious
+    bool frictional_ = false;
+    int failures_ = 0;  // to find a step, in a row, if cautious
     PrescribedDrive drive_;
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction

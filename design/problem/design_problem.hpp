@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ private:
     description::Design design_;
     std::vector<Vector3> reference_points_;
     double kappa_ = 0;
+    std::optional<double> proximal_weight_;  // of quasi-static steps
 };
 
 }  // namespace fettle::design::problem
