@@ -26,6 +26,7 @@ constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
 constexpr double bold_fraction = 0.25;         // a step cut below this was too bold
 constexpr double negligible_shift = 1e-2;      // of the inertia, which is in the Hessian whole: what a step with it misses is its square
+constexpr int patient_shifts = 8;              // of the exact Hessian, where nothing is driven
 constexpr int most_failures = 6;               // to find a step at all, each with a larger shift
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
@@ -152,7 +153,7 @@ private:
         // Cut short by the potential, not by CCD: contacts that change from sliding one way to the other, over the valley where they stick.
         if (!problem_.friction.pairs.empty() && fraction < short_step * limiting_.fraction)
             projected_iterations_ = std::max(projected_iterations_, careful_iterations);
-        const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * model_.dhat;
+        const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * room_to_give();
         drive_.adapt(fraction, has_arrived(*direction), relaxed);
         if (is_cautious()) adapt_shift(*direction, fraction);
         if (fraction > 0 && frictional_ && shift_ > 0) follow_friction();
@@ -163,9 +164,11 @@ private:
     std::optional<Direction> find_direction() {
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
-        const HessianChoice hessian{kind, is_cautious() ? std::optional(shift_) : std::nullopt};
+        // What is pushed must not be made heavy: until all has arrived the projected Hessian is better than a large shift.
+        const HessianChoice hessian{kind, is_cautious() ? std::optional(shift_) : std::nullopt, arrived_ ? patient_shifts : 1};
         const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, hessian, drive_.share(), workspace_);
-        if (direction && direction->kind != kind) projected_iterations_ = 1;
+        if (direction && direction->kind != kind && !is_cautious()) projected_iterations_ = 1;
+        if (direction) arrived_ = has_arrived(*direction);
         return direction;
     }
 
@@ -215,6 +218,10 @@ private:
             if (gone[i] >= company) names += (names.empty() ? "'" : ", '") + model_.bodies[i].name + "'";
         return names + ": not held: loads move it out of the scene, or round a whole turn, and nothing stops it";
     }
+
+    // Far inside the activation distance a step of Newton's doubles the gap, and is short all the same: without inertia to drive against,
+    // what is pushed has given way when it moves by little of the gap.
+    double room_to_give() const { return is_cautious() ? std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin) : model_.dhat; }
 
     bool is_cautious() const { return options_.caution > 0; }
 
@@ -328,7 +335,8 @@ private:
     double value_change_ = 0;  // by the last step
     double shift_ = 0;         // of the next Hessian, if cautious
     bool frictional_ = false;
-    int failures_ = 0;  // to find a step, in a row, if cautious
+    bool arrived_ = false;  // prescribed coordinates, at the last iteration
+    int failures_ = 0;      // to find a step, in a row, if cautious
     PrescribedDrive drive_;
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction

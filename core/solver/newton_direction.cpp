@@ -113,9 +113,8 @@ std::optional<double> factorise(const StepProblem& problem, const Iterate& at, N
 }
 
 constexpr double shift_growth = 10;
-constexpr int exact_shifts = 8;  // of the exact Hessian, before the projected one is taken
 
-// The same with a shift that is asked for: the exact Hessian is kept as long as a moderate shift makes it definite.
+// The same with a shift that is asked for: the exact Hessian is kept as long as its tries last.
 std::optional<double> factorise_shifted(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d,
                                         const HessianChoice& choice, HessianKind& kind) {
     if (!is_finite(d, workspace.dofs)) return std::nullopt;
@@ -130,7 +129,7 @@ std::optional<double> factorise_shifted(const StepProblem& problem, const Iterat
             const auto span = workspace.clock.charge(SolvePhase::linear_solve);
             if (workspace.linear.factorise(d.hessian)) return shift;
         }
-        if (kind == HessianKind::exact && tries == exact_shifts) {
+        if (kind == HessianKind::exact && tries == choice.exact_shifts) {
             kind = HessianKind::projected;
             d = derivatives(problem, at, kind, workspace);
             if (!is_finite(d, workspace.dofs)) return std::nullopt;

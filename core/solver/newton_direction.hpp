@@ -36,16 +36,16 @@ struct Direction {
 /// Which Hessian is asked for.
 struct HessianChoice {
     contact::HessianKind kind = contact::HessianKind::exact;
-    std::optional<double>
-        shift;  ///< at least this much of the inertia is added, and the exact Hessian kept as long as that can make it definite
+    std::optional<double> shift;  ///< at least this much of the inertia is added
+    int exact_shifts = 1;         ///< how many are tried on the exact Hessian before the projected one is taken
 };
 
-/// @param hessian  the one to try first. Without a shift: where the exact one is not positive definite the projected one is taken. Where
-/// that is not
-///                 definite either (a body in unstable balance is left without stiffness in a direction; rounding), it is shifted by
+/// @param hessian  the one to try first. Without a shift: where the exact one is not positive definite the projected one is taken; where
+///                 that is not definite either (a body in unstable balance is left without stiffness in a direction; rounding), it is
+///                 shifted by
 ///                   shift * (inertia of each body + 1e-10 |diagonal|),   shift = 1e-2, 1, 100, ...
-///                 until it is. With one: exact + shift * (the same), the shift growing tenfold from the one asked for, and only then the
-///                 projected one. (Without inertia to speak of, the projected one is far too stiff along what slides: quasi-statics.)
+///                 until it is. With one: exact + shift * (the same), the shift growing tenfold from the one asked for, then the projected
+///                 one likewise. (Without inertia to speak of, the projected one is far too stiff along what slides: quasi-statics.)
 /// @param targets  as for minimise.
 /// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
 /// @return nullopt if gradient, Hessian or what follows from them are not finite: nothing else stops it.
