@@ -181,7 +181,7 @@ TEST_CASE("quasi-static sweeps: what slides freely goes along with everything", 
             Vector6 expected;
             expected << shift + turn.cross(trajectory.poses[t][i].position), turn;
             CAPTURE(t, i);
-            CHECK(((*tangents)[t][i] - expected).norm() < 1e-8);
+            CHECK(((*tangents)[t][i] - expected).norm() < 1e-7);  // W kappa/m times the unit roundoff, some contacts
         }
     for (Vector6& increment : motor.bodies[1].increment_dot) increment[5] = 0.05;
     CHECK(check_sweeps(scene, trajectory, seeds, motor).norm() > 0);
