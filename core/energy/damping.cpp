@@ -40,12 +40,6 @@ void report_no_damping(const SolvedStep&, TermReport&) {}
 
 }  // namespace
 
-Matrix4 damping_moments(const model::Body& body) {
-    const scene::Damping& c = body.damping;
-    const Eigen::Vector4d first = body.moments.col(3);
-    return c.angular * body.moments + (c.linear - c.angular) / first[3] * first * first.transpose();
-}
-
 const Term damping_term{"damping", add_damping_value, add_damping_derivatives, report_no_damping};
 
 }  // namespace fettle::core::energy

@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/energy/damping.hpp"
+#include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 

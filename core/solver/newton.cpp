@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/solver/caution.hpp"
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"
 #include "fettle/core/solver/prescribed_drive.hpp"
@@ -24,10 +25,7 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
-constexpr double bold_fraction = 0.25;         // a step cut below this was too bold
-constexpr double negligible_shift = 1e-2;      // of the inertia, which is in the Hessian whole: what a step with it misses is its square
 constexpr int patient_shifts = 8;              // of the exact Hessian, where nothing is driven
-constexpr int most_failures = 6;               // to find a step at all, each with a larger shift
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
@@ -40,8 +38,12 @@ constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjo
 class Minimiser {
 public:
     Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
-        : problem_(std::move(problem)), model_(*problem_.model), targets_(targets), workspace_(workspace), options_(options) {
-        if (options_.caution > 0) shift_ = options_.caution;
+        : problem_(std::move(problem)),
+          model_(*problem_.model),
+          targets_(targets),
+          workspace_(workspace),
+          options_(options),
+          caution_(options.caution) {
         at_ = options_.start.empty() ? start_of_step() : Iterate{options_.start, poses_of(problem_, options_.start), {}};
         result_.path.push_back(at_.points);
     }
@@ -155,8 +157,8 @@ private:
             projected_iterations_ = std::max(projected_iterations_, careful_iterations);
         const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * room_to_give();
         drive_.adapt(fraction, has_arrived(*direction), relaxed);
-        if (is_cautious()) adapt_shift(*direction, fraction);
-        if (fraction > 0 && frictional_ && shift_ > 0) follow_friction();
+        if (caution_.is_on()) adapt_caution(*direction, fraction);
+        if (fraction > 0 && frictional_ && caution_.shift() > 0) follow_friction();
         return fraction > 0 ? go_on_from_step(*direction, fraction) : go_on_without_step(*direction);
     }
 
@@ -165,17 +167,17 @@ private:
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
         // What is pushed must not be made heavy: until all has arrived the projected Hessian is better than a large shift.
-        const HessianChoice hessian{kind, is_cautious() ? std::optional(shift_) : std::nullopt, arrived_ ? patient_shifts : 1};
+        const HessianChoice hessian{kind, caution_.is_on() ? std::optional(caution_.shift()) : std::nullopt, arrived_ ? patient_shifts : 1};
         const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, hessian, drive_.share(), workspace_);
-        if (direction && direction->kind != kind && !is_cautious()) projected_iterations_ = 1;
+        if (direction && direction->kind != kind && !caution_.is_on()) projected_iterations_ = 1;
         if (direction) arrived_ = has_arrived(*direction);
         return direction;
     }
 
     bool go_on_without_step(const Direction& direction) {
         if (!has_arrived(direction) && drive_.try_less()) return true;
-        if (is_cautious()) {
-            if (++failures_ <= most_failures) return true;  // with a larger shift
+        if (caution_.is_on()) {
+            if (caution_.may_try_again()) return true;
         } else if (direction.kind == HessianKind::exact) {
             projected_iterations_ = 3;
             return true;
@@ -221,27 +223,14 @@ private:
 
     // Far inside the activation distance a step of Newton's doubles the gap, and is short all the same: without inertia to drive against,
     // what is pushed has given way when it moves by little of the gap.
-    double room_to_give() const { return is_cautious() ? std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin) : model_.dhat; }
+    double room_to_give() const {
+        return caution_.is_on() ? std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin) : model_.dhat;
+    }
 
-    bool is_cautious() const { return options_.caution > 0; }
-
-    // Levenberg's way: where a step was cut, the shift becomes the curvature that would have made it as short; where the quadratic model
-    // holds it falls. What is driven is in the way of what it pushes until it has arrived: until then everything is as inert as at first.
-    void adapt_shift(const Direction& direction, double fraction) {
-        if (fraction > 0) failures_ = 0;
-        shift_ = std::max(shift_, direction.shift);
-        const double largest = 1e4 * options_.caution;
-        if (!has_arrived(direction)) {
-            shift_ = fraction > 0 ? options_.caution : std::min(10 * shift_, largest);
-        } else if (fraction < bold_fraction) {
-            const double curvature = direction.inertia > 0 ? -direction.slope / direction.inertia : 0;
-            const double least = std::max(1.0, 4 * shift_);
-            shift_ = std::clamp(fraction > 0 ? curvature / fraction : 0, std::min(least, largest), largest);
-        } else if (fraction == 1) {
-            const double share = value_change_ / direction.slope;  // a quadratic's is a half
-            shift_ *= std::abs(share - 0.5) < 0.1 ? 0.01 : share > 0.25 ? 0.1 : 0.5;
-            if (shift_ < negligible_shift) shift_ = 0;
-        }
+    void adapt_caution(const Direction& direction, double fraction) {
+        const double curvature = direction.inertia > 0 ? -direction.slope / direction.inertia : 0;
+        const double gain_share = fraction > 0 ? value_change_ / direction.slope : 0;
+        caution_.adapt({fraction, direction.shift, curvature, gain_share, has_arrived(direction)});
     }
 
     // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the
@@ -333,11 +322,10 @@ private:
     Iterate at_;
     double value_ = 0;         // of the potential, there
     double value_change_ = 0;  // by the last step
-    double shift_ = 0;         // of the next Hessian, if cautious
     bool frictional_ = false;
     bool arrived_ = false;  // prescribed coordinates, at the last iteration
-    int failures_ = 0;      // to find a step, in a row, if cautious
     PrescribedDrive drive_;
+    Caution caution_;
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction
     int projected_iterations_ = 0;
