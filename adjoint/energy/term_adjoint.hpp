@@ -20,6 +20,7 @@ using StepEnd = core::energy::DerivativesAt;
 /// Gradients in the constants of one step that follow from the steps before it and from the shapes, by seed and body.
 struct StepGradient {
     std::vector<std::vector<Matrix34>> pose_hat_bar;
+    std::vector<std::vector<Matrix34>> slip_reference_bar;
     std::vector<std::vector<Matrix4>> moments_bar;
 };
 
@@ -27,6 +28,7 @@ struct StepGradient {
 struct StepTangent {
     const std::vector<Matrix34>& poses_dot;
     const std::vector<Matrix34>& pose_hat_dot;
+    const std::vector<Matrix34>& slip_reference_dot;
     const std::vector<Matrix4>& moments_dot;
 };
 

@@ -35,7 +35,7 @@ public:
         out_.assign(seeds.size(), zero_model_gradient(model, steps));
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
-        step_bar_.pose_hat_bar = end_;
+        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = end_;
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
         lambda_ = motion_ = y_bar_;
@@ -71,8 +71,9 @@ private:
         const LinearisedStep step = linearise_step(model_, trajectory_, t);
         if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
         solve(step);
-        for (auto& bodies : step_bar_.pose_hat_bar)
-            for (Matrix34& bar : bodies) bar.setZero();
+        for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
+            for (auto& bodies : *bars)
+                for (Matrix34& bar : bodies) bar.setZero();
         energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             const std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
@@ -127,10 +128,15 @@ private:
         start_[s][i].leftCols<3>() += 0.5 * cross_matrix(base_bar) * trajectory_.poses[t][i].rotation;
     }
 
-    // P_hat of implicit Euler, from the two configurations before.
+    // P_hat of implicit Euler, from the two configurations before; a quasi-static one is the start. P_slip is the start for both.
     void pose_hat_back(int t, std::size_t s, std::size_t i) {
         const double h = model_.timestep;
         const Matrix34& pose_hat_bar = step_bar_.pose_hat_bar[s][i];
+        start_[s][i] += step_bar_.slip_reference_bar[s][i];
+        if (model_.integrator == core::scene::Integrator::quasi_static) {
+            start_[s][i] += pose_hat_bar;
+            return;
+        }
         out_[s].gravity_bar += h * h * pose_hat_bar.col(3);
         if (t > 0) {
             start_[s][i] += 2 * pose_hat_bar;

@@ -12,6 +12,7 @@ namespace {
 
 using core::kinematics::pose_matrix;
 
+// Implicit Euler's; a quasi-static step does not look at them.
 std::vector<Matrix34> velocities_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t) {
     std::vector<Matrix34> velocities(model.bodies.size());
     for (std::size_t i = 0; i < velocities.size(); ++i)
@@ -22,10 +23,10 @@ std::vector<Matrix34> velocities_at(const core::model::Model& model, const core:
 
 Errors check_integrator(const core::model::Model& model) {
     using core::scene::Integrator;
-    if (model.integrator == Integrator::implicit_euler) return {};
+    if (model.integrator == Integrator::implicit_euler || model.integrator == Integrator::quasi_static) return {};
     const std::string name = model.integrator == Integrator::bdf2 ? "bdf2" : "newmark";
     Errors errors{energy::refusal("integrator", "a simulation by `" + name + "`")};
-    errors.back().message += "; `implicit_euler` can";
+    errors.back().message += "; `implicit_euler` and `quasi_static` can";
     return errors;
 }
 
@@ -45,7 +46,7 @@ bool rotates_freely(const core::model::Body& body) { return is_free(body, 3) && 
 
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t) {
     LinearisedStep step;
-    step.problem = core::energy::implicit_euler_problem(model, trajectory.poses[t], velocities_at(model, trajectory, t));
+    step.problem = core::energy::step_problem(model, {trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}}, model.kappa);
     step.poses = trajectory.poses[t + 1];
     step.points = trajectory.steps[t].nodes.back();
     const core::contact::Candidates candidates = core::contact::find_candidates(model, step.poses, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One implicit Euler step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from
-/// the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing else.
+/// One step, of implicit Euler or quasi-static, linearised about its solution: what the reverse and the forward sweep share. Everything is
+/// computed anew from the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing
+/// else.
 #pragma once
 
 #include "fettle/core/base/result.hpp"
@@ -29,7 +30,7 @@ Errors factorise(const core::stepper::Trajectory& trajectory, int t, const Linea
 MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
                       const core::kinematics::BlockHessian& hessian, const MatrixX& rhs);
 
-/// What the sweeps cannot differentiate, by name: integrators other than implicit Euler, what the terms refuse (adjoint/energy: shells,
+/// What the sweeps cannot differentiate, by name: bdf2 and newmark, what the terms refuse (adjoint/energy: shells,
 /// wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of poses (all unsupported); a step
 /// that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the
 /// model (number of bodies, time step).

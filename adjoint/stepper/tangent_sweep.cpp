@@ -108,6 +108,7 @@ private:
     }
 
     Matrix34 pose_hat_change(std::size_t i) const {
+        if (model_.integrator == core::scene::Integrator::quasi_static) return poses_dot_[i];
         const double h = model_.timestep;
         Matrix34 change = poses_dot_[i] + h * velocities_dot_[i];
         change.col(3) += h * h * direction_.gravity_dot;
@@ -127,7 +128,7 @@ private:
             pose_hat_dot[i] = pose_hat_change(i);
         }
         const contact::PoseGradientTangent energy =
-            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, moments_dot_}, direction_);
+            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, poses_dot_, moments_dot_}, direction_);
         std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);

@@ -6,6 +6,12 @@
 namespace fettle::core::energy {
 namespace {
 
+// What gravity does along the step, where the inertia leaves it out; from the poses' difference, so that nothing large cancels.
+double gravity_work(const StepProblem& problem, std::size_t i, const kinematics::Pose& pose) {
+    const Matrix34 moved = pose_matrix(pose) - pose_matrix(problem.poses_t0[i]);
+    return problem.gravity.dot(moved * problem.model->bodies[i].moments.col(3));
+}
+
 void add_loads_value(const ValueAt& at, TermValues& values) {
     const StepProblem& problem = at.problem;
     for (std::size_t i = 0; i < at.poses.size(); ++i) {
@@ -13,6 +19,7 @@ void add_loads_value(const ValueAt& at, TermValues& values) {
         if (!has_free_dof(body)) continue;
         values.bodies[i] -= problem.weight * (body.force.dot(at.poses[i].position - problem.poses_t0[i].position) +
                                               problem.torque[i].dot(at.points[i].rotation_vector));
+        if (!problem.gravity.isZero(0)) values.bodies[i] -= problem.weight * gravity_work(problem, i, at.poses[i]);
     }
 }
 
@@ -23,8 +30,15 @@ void add_loads_derivatives(const DerivativesAt& at, TermDerivatives& d) {
         const model::Body& body = problem.model->bodies[i];
         d.chart_gradient[i] -= problem.weight * problem.torque[i];
         if (!has_free_dof(body)) continue;
+        const double arm = std::max(body.radius, problem.model->dhat);
         d.own[i].force -= problem.weight * body.force;
-        d.own_magnitude[i] += problem.weight * (body.force.norm() + body.torque.norm() / std::max(body.radius, problem.model->dhat));
+        d.own_magnitude[i] += problem.weight * (body.force.norm() + body.torque.norm() / arm);
+        if (problem.gravity.isZero(0)) continue;
+        kinematics::PoseGradient gradient;
+        add_gravity_gradient(problem, i, at.poses[i], gradient);
+        d.own[i].force += gradient.force;
+        d.own[i].arm += gradient.arm;
+        d.own_magnitude[i] += gradient.force.norm() + gradient.arm.norm() / arm;
     }
 }
 
@@ -39,6 +53,13 @@ void add_loads_report(const SolvedStep& step, TermReport& report) {
 }
 
 }  // namespace
+
+void add_gravity_gradient(const StepProblem& problem, std::size_t body, const kinematics::Pose& pose, kinematics::PoseGradient& gradient) {
+    const Matrix4& moments = problem.model->bodies[body].moments;
+    const Vector3 first = pose.rotation * moments.topRightCorner<3, 1>();
+    gradient.force -= problem.weight * moments(3, 3) * problem.gravity;
+    gradient.arm -= problem.weight * problem.gravity * first.transpose();
+}
 
 const Term loads_term{"loads", add_loads_value, add_loads_derivatives, add_loads_report};
 

@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 
@@ -78,7 +80,7 @@ RigidRates newmark_rates(const model::Body& body, double h, const Matrix34& befo
     return out;
 }
 
-// Under gravity and the body's own loads.
+// Under gravity, the body's own loads and its damping.
 Matrix34 start_acceleration(const model::Model& model, const model::Body& body) {
     const Matrix3& R = body.pose_start.rotation;
     Matrix34 gravity = Matrix34::Zero();
@@ -86,6 +88,7 @@ Matrix34 start_acceleration(const model::Model& model, const model::Body& body) 
     Vector6 force = force_of(gravity, body.moments, R);
     force.head<3>() += body.force;
     force.tail<3>() += body.torque;
+    if (is_damped(body)) force -= force_of(body.velocity_start, damping_moments(body), R);
     const Vector3 omega = axial(body.velocity_start.leftCols<3>() * R.transpose());
     return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
 }
@@ -115,8 +118,16 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
     IntegrationStep step;
     const bool bdf2 = model.integrator == Integrator::bdf2 && !history.poses_before.empty();
     const bool newmark = model.integrator == Integrator::newmark;
+    const bool quasi_static = model.integrator == Integrator::quasi_static;
     step.slip_time = bdf2 ? 2 * h / 3 : newmark ? h / 2 : h;
     step.weight = step.slip_time * step.slip_time;
+    step.damping_weight = step.slip_time;
+    if (quasi_static) {
+        FETTLE_ASSERT(model.proximal_weight > 0, "a quasi-static model has a proximal weight");
+        step.weight = model.proximal_weight;
+        step.damping_weight = 0;
+        step.gravity = model.gravity;
+    }
     step.pose_hat.resize(n);
     step.slip_reference.resize(n);
     step.torque.resize(n);
@@ -132,13 +143,15 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
             slip = pose + 0.5 * h * velocity;
             hat = pose + h * velocity + step.weight * history.accelerations[i];
             hat.col(3) += step.weight * model.gravity;
+        } else if (quasi_static) {
+            slip = hat = pose;
         } else {
             slip = pose;
             hat = pose + h * velocity;
             hat.col(3) += h * h * model.gravity;
         }
         const model::Body& body = model.bodies[i];
-        const bool second_order = model.integrator != Integrator::implicit_euler && !body.torque.isZero(0);
+        const bool second_order = model.integrator != Integrator::implicit_euler && !quasi_static && !body.torque.isZero(0);
         step.torque[i] = second_order ? chart_torque(body, history.poses[i].rotation, hat) : body.torque;
     }
     return step;
@@ -153,7 +166,9 @@ History advanced(const model::Model& model, const History& history, const Integr
     if (newmark) next.accelerations.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Matrix34 pose = pose_matrix(poses[i]), before = pose_matrix(history.poses[i]);
-        if (is_prescribed(model.bodies[i])) {
+        if (model.integrator == Integrator::quasi_static) {
+            next.velocities[i].setZero();
+        } else if (is_prescribed(model.bodies[i])) {
             next.velocities[i] = (pose - before) / h;
             if (newmark) next.accelerations[i].setZero();
         } else if (newmark) {

@@ -7,10 +7,14 @@
 ///                           + (2h/3)^2 a;  the first step is one of implicit Euler
 ///   Newmark 1/4,1/2 P_hat = P0 + h V0 + h^2/4 (A0 + a)       weight h^2/4      P_slip = P0 + h/2 V0       slip_time = h/2
 ///                   then A by Euler's equation from the force that the step has balanced, V = V0 + h/2 (A0 + A), for v and omega
-/// with a the acceleration of gravity. Bodies that are prescribed altogether have V = (P - P0) / h.
-/// Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps energy, and rings in stiff contact.
-/// A free spin omega about a principal axis: implicit Euler brakes it by a share h omega^2 per unit of time (after a turn of phi = h omega
-/// comes one of phi - phi^3), so that omega(t) = omega_0 / sqrt(1 + 2 h omega_0^2 t); with BDF2 and Newmark the loss is O(h^2).
+///   quasi-static    P_hat = P0                               weight W          P_slip = P0                slip_time = h
+///                   gravity is a load of its own; W = h^2/eps, Model::proximal_weight: then the first term over W is the proximal one,
+///                   1/2 (eps/h^2) |P - P0|^2_M, and what is minimised is W times the equilibrium's energy
+/// with a the acceleration of gravity. A quasi-static step knows no velocities: they stay 0, and damping has no effect. Bodies that are
+/// prescribed altogether have V = (P - P0) / h. Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps
+/// energy, and rings in stiff contact. A free spin omega about a principal axis: implicit Euler brakes it by a share h omega^2 per unit of
+/// time (after a turn of phi = h omega comes one of phi - phi^3), so that omega(t) = omega_0 / sqrt(1 + 2 h omega_0^2 t); with BDF2 and
+/// Newmark the loss is O(h^2).
 #pragma once
 
 #include <vector>
@@ -33,11 +37,13 @@ struct History {
 History start_history(const model::Model& model);
 
 struct IntegrationStep {
-    std::vector<Matrix34> pose_hat;  ///< gravity included, other loads not
-    double weight = 0;               ///< [s^2]
+    std::vector<Matrix34> pose_hat;     ///< of dynamic steps gravity included, other loads not
+    Vector3 gravity = Vector3::Zero();  ///< acts as a load of its own: where pose_hat leaves it out (quasi-static) [m/s^2]
+    double weight = 0;                  ///< [s^2]
     std::vector<Matrix34> slip_reference;
     std::vector<Vector3> torque;  ///< per body: the constant gradient in theta (the chart's) that acts as the body's torque [N m]
     double slip_time = 0;         ///< [s]
+    double damping_weight = 0;    ///< weight / slip_time [s]; 0: no damping
 };
 IntegrationStep integration_step(const model::Model& model, const History& history);
 

@@ -49,6 +49,7 @@ Body build_body(const scene::Body& from, const Vector3& reference_point) {
     for (kinematics::Pose& pose : body.script.poses) pose = pose_about(pose, reference_point);
     body.force = from.force;
     body.torque = from.torque;
+    body.damping = from.damping;
     body.group = from.group;
     return body;
 }
@@ -115,6 +116,19 @@ Errors check_areas(const Model& model) {
              "or give the body triangles"});
     }
     return errors;
+}
+
+// A file that is dynamic otherwise may have them; nothing of it is made up, but the user should know.
+void warn_of_unused_rates(Model& model) {
+    for (const Body& body : model.bodies) {
+        const bool moving = !body.velocity_start.isZero(0), damped = body.damping.linear > 0 || body.damping.angular > 0;
+        if (!moving && !damped) continue;
+        model.warnings.push_back("body `" + body.name + "`: its " +
+                                 (moving && damped ? "start velocity and damping have"
+                                  : moving         ? "start velocity has"
+                                                   : "damping has") +
+                                 " no effect in a quasi-static simulation, which knows no velocities");
+    }
 }
 
 }  // namespace
@@ -185,6 +199,10 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
     model.warnings = std::move(check.warnings);
+    if (model.integrator == scene::Integrator::quasi_static) {
+        model.proximal_weight = options.proximal_weight ? *options.proximal_weight : choose_proximal_weight(model);
+        warn_of_unused_rates(model);
+    }
     if (options.check_start) {
         StartReport start = report_start(model);
         errors = std::move(start.errors);

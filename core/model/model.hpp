@@ -30,6 +30,7 @@ struct Body {
     scene::PoseScript script;          ///< of c's frame
     Vector3 force = Vector3::Zero();   ///< at c [N]
     Vector3 torque = Vector3::Zero();  ///< [N m]
+    scene::Damping damping;            ///< [1/s]
     int material = 0;                  ///< row of Model::friction.mu
     int group = -1;
     double radius = 0;                        ///< largest |X|
@@ -59,6 +60,7 @@ struct Model {
     bool area_weighted = false;
     Friction friction;
     scene::Integrator integrator = scene::Integrator::implicit_euler;
+    double proximal_weight = 0;     ///< h^2/eps of quasi-static steps [s^2] (choose_proximal_weight.hpp); 0: not quasi-static
     double velocity_tolerance = 0;  ///< [m/s]
     int max_newton_iterations = 3000;
     double diagonal = 1;                ///< of the bounding box of everything at the start [m]

@@ -52,13 +52,26 @@ void add_motion(Part& part, const model::Body& body) {
     for (const kinematics::Pose& pose : body.script.poses) part.add(pose);
 }
 
+// What only some scenes have is left out of the others' parts.
+void add_loads(Part& part, const model::Body& body) {
+    part.add(body.force).add(body.torque);
+    if (body.damping.linear > 0 || body.damping.angular > 0) part.add(body.damping.linear).add(body.damping.angular);
+}
+
+std::string integrator_hash(const model::Model& model) {
+    Part part;
+    part.add(static_cast<double>(model.integrator));
+    if (model.integrator == scene::Integrator::quasi_static) part.add(model.proximal_weight);
+    return part.value();
+}
+
 }  // namespace
 
 std::vector<ScenePart> scene_parts(const model::Model& model) {
-    const double integrator = static_cast<double>(model.integrator), adaptive = model.adaptive_kappa ? 1 : 0;
+    const double adaptive = model.adaptive_kappa ? 1 : 0;
     return {
         {"time step", Part().add(model.timestep).value()},
-        {"integrator", Part().add(integrator).value()},
+        {"integrator", integrator_hash(model)},
         {"gravity", Part().add(model.gravity).value()},
         {"contact model", Part().add(model.dhat).add(model.dmin).add(model.kappa).add(adaptive).add(model.area_weighted ? 1 : 0).value()},
         {"friction", Part().add(model.friction.mu).add(model.friction.eps_v).add(model.friction.rounds).value()},
@@ -69,7 +82,7 @@ std::vector<ScenePart> scene_parts(const model::Model& model) {
         {"start poses", of_bodies(model, [](Part& p, const auto& b) { p.add(b.pose_start); })},
         {"start velocities", of_bodies(model, [](Part& p, const auto& b) { p.add(b.velocity_start); })},
         {"motors and scripts", of_bodies(model, add_motion)},
-        {"loads", of_bodies(model, [](Part& p, const auto& b) { p.add(b.force).add(b.torque); })},
+        {"loads", of_bodies(model, add_loads)},
     };
 }
 

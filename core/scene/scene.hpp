@@ -62,8 +62,15 @@ struct Friction {
     int rounds = 1;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree; 0: off
 };
 
-/// Time integration (docs/method.md section 3). First order and dissipative; second order; second order and energy keeping.
-enum class Integrator { implicit_euler, bdf2, newmark };
+/// How a step follows from those before it (docs/method.md section 3). Dynamics: first order and dissipative; second order; second order
+/// and energy keeping. Quasi-static: each step is an equilibrium, without velocities.
+enum class Integrator { implicit_euler, bdf2, newmark, quasi_static };
+
+/// Resistance to a body's motion in proportion to its mass: force - linear m v at its centre of mass, torque - angular I omega about it.
+struct Damping {
+    double linear = 0;   ///< [1/s]
+    double angular = 0;  ///< [1/s]
+};
 
 /// How strictly a mesh is taken (model/check_scene.hpp).
 enum class MeshPolicy {
@@ -98,6 +105,7 @@ struct Body {
     PoseScript script;                           ///< kinematic only; then `prescribed` is what follows it
     Vector3 force = Vector3::Zero();             ///< constant, world, at the reference point [N]
     Vector3 torque = Vector3::Zero();            ///< constant, world [N m]
+    Damping damping;                             ///< dynamic only
     std::optional<Vector3> reference_point;      ///< in the file's frame [m]; default see model/model.hpp
     int group = -1;                              ///< bodies of one group (>= 0) never collide
 };

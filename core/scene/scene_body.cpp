@@ -42,6 +42,7 @@ const std::vector<std::string_view> body_keys{"name",
                                               "script",
                                               "force",
                                               "torque",
+                                              "damping",
                                               "group",
                                               "split_components"};
 

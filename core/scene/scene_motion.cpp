@@ -62,6 +62,17 @@ bool turns_by_half(const kinematics::Pose& from, const kinematics::Pose& to) {
     return kinematics::rotation_vector(to.rotation * from.rotation.transpose()).norm() > std::numbers::pi - room;
 }
 
+void read_damping(const files::JsonNode& node, Body& body) {
+    if (!node.exists()) return;
+    if (node.is_object()) {
+        node.allow_keys({"linear", "angular"});
+        body.damping = {node["linear"].number(files::not_negative).value_or(0), node["angular"].number(files::not_negative).value_or(0)};
+    } else {
+        const double rate = node.number(files::not_negative).value_or(0);
+        body.damping = {rate, rate};
+    }
+}
+
 void read_script(const files::JsonNode& node, double unit, Body& body) {
     if (node.exists() && body.type != BodyType::kinematic_body) {
         node.fail(ErrorCode::inconsistent, "only a kinematic body has a `script`");
@@ -102,7 +113,7 @@ kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinem
 
 void read_motion(const files::JsonNode& node, double unit, Body& body) {
     const bool dynamic = body.type == BodyType::dynamic_body;
-    for (const char* key : {"linear_velocity", "angular_velocity", "force", "torque", "fixed"}) {
+    for (const char* key : {"linear_velocity", "angular_velocity", "force", "torque", "damping", "fixed"}) {
         if (dynamic || !node[key].exists()) continue;
         const bool kinematic = body.type == BodyType::kinematic_body;
         node[key].fail(ErrorCode::inconsistent, std::string("only a dynamic body has `") + key + "`" +
@@ -112,6 +123,7 @@ void read_motion(const files::JsonNode& node, double unit, Body& body) {
     body.angular_velocity = radians(1) * node["angular_velocity"].vector3().value_or(Vector3::Zero());
     body.force = node["force"].vector3().value_or(Vector3::Zero());
     body.torque = node["torque"].vector3().value_or(Vector3::Zero());
+    read_damping(node["damping"], body);
     for (const files::JsonNode& entry : node["fixed"].elements()) {
         if (const auto name = entry.choice(dof_names)) body.prescribed[dof_index(*name)] = MotionCurve{};
     }

@@ -44,8 +44,11 @@ public:
 
 private:
     void read_integrator(const files::JsonNode& node) {
-        const std::string name = node.choice({"implicit_euler", "bdf2", "newmark"}).value_or("implicit_euler");
-        scene_.integrator = name == "bdf2" ? Integrator::bdf2 : name == "newmark" ? Integrator::newmark : Integrator::implicit_euler;
+        const std::string name = node.choice({"implicit_euler", "bdf2", "newmark", "quasi_static"}).value_or("implicit_euler");
+        scene_.integrator = name == "bdf2"           ? Integrator::bdf2
+                            : name == "newmark"      ? Integrator::newmark
+                            : name == "quasi_static" ? Integrator::quasi_static
+                                                     : Integrator::implicit_euler;
     }
 
     void read_contact(const files::JsonNode& node) {

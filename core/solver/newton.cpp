@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/solver/caution.hpp"
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"
 #include "fettle/core/solver/prescribed_drive.hpp"
@@ -24,6 +25,7 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double smallest_step = 1e-12;
 constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
+constexpr int patient_shifts = 8;              // of the exact Hessian, where nothing is driven
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
@@ -36,7 +38,12 @@ constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjo
 class Minimiser {
 public:
     Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
-        : problem_(std::move(problem)), model_(*problem_.model), targets_(targets), workspace_(workspace), options_(options) {
+        : problem_(std::move(problem)),
+          model_(*problem_.model),
+          targets_(targets),
+          workspace_(workspace),
+          options_(options),
+          caution_(options.caution) {
         at_ = options_.start.empty() ? start_of_step() : Iterate{options_.start, poses_of(problem_, options_.start), {}};
         result_.path.push_back(at_.points);
     }
@@ -46,14 +53,14 @@ public:
         cover(here);
         settle(at_.poses, workspace_.candidates);
         find_contacts();
-        const bool frictional = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
+        frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
-            if (frictional) lag_friction();
+            if (frictional_) lag_friction();
             value_ = potential(at_.points, at_.poses);
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
-        } while (frictional && another_round());
+        } while (frictional_ && another_round());
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
         result_.friction = std::move(problem_.friction);
@@ -94,6 +101,15 @@ private:
         problem_.friction =
             contact::lag_friction(model_, at_.contacts, at_.poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
         ++result_.friction_rounds;
+    }
+
+    // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
+    // they are there. They are held from where caution ends.
+    void follow_friction() {
+        find_contacts();
+        lag_friction();
+        --result_.friction_rounds;
+        value_ = potential(at_.points, at_.poses);
     }
 
     // A round that needed no step has met its own normal forces: the fixed point.
@@ -139,8 +155,10 @@ private:
         // Cut short by the potential, not by CCD: contacts that change from sliding one way to the other, over the valley where they stick.
         if (!problem_.friction.pairs.empty() && fraction < short_step * limiting_.fraction)
             projected_iterations_ = std::max(projected_iterations_, careful_iterations);
-        const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * model_.dhat;
+        const bool relaxed = fraction == 1 && direction->motion <= relaxed_motion * room_to_give();
         drive_.adapt(fraction, has_arrived(*direction), relaxed);
+        if (caution_.is_on()) adapt_caution(*direction, fraction);
+        if (fraction > 0 && frictional_ && caution_.shift() > 0) follow_friction();
         return fraction > 0 ? go_on_from_step(*direction, fraction) : go_on_without_step(*direction);
     }
 
@@ -148,14 +166,19 @@ private:
     std::optional<Direction> find_direction() {
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
         projected_iterations_ = std::max(0, projected_iterations_ - 1);
-        const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, kind, drive_.share(), workspace_);
-        if (direction && direction->kind != kind) projected_iterations_ = 1;
+        // What is pushed must not be made heavy: until all has arrived the projected Hessian is better than a large shift.
+        const HessianChoice hessian{kind, caution_.is_on() ? std::optional(caution_.shift()) : std::nullopt, arrived_ ? patient_shifts : 1};
+        const std::optional<Direction> direction = newton_direction(problem_, at_, targets_, hessian, drive_.share(), workspace_);
+        if (direction && direction->kind != kind && !caution_.is_on()) projected_iterations_ = 1;
+        if (direction) arrived_ = has_arrived(*direction);
         return direction;
     }
 
     bool go_on_without_step(const Direction& direction) {
         if (!has_arrived(direction) && drive_.try_less()) return true;
-        if (direction.kind == HessianKind::exact) {
+        if (caution_.is_on()) {
+            if (caution_.may_try_again()) return true;
+        } else if (direction.kind == HessianKind::exact) {
             projected_iterations_ = 3;
             return true;
         }
@@ -164,6 +187,7 @@ private:
     }
 
     bool go_on_from_step(const Direction& direction, double fraction) {
+        if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
         if (!has_arrived(direction) && drive_.is_stalled()) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
@@ -171,11 +195,42 @@ private:
         }
         // A full exact step this small leaves an error of its square over the gap: rounding.
         const double rounding_motion = 1e-7 * std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin);
-        const bool exact = fraction == 1 && has_arrived(direction) && direction.kind == HessianKind::exact;
+        const bool exact =
+            fraction == 1 && has_arrived(direction) && direction.kind == HessianKind::exact && direction.shift <= negligible_shift;
         if (!options_.to_rounding || !exact || direction.motion > rounding_motion) return true;
         find_contacts();  // the residual that is reported belongs to the final point
         result_.residual = residual_at(problem_, at_, workspace_);
         return is_accurate_enough(result_.residual) ? stop(NewtonStatus::converged) : true;
+    }
+
+    // What has gone farther than anything that is held would. @return empty if nothing has
+    std::string lost_bodies() const {
+        constexpr double company = 0.5;  // others that have gone half as far go with it
+        double most = 0;
+        std::vector<double> gone(at_.points.size(), 0);
+        for (std::size_t i = 0; i < gone.size(); ++i) {
+            if (!energy::has_free_dof(model_.bodies[i])) continue;
+            const double way = (at_.points[i].position - problem_.poses_t0[i].position).norm() / options_.farthest;
+            gone[i] = std::max(way, at_.points[i].rotation_vector.norm() / options_.widest_turn);
+            most = std::max(most, gone[i]);
+        }
+        if (most < 1) return {};
+        std::string names;
+        for (std::size_t i = 0; i < gone.size(); ++i)
+            if (gone[i] >= company) names += (names.empty() ? "'" : ", '") + model_.bodies[i].name + "'";
+        return names + ": not held: loads move it out of the scene, or round a whole turn, and nothing stops it";
+    }
+
+    // Far inside the activation distance a step of Newton's doubles the gap, and is short all the same: without inertia to drive against,
+    // what is pushed has given way when it moves by little of the gap.
+    double room_to_give() const {
+        return caution_.is_on() ? std::min(model_.dhat, at_.contacts.minimum_distance - model_.dmin) : model_.dhat;
+    }
+
+    void adapt_caution(const Direction& direction, double fraction) {
+        const double curvature = direction.inertia > 0 ? -direction.slope / direction.inertia : 0;
+        const double gain_share = fraction > 0 ? value_change_ / direction.slope : 0;
+        caution_.adapt({fraction, direction.shift, curvature, gain_share, has_arrived(direction)});
     }
 
     // Rounding is all that is left when the potential has nothing to gain and the residual no longer shrinks. (Passing a saddle, the
@@ -230,6 +285,7 @@ private:
             settle(poses, workspace_.candidates);
             at_.points = std::move(trial);
             at_.poses = std::move(poses);
+            value_change_ = value - value_;
             value_ = value;
             result_.path.push_back(at_.points);
             return fraction;
@@ -265,8 +321,12 @@ private:
     NewtonWorkspace& workspace_;
     const NewtonOptions& options_;
     Iterate at_;
-    double value_ = 0;  // of the potential, there
+    double value_ = 0;         // of the potential, there
+    double value_change_ = 0;  // by the last step
+    bool frictional_ = false;
+    bool arrived_ = false;  // prescribed coordinates, at the last iteration
     PrescribedDrive drive_;
+    Caution caution_;
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction
     int projected_iterations_ = 0;

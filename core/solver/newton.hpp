@@ -14,6 +14,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,17 @@
 
 namespace fettle::core::solver {
 
-enum class NewtonStatus { converged, blocked, not_converged, interrupted };
+enum class NewtonStatus { converged, blocked, not_held, not_converged, interrupted };
 
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
     bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level: "converged" has at most 1e-8
-    std::vector<kinematics::ChartPoint> start;  ///< where to begin; empty: where the step starts
+    double caution =
+        0;  ///< > 0: begin with this shift of the Hessian in units of the inertia, and let it fall as steps do what they promise
+    std::vector<kinematics::ChartPoint> start;                     ///< where to begin; empty: where the step starts
+    double farthest = std::numeric_limits<double>::infinity();     ///< a free body that goes this far from the step's start [m], or turns
+    double widest_turn = std::numeric_limits<double>::infinity();  ///< as much as this [rad], is not held by anything
     std::function<bool()> should_stop;
 };
 

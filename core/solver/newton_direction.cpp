@@ -112,6 +112,46 @@ std::optional<double> factorise(const StepProblem& problem, const Iterate& at, N
     }
 }
 
+constexpr double shift_growth = 10;
+
+// The same with a shift that is asked for: the exact Hessian is kept as long as its tries last.
+std::optional<double> factorise_shifted(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d,
+                                        const HessianChoice& choice, HessianKind& kind) {
+    if (!is_finite(d, workspace.dofs)) return std::nullopt;
+    if (workspace.dofs.count == 0) return 0;
+    std::vector<Matrix6> unit = shift_unit(problem, at, d);
+    std::vector<Matrix6> unshifted = d.hessian.diagonal;
+    double shift = *choice.shift;
+    for (int tries = 1;; ++tries) {
+        for (std::size_t i = 0; i < unit.size(); ++i) d.hessian.diagonal[i] = unshifted[i] + shift * unit[i];
+        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        {
+            const auto span = workspace.clock.charge(SolvePhase::linear_solve);
+            if (workspace.linear.factorise(d.hessian)) return shift;
+        }
+        if (kind == HessianKind::exact && tries == choice.exact_shifts) {
+            kind = HessianKind::projected;
+            d = derivatives(problem, at, kind, workspace);
+            if (!is_finite(d, workspace.dofs)) return std::nullopt;
+            unshifted = d.hessian.diagonal;
+            shift = *choice.shift;
+        } else {
+            shift = std::max(smallest_hessian_shift, shift_growth * shift);
+        }
+    }
+}
+
+// step . inertia step.
+double inertia_along(const StepProblem& problem, const Iterate& at, const std::vector<Vector6>& steps) {
+    double sum = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        Vector6 step = steps[i];
+        step.tail<3>() = kinematics::left_jacobian(at.points[i].rotation_vector) * step.tail<3>();
+        sum += step.dot(energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments) * step);
+    }
+    return sum;
+}
+
 void measure_remaining(const std::vector<Vector6>& targets, const std::vector<ChartPoint>& points, const model::Model& model,
                        const FreeDofs& dofs, Direction& direction) {
     direction.remaining.assign(points.size(), Vector6::Zero());
@@ -164,12 +204,14 @@ void measure_step(const ChartDerivatives& d, const model::Model& model, const Fr
 }  // namespace
 
 std::optional<Direction> newton_direction(const StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
-                                          HessianKind kind, double drive, NewtonWorkspace& workspace) {
+                                          const HessianChoice& hessian, double drive, NewtonWorkspace& workspace) {
     const model::Model& model = *problem.model;
     const FreeDofs& dofs = workspace.dofs;
     Direction direction;
+    HessianKind kind = hessian.kind;
     ChartDerivatives d = derivatives(problem, at, kind, workspace);
-    const std::optional<double> shift = factorise(problem, at, workspace, d, kind);
+    const std::optional<double> shift =
+        hessian.shift ? factorise_shifted(problem, at, workspace, d, hessian, kind) : factorise(problem, at, workspace, d, kind);
     if (!shift) return std::nullopt;
     direction.kind = kind;
     direction.shift = *shift;
@@ -180,6 +222,7 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
     measure_step(d, model, dofs, direction);
+    if (hessian.shift) direction.inertia = inertia_along(problem, at, direction.step);
     if (!std::isfinite(direction.residual + direction.rounding + direction.slope + direction.motion)) return std::nullopt;
     return direction;
 }

@@ -28,19 +28,29 @@ struct Direction {
     double motion = 0;               ///< bound on the largest motion of a point of a body that is solved for [m]
     double residual = 0;             ///< NewtonResult::residual, here
     double rounding = 0;             ///< of the potential's value here: what a difference of two values may be wrong by
-    double shift = 0;                ///< added to the projected Hessian to make it definite, in units of the bodies' inertia; 0: none
+    double shift = 0;                ///< added to the Hessian to make it definite, or by request, in units of the bodies' inertia; 0: none
+    double inertia = 0;              ///< step . (inertia of each body) step: the curvature along the step is -slope over this
     contact::HessianKind kind = contact::HessianKind::exact;
 };
 
-/// @param kind     the Hessian to try first; where the exact one is not positive definite the projected one is taken. Where that is not
-///                 definite either (a body in unstable balance is left without stiffness in a direction; rounding), it is shifted by
+/// Which Hessian is asked for.
+struct HessianChoice {
+    contact::HessianKind kind = contact::HessianKind::exact;
+    std::optional<double> shift;  ///< at least this much of the inertia is added
+    int exact_shifts = 1;         ///< how many are tried on the exact Hessian before the projected one is taken
+};
+
+/// @param hessian  the one to try first. Without a shift: where the exact one is not positive definite the projected one is taken; where
+///                 that is not definite either (a body in unstable balance is left without stiffness in a direction; rounding), it is
+///                 shifted by
 ///                   shift * (inertia of each body + 1e-10 |diagonal|),   shift = 1e-2, 1, 100, ...
-///                 until it is.
+///                 until it is. With one: exact + shift * (the same), the shift growing tenfold from the one asked for, then the projected
+///                 one likewise. (Without inertia to speak of, the projected one is far too stiff along what slides: quasi-statics.)
 /// @param targets  as for minimise.
 /// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
 /// @return nullopt if gradient, Hessian or what follows from them are not finite: nothing else stops it.
 std::optional<Direction> newton_direction(const energy::StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
-                                          contact::HessianKind kind, double drive, NewtonWorkspace& workspace);
+                                          const HessianChoice& hessian, double drive, NewtonWorkspace& workspace);
 
 /// points + fraction * step; a whole step that takes all that remains puts the prescribed coordinates on their targets, bit for bit.
 std::vector<kinematics::ChartPoint> moved(const std::vector<kinematics::ChartPoint>& points, const Direction& direction, double fraction,

@@ -21,6 +21,8 @@ const char* to_string(SimulationStatus status) {
             return "ok";
         case SimulationStatus::blocked:
             return "blocked";
+        case SimulationStatus::not_held:
+            return "not_held";
         case SimulationStatus::not_converged:
             return "not_converged";
         case SimulationStatus::interrupted:

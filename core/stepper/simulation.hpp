@@ -16,6 +16,7 @@ namespace fettle::core::stepper {
 enum class SimulationStatus {
     ok,
     blocked,        ///< a prescribed body cannot follow its script: something is in the way
+    not_held,       ///< quasi-static: loads push a body off, and nothing but the proximal term stands against them
     not_converged,  ///< a step's equations could not be solved
     interrupted     ///< `should_stop` said so; the trajectory up to there is usable
 };
@@ -50,6 +51,7 @@ struct StepReport {
     int contacts = 0;             ///< active pairs at the end of the step
     double minimum_distance = 0;  ///< of the active pairs at the end of the step [m]; infinity if there are none
     double residual = 0;          ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp)
+    double proximal_share = 0;    ///< quasi-static: the largest that the proximal term carries of a body's load (energy/proximal_share.hpp)
     double shift = 0;             ///< largest that made a Hessian of the step definite (solver/newton_direction.hpp); 0: none was needed
 };
 

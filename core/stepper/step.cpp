@@ -2,8 +2,13 @@
 #include "fettle/core/stepper/step.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
 
 #include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/energy/proximal_share.hpp"
+#include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/step_outputs.hpp"
 
@@ -12,6 +17,8 @@ namespace {
 
 using kinematics::ChartPoint;
 using kinematics::PathSegment;
+
+bool is_quasi_static(const model::Model& model) { return model.integrator == scene::Integrator::quasi_static; }
 
 std::vector<PathSegment> straight_segments(const model::Model& model, const StepState& state, const std::vector<ChartPoint>& start,
                                            const std::vector<ChartPoint>& end) {
@@ -62,9 +69,10 @@ void store_fractions(double end, TrajectoryStep& out) {
     out.fractions.push_back(end);
 }
 
-// Inertia and torques aim at this share of the step's way.
+// Inertia and torques aim at this share of the step's way; an equilibrium knows no way.
 energy::StepProblem towards(const energy::StepProblem& problem, double fraction) {
     energy::StepProblem out = problem;
+    if (is_quasi_static(*problem.model)) return out;
     for (std::size_t i = 0; i < out.pose_hat.size(); ++i) {
         const Matrix34 start = pose_matrix(problem.poses_t0[i]);
         out.pose_hat[i] = start + fraction * (problem.pose_hat[i] - start);
@@ -104,6 +112,8 @@ SimulationStatus simulation_status(solver::NewtonStatus status) {
             return SimulationStatus::ok;
         case solver::NewtonStatus::blocked:
             return SimulationStatus::blocked;
+        case solver::NewtonStatus::not_held:
+            return SimulationStatus::not_held;
         case solver::NewtonStatus::interrupted:
             return SimulationStatus::interrupted;
         case solver::NewtonStatus::not_converged:
@@ -124,6 +134,34 @@ double next_kappa(const model::Model& model, double kappa, const contact::Contac
     return gap < well_apart * model.dhat ? kappa : std::max(least_kappa(model), fall * kappa);
 }
 
+// Velocities have no meaning: each equilibrium is solved to rounding, as for a gradient, so that what one step leaves unbalanced is not the
+// next one's load. What leaves the scene, or comes round, without having met an equilibrium will meet none.
+void ask_for_equilibrium(const model::Model& model, const PrescribedNode& end, solver::NewtonOptions& options) {
+    constexpr double farthest = 10, widest_turn = 1.9 * std::numbers::pi;  // in the scene's size; [rad]
+    double driven = 0;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i)
+        for (int k = 3; k < 6; ++k)
+            if (!is_free(model.bodies[i], k)) driven = std::max(driven, std::abs(end.targets[i][k]));
+    options.to_rounding = true;
+    options.caution = model.diagonal / (model::allowed_proximal_share * model.dhat);
+    options.farthest = farthest * model.diagonal;
+    options.widest_turn = widest_turn + driven;
+}
+
+// Bodies by name that the proximal term holds, and nothing else.
+void judge_holding(const energy::StepProblem& problem, const solver::NewtonResult& solved, StepResult& result) {
+    const std::vector<double> shares = energy::proximal_shares(problem, solved.path.back(), solved.poses);
+    std::ostringstream names;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        result.report.proximal_share = std::max(result.report.proximal_share, shares[i]);
+        if (shares[i] <= model::allowed_proximal_share) continue;
+        names << (names.tellp() > 0 ? ", '" : "'") << problem.model->bodies[i].name << "' (" << shares[i] << " of its load)";
+    }
+    if (names.tellp() == 0) return;
+    result.status = SimulationStatus::not_held;
+    result.message = names.str() + ": not held: the proximal term carries more than 1e-6 of the load, which nothing in the scene does";
+}
+
 }  // namespace
 
 StepState start_state(const model::Model& model) {
@@ -140,15 +178,18 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     newton.max_iterations = model.max_newton_iterations;
     newton.to_rounding = options.for_gradient;
     newton.should_stop = options.should_stop;
-    DrivenStep driven = drive(model, state, problem, prescribed_path(model, state.history.poses, state.time), workspace, newton);
+    const std::vector<PrescribedNode> way = prescribed_path(model, state.history.poses, state.time);
+    if (is_quasi_static(model)) ask_for_equilibrium(model, way.back(), newton);
+    DrivenStep driven = drive(model, state, problem, way, workspace, newton);
     const solver::NewtonResult& solved = driven.solved;
 
     StepResult result;
     result.status = simulation_status(solved.status);
     result.message = solved.message;
-    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual,
+    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual, 0,
                      solved.shift};
     result.state = state;
+    if (result.status == SimulationStatus::ok && is_quasi_static(model)) judge_holding(problem, solved, result);
     if (result.status != SimulationStatus::ok) return result;
     result.path = std::move(driven.path);
     result.state.time = state.time + model.timestep;

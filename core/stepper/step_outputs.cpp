@@ -2,6 +2,7 @@
 #include "fettle/core/stepper/step_outputs.hpp"
 
 #include "fettle/core/energy/inertia.hpp"
+#include "fettle/core/energy/loads.hpp"
 #include "fettle/core/solver/newton.hpp"
 
 namespace fettle::core::stepper {
@@ -9,14 +10,17 @@ namespace {
 
 using kinematics::Pose;
 
-// The solver leaves out the inertia and loads of bodies that it does not solve for.
+// The solver leaves out the inertia and loads of bodies that it does not solve for. (Quasi-static steps have no inertia.)
 Vector6 inertia_if_held(const energy::StepProblem& problem, std::size_t i, const kinematics::ChartPoint& point, const Pose& pose) {
     const model::Body& body = problem.model->bodies[i];
     bool held = body.moments(3, 3) > 0;
     for (int k = 0; k < 6; ++k) held = held && !is_free(body, k);
     if (!held) return Vector6::Zero();
     kinematics::PoseGradient gradient;
-    energy::add_inertia_gradient(pose, problem.pose_hat[i], body.moments, gradient);
+    if (problem.model->integrator == scene::Integrator::quasi_static)
+        energy::add_gravity_gradient(problem, i, pose, gradient);
+    else
+        energy::add_inertia_gradient(pose, problem.pose_hat[i], body.moments, gradient);
     Vector6 out = tangent_gradient(gradient);
     out.head<3>() -= problem.weight * body.force;
     out.tail<3>() = kinematics::left_jacobian(point.rotation_vector).transpose() * out.tail<3>();

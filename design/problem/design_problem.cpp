@@ -43,6 +43,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
     problem.kappa_ = model->kappa;
     problem.warnings_ = model->warnings;
+    if (model->proximal_weight > 0) problem.proximal_weight_ = model->proximal_weight;
     // Their defaults are functions of the scene's size, which parameters change.
     design.scene.dhat = model->dhat;
     design.scene.velocity_tolerance = model->velocity_tolerance;
@@ -54,6 +55,7 @@ Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
     core::model::BuildOptions options;
     options.reference_points = reference_points_;
     options.kappa = kappa_;
+    options.proximal_weight = proximal_weight_;
     // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
     options.check_meshes = std::any_of(design_.shapes.begin(), design_.shapes.end(),
                                        [](const auto& shape) { return shape != nullptr && !shape->is_always_solid(); });

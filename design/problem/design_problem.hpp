@@ -94,6 +94,7 @@ private:
     std::vector<Vector3> reference_points_;
     double kappa_ = 0;
     std::vector<std::string> warnings_;
+    std::optional<double> proximal_weight_;  // of quasi-static steps
 };
 
 }  // namespace fettle::design::problem

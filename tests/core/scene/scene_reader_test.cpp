@@ -139,6 +139,13 @@ TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
     CHECK(plainly->bodies[0].group == -1);
     CHECK(plainly->bodies[0].mass_kind == MassKind::volume);
     CHECK(shop.read(with("/integrator", "newmark"))->integrator == Integrator::newmark);
+    CHECK(shop.read(with("/integrator", "quasi_static"))->integrator == Integrator::quasi_static);
+    CHECK(plainly->bodies[0].damping.linear == 0);
+    CHECK(shop.read(with("/bodies/0/damping", 2.5))->bodies[0].damping.linear == 2.5);
+    CHECK(shop.read(with("/bodies/0/damping", 2.5))->bodies[0].damping.angular == 2.5);
+    const auto turning = shop.read(with("/bodies/0/damping", {{"angular", 3}}));
+    CHECK(turning->bodies[0].damping.linear == 0);
+    CHECK(turning->bodies[0].damping.angular == 3);
     CHECK(shop.read(with("/friction", {{"rounds", "converged"}}))->friction.rounds < 0);
     CHECK(shop.read(with("/friction", {{"eps_v", 2}}))->friction.eps_v == 0.002);
 }

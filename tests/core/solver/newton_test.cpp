@@ -177,7 +177,7 @@ TEST_CASE("the direction solves the Newton system and descends", "[newton]") {
     at.poses = problem.poses_t0;
     at.contacts = contact::find_contacts(model, contact::find_candidates(model, at.poses, model.dhat), at.poses);
     REQUIRE(at.contacts.count > 0);
-    const auto direction = newton_direction(problem, at, targets_of(model), contact::HessianKind::projected, 1, workspace);
+    const auto direction = newton_direction(problem, at, targets_of(model), {contact::HessianKind::projected, {}}, 1, workspace);
     REQUIRE(direction);
     const auto d = energy::chart_derivatives(problem, at.points, at.poses, at.contacts, contact::HessianKind::projected);
     CHECK((d.hessian.diagonal[0] * direction->step[0] + d.gradient[0]).norm() < 1e-9 * d.gradient[0].norm());
