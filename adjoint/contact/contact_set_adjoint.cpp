@@ -9,7 +9,6 @@ namespace fettle::adjoint::contact {
 namespace {
 
 using core::contact::ContactPair;
-using core::kinematics::Pose;
 using Four = std::array<Vector3, 4>;
 
 // The body of each of a pair's four vertices.

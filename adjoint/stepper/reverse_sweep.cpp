@@ -13,7 +13,6 @@
 namespace fettle::adjoint::stepper {
 namespace {
 
-using core::kinematics::pose_matrix;
 using core::model::Body;
 using core::model::Model;
 using core::stepper::Trajectory;

@@ -13,7 +13,6 @@
 namespace fettle::adjoint::stepper {
 namespace {
 
-using core::kinematics::pose_matrix;
 using core::kinematics::RotationDerivatives;
 using core::model::Body;
 using core::model::Model;

@@ -94,9 +94,9 @@ private:
 
 }  // namespace
 
-SegmentProof thinned(const SegmentProof& proof, const PairCertificate& pair, const CertifiedBody& a, const CertifiedBody& b,
-                     const stepper::Trajectory& trajectory, int step, int segment, double room) {
-    Thinner thinner(a, b, body_path(trajectory, step, segment, pair.a), body_path(trajectory, step, segment, pair.b), pair.lower + room);
+SegmentProof thinned(const SegmentProof& proof, const CertifiedBody& a, const CertifiedBody& b, const BodyPath& path_a,
+                     const BodyPath& path_b, double distance) {
+    Thinner thinner(a, b, path_a, path_b, distance);
     return thinner.shortened(thinner.merged(proof));
 }
 

@@ -6,14 +6,15 @@
 
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/core/certificate/interval_motion.hpp"
 
 namespace fettle::core::certificate {
 
 /// Two leaves of one cell become one where a plane of theirs proves it, and normals are rounded to as few decimals as will do: everything
-/// without halving time, and with `room` [m] above the claim. What cannot be proven so stays as it is.
-/// @param step, segment  the place of the path (certificate.hpp)
-SegmentProof thinned(const SegmentProof& proof, const PairCertificate& pair, const CertifiedBody& a, const CertifiedBody& b,
-                     const stepper::Trajectory& trajectory, int step, int segment, double room);
+/// without halving time. What cannot be proven so stays as it is.
+/// @param path_a, path_b  the bodies' paths over the segment (interval_motion.hpp)
+/// @param distance        that every leaf proves [m]: a little room above the claim
+SegmentProof thinned(const SegmentProof& proof, const CertifiedBody& a, const CertifiedBody& b, const BodyPath& path_a,
+                     const BodyPath& path_b, double distance);
 
 }  // namespace fettle::core::certificate

@@ -107,7 +107,8 @@ void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& 
     base::parallel_for(static_cast<int>(certificate.segments.size()), 1, [&](int i) {
         const PairSegment& segment = pair.segments[static_cast<std::size_t>(i)];
         certificate::SegmentProof& proof = certificate.segments[static_cast<std::size_t>(i)];
-        proof = certificate::thinned(proof, certificate, a, b, pair.trajectory, segment.step, segment.segment, room);
+        const auto path = [&](int body) { return certificate::body_path(pair.trajectory, segment.step, segment.segment, body); };
+        proof = certificate::thinned(proof, a, b, path(certificate.a), path(certificate.b), certificate.lower + room);
     });
 }
 

@@ -46,6 +46,7 @@ struct BodyMotion {
 
 std::vector<BodySegment> body_segments(const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places, int body) {
     std::vector<BodySegment> segments;
+    segments.reserve(places.size());
     for (const SegmentPlace& place : places)
         segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
                                                        : stepper::path_segment(trajectory, place.step, place.segment, body)));
@@ -72,6 +73,7 @@ std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::T
     std::vector<BodyMotion> motions(model.bodies.size());
     geometry::ShapeIndex shapes;
     std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
+    first.reserve(bodies.size());
     for (const int body : bodies) first.push_back(shapes.add(model.bodies[body].mesh));
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const model::Body& body = model.bodies[bodies[i]];
@@ -145,6 +147,7 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     std::vector<certificate::CertifiedBody> certified;
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
+        trees.reserve(motions.size());
         for (const BodyMotion& motion : motions) trees.push_back(motion.tree.get());
         *options.certificate = start_certificate(model, trajectory, trees, options.motion && !trajectory.steps.empty(), pairs.size());
         certified = certified_bodies(*options.certificate, model);

@@ -125,8 +125,9 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
     return c;
 }
 
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a,
-                           const Reach& b, double deviation_scale) {
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach,
+                           double deviation_scale) {
+    const auto& [a, b] = reach;
     const double rest_a = std::max(third_derivative(segment.a, plane.n0, a), third_derivative(segment.a, plane.n1, a));
     const double rest_b = std::max(third_derivative(segment.b, plane.n0, b), third_derivative(segment.b, plane.n1, b));
     const double rest = deviation_scale * h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;

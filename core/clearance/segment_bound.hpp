@@ -112,8 +112,12 @@ struct SegmentBound {
     double dip = -1;     ///< u where the cubic is least, if that is inside
 };
 
+struct ReachPair {
+    Reach a, b;
+};
+
 /// `h`: length of the interval. `deviation_scale` is 1 but in tests that show that a bound without the rest is found out.
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const Reach& a,
-                           const Reach& b, double deviation_scale = 1);
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach,
+                           double deviation_scale = 1);
 
 }  // namespace fettle::core::clearance

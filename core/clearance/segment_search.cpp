@@ -113,8 +113,8 @@ SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0
     const PairSegment& segment = segment_of(interval);
     const Matrix3 &x = corners_a(entry.a).x, &y = corners_b(entry.b).x;
     const MovingPlane plane = moving_plane(instants_[interval.start], instants_[interval.middle], instants_[interval.end], n0, n1);
-    return segment_bound(segment, length(interval), plane, corner_coefficients(plane, x, y), corners_reach(segment.a, x),
-                         corners_reach(segment.b, y), front_.options.deviation_scale);
+    return segment_bound(segment, length(interval), plane, corner_coefficients(plane, x, y),
+                         {corners_reach(segment.a, x), corners_reach(segment.b, y)}, front_.options.deviation_scale);
 }
 
 // The entry's elements with the closest points' directions at the interval's ends.

@@ -113,7 +113,7 @@ LinearCcdResult conservative_advancement(PairType type, const PairVertices& t0, 
 double distance_lower_bound(PairType type, const PairVertices& x) {
     const Differences r = differences(type, x);
     const Vector3 largest = r.abs().colwise().maxCoeff().matrix().transpose();
-    if (!((r - r).sum() == 0 && largest.maxCoeff() < 1e150)) return 0;
+    if (!((0 * r).sum() == 0 && largest.maxCoeff() < 1e150)) return 0;
     const ClosestDirection closest = closest_direction(type, r);
     double best = std::max(0.0, separating_plane_at_rest(r, largest, closest.direction, 0).gap);
     if (best > 0 && closest.is_attained_by(best)) return best;

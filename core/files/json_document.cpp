@@ -19,7 +19,7 @@ using base::Error;
 using base::ErrorCode;
 using nlohmann::json;
 
-struct JsonNode::Context {
+struct JsonNode::Context {  // NOLINT(bugprone-exception-escape): the tree moves without throwing
     std::string path;
     json tree;
     base::Errors errors;

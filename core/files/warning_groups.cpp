@@ -57,6 +57,7 @@ std::vector<std::string> grouped_warnings(const std::string& path, const std::ve
         }
     }
     std::vector<std::string> out;
+    out.reserve(groups.size());
     for (const Group& group : groups) out.push_back(path + "#" + group.before + shown(group.indices) + group.after + ": " + group.message);
     return out;
 }

@@ -51,7 +51,7 @@ Errors check_usable(const scene::Body& body, const std::string& where) {
 
 bool must_be_closed(const scene::Body& body) { return body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume; }
 
-Error at_body(Error error, const scene::Body& body, const std::string& where) {
+Error at_body(const Error& error, const scene::Body& body, const std::string& where) {
     return {error.code, where, "body `" + body.name + "`: " + (error.where.empty() ? "" : error.where + ": ") + error.message};
 }
 

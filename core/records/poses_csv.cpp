@@ -104,7 +104,7 @@ private:
         body_ = find("body");
         for (const auto& name : position_columns) position_.push_back(find(name));
         find_rotation();
-        if (columns_[time_].unit != "" && columns_[time_].unit != "s") fail(ErrorCode::unsupported, "times are in seconds: time[s]");
+        if (!columns_[time_].unit.empty() && columns_[time_].unit != "s") fail(ErrorCode::unsupported, "times are in seconds: time[s]");
         if (errors_.empty()) find_length_unit();
         for (std::size_t i = 0; i < columns_.size() && errors_.empty(); ++i) {
             if (std::find(known_.begin(), known_.end(), columns_[i].name) == known_.end())

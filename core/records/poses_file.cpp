@@ -36,7 +36,7 @@ void read_json_body(const JsonNode& node, std::size_t body, RotationForm form, d
                   std::to_string(rows.size()) + " poses, " + std::to_string(table.times.size()) + " wanted: one per time");
         return;
     }
-    const auto count = static_cast<std::size_t>(3 + number_count(form));
+    const auto count = 3 + static_cast<std::size_t>(number_count(form));
     for (std::size_t t = 0; t < rows.size(); ++t) {
         const auto numbers = rows[t].numbers();
         if (!numbers) continue;

@@ -66,6 +66,7 @@ private:
 
     std::vector<Waypoint> along_curves(const std::vector<double>& inside) const {
         std::vector<Waypoint> out;
+        out.reserve(inside.size() + 1);
         for (const double time : inside) out.push_back({fraction(time), curve_increments(body_.prescribed, from_, time)});
         out.push_back({1, curve_increments(body_.prescribed, from_, to_)});
         for (Waypoint& waypoint : out) waypoint.coordinates.head<3>() += pose_.position;

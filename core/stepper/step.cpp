@@ -29,6 +29,7 @@ std::vector<PathSegment> straight_segments(const model::Model& model, const Step
 
 std::vector<kinematics::Pose> end_poses(const std::vector<PathSegment>& segments) {
     std::vector<kinematics::Pose> poses;
+    poses.reserve(segments.size());
     for (const PathSegment& s : segments) poses.push_back(pose_at(s, 1));
     return poses;
 }
