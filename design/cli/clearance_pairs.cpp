@@ -96,6 +96,7 @@ private:
         }
         if (!found.units.empty()) return found;
         std::vector<std::string_view> known;
+        known.reserve(among.size());
         for (const Unit& unit : among) known.push_back(unit.name);
         std::string message = (found.wildcard ? "no name matches \"" : "there is no body \"") + name + "\"";
         message += "; " + core::files::did_you_mean(found.wildcard ? "" : name, known);

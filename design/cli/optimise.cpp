@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// fettle optimise DESIGN: tunes the parameters, and certifies the final design.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -68,13 +70,13 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
         const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
         improvable.push_back({{"parameter", p.name}, {"step", description::from_si(o.step[k], p.unit)}});
     }
-    Json json{{"predicted_gain", o.predicted_gain},
-              {"worth", o.worth},
-              {"radius", o.radius},
-              {"residual", residual},
-              {"held_by", held},
-              {"improvable", improvable},
-              {"noise_in_objective", o.noise_in_objective},
+    Json multipliers = Json::object();
+    for (size_t i = 0; i < design.constraints.size(); ++i)
+        multipliers[design.constraints[i].name] = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
+    Json json{{"multipliers", multipliers}, {"predicted_gain", o.predicted_gain},
+              {"worth", o.worth},           {"radius", o.radius},
+              {"residual", residual},       {"held_by", held},
+              {"improvable", improvable},   {"noise_in_objective", o.noise_in_objective},
               {"judged", o.judged}};
     if (o.noise.size() > 0) {
         json["noise"] = {{"objective", o.noise[0]}};
@@ -104,6 +106,7 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["iterations"] = report.iterations;
     json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
     json["stages"] = stages_json(report);
+    json["budget_spent"] = report.budget_spent;
     json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
     json["terms"] = terms_json(design, outcome.final);
@@ -129,6 +132,33 @@ int exit_code(OptimiserStatus status) {
     }
 }
 
+// What each requirement that holds costs, the dearest first; what could still move; what is too rough to tell.
+std::string verdict_text(const Design& design, const optimisers::Optimality& o) {
+    std::string text;
+    std::vector<std::pair<double, std::string>> costs;
+    for (size_t i = 0; i < design.constraints.size() && o.step.size() > 0; ++i) {
+        const auto& constraint = design.constraints[i];
+        const double y = o.multipliers[static_cast<Eigen::Index>(i)] * constraint.bounds.unit;
+        if (std::abs(y) * 0.01 < o.worth * 0.1) continue;
+        costs.emplace_back(
+            -std::abs(y), formatted("  %s: 0.01 %s is worth %.3g\n", constraint.name.c_str(), y > 0 ? "less" : "more", 0.01 * std::abs(y)));
+    }
+    std::sort(costs.begin(), costs.end());
+    if (!costs.empty()) text += "what the requirements cost, in the objective, per hundredth of their unit:\n";
+    for (const auto& cost : costs) text += cost.second;
+    for (const int k : o.improvable) {
+        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        text += formatted("could still move: %s by %.4g %s\n", p.name.c_str(), description::from_si(o.step[k], p.unit),
+                          std::string(p.unit.name).c_str());
+    }
+    if (!o.improvable.empty()) text += formatted("predicted gain %.3g, %.3g counts\n", o.predicted_gain, o.worth);
+    if (o.roughest >= 0)
+        text += formatted(
+            "too rough to tell an optimum: noise of %.3g in the objective, %.3g counts; wider contact (dhat) or damping would help\n",
+            o.noise_in_objective, o.worth);
+    return text;
+}
+
 std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, const Console& console, const std::string& out) {
     const optimisers::OptimiserReport& report = outcome.report;
     const bool good = report.status == OptimiserStatus::optimal;
@@ -138,8 +168,10 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
                       report.start.objective, report.evaluations, report.failures, report.iterations);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
-        text += formatted("  %-24s %12.7g -> %12.7g %s\n", p.name.c_str(), description::from_si(p.value, p.unit),
-                          description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), std::string(p.unit.name).c_str());
+        const bool told = k < report.optimality.held.size();
+        text += formatted("  %-24s %12.7g -> %12.7g %s%s%s\n", p.name.c_str(), description::from_si(p.value, p.unit),
+                          description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), std::string(p.unit.name).c_str(),
+                          told ? ", held by: " : "", told ? optimisers::to_string(report.optimality.held[k]) : "");
     }
     for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
@@ -150,6 +182,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
                 console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
     text += relations_text(design, outcome.final.relations, console);
+    text += verdict_text(design, report.optimality);
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
     return text + "written to " + out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
 }

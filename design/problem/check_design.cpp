@@ -123,7 +123,7 @@ private:
 
     void check_quantity(const description::Quantity* quantity, const std::string& where) {
         if (quantity == nullptr) return add(ErrorCode::missing_key, where, "it has no quantity");
-        for (Error error : quantity->check(model_, design_.steps)) add(error.code, where, error.message);
+        for (const Error& error : quantity->check(model_, design_.steps)) add(error.code, where, error.message);
     }
 
     const Design& design_;

@@ -76,9 +76,10 @@ TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove
                     for (int part = 0; part < 4; ++part) wasteful.planes.push_back({plane.n0 + part * turn, plane.n0 + (part + 1) * turn});
                 }
                 CAPTURE(i, t, k);
-                const SegmentProof same = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 100);
+                const BodyPath path_a = body_path(c.trajectory, t, k, pair.a), path_b = body_path(c.trajectory, t, k, pair.b);
+                const SegmentProof same = thinned(wasteful, *a, *b, path_a, path_b, pair.lower + 100);
                 CHECK((same.splits == wasteful.splits && same.planes[0].n0 == wasteful.planes[0].n0));
-                const SegmentProof thin = thinned(wasteful, pair, *a, *b, c.trajectory, t, k, 0);
+                const SegmentProof thin = thinned(wasteful, *a, *b, path_a, path_b, pair.lower);
                 before += wasteful.planes.size();
                 after += thin.planes.size();
                 proof = thin;

@@ -17,6 +17,8 @@ TEST_CASE("marker path: value and derivative, timed and with free timing") {
     const std::vector<Vector3> targets{{0.9, 0.1, 0}, {0.2, 0.9, 0.5}, {-1, 0.3, 0.8}};
     check_pose_gradient(MarkerPath(0, point, targets, {0.0, 0.37, 1.4}));
     check_pose_gradient(MarkerPath(0, point, targets, {}), 1e-7);
+    check_deviations(MarkerPath(0, point, targets, {0.0, 0.37, 1.4}));
+    check_deviations(MarkerPath(0, point, targets, {}));
     // A marker at configurations counts where it is.
     const core::model::Model model = cube_model();
     const core::stepper::Trajectory trajectory = moving(14);

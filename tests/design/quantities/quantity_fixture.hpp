@@ -2,6 +2,7 @@
 /// A cube on a known path, and the check of a quantity's derivative in all pose matrices.
 #pragma once
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -59,6 +60,32 @@ inline void check_pose_gradient(const design::description::Quantity& quantity, d
         VectorX::Zero(12 * count), gradient, {1e-4, 0.25, 4});
     INFO("at " << check.column << ": " << check.analytic << " against " << check.difference);
     CHECK(check.relative_error < tolerance);
+}
+
+// The value is the sum of its deviations' squares, and its derivative that of theirs: d value = sum 2 r_i dr_i.
+inline void check_deviations(const design::description::Quantity& quantity) {
+    const core::model::Model model = cube_model();
+    const core::stepper::Trajectory trajectory = moving(14);
+    const design::description::Simulated simulated{model, trajectory, 1e-9};
+    const auto measured = quantity.value(simulated);
+    const VectorX r = quantity.deviations(simulated);
+    REQUIRE(r.size() > 0);
+    CHECK(r.squaredNorm() == Approx(measured.value));
+    const auto seeded = [&](const auto& add) {
+        adjoint::Seeds seeds = adjoint::zero_seeds(model, static_cast<int>(trajectory.steps.size()));
+        add(seeds);
+        return seeds.trajectory_bar.pose_bar;
+    };
+    const auto whole = seeded([&](adjoint::Seeds& seeds) { quantity.add_seeds(simulated, measured, 1.7, seeds); });
+    const auto parts = seeded([&](adjoint::Seeds& seeds) {
+        for (Eigen::Index i = 0; i < r.size(); ++i) quantity.add_deviation_seeds(simulated, static_cast<int>(i), 1.7 * 2 * r[i], seeds);
+    });
+    double largest = 0;
+    for (size_t t = 0; t < whole.size(); ++t) {
+        CHECK((whole[t][0] - parts[t][0]).cwiseAbs().maxCoeff() < 1e-12);
+        largest = std::max(largest, whole[t][0].cwiseAbs().maxCoeff());
+    }
+    CHECK(largest > 1e-3);
 }
 
 }  // namespace fettle::tests::design_support

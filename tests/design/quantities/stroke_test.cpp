@@ -43,6 +43,7 @@ TEST_CASE("stroke of a cosine: closer than its configurations, by the stated bou
 TEST_CASE("stroke: value and derivative") {
     check_pose_gradient(Stroke(0, Vector3(1, 2, 0).normalized(), std::nullopt));
     check_pose_gradient(Stroke(0, Vector3::UnitX(), 1.3));
+    check_deviations(Stroke(0, Vector3::UnitX(), 1.3));
     const core::model::Model model = cube_model();
     const core::stepper::Trajectory trajectory = moving(14);
     CHECK(Stroke(0, Vector3::UnitX(), std::nullopt).value({model, trajectory, 1e-9}).value == Approx(2).epsilon(1e-3));
