@@ -65,7 +65,7 @@ private:
         const std::string where = "shape of body `" + of.name + "`";
         const Result<description::ShapeInstance> drawn = description::as_drawn(*shape);
         if (!drawn) {
-            for (Error error : drawn.errors()) add(error.code, where + ": " + error.where, error.message);
+            for (const Error& error : drawn.errors()) add(error.code, where + ": " + error.where, error.message);
             return;
         }
         const auto vertices = drawn->mesh.vertices.cols();
