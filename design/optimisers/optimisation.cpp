@@ -50,7 +50,12 @@ constexpr int most_rounds = 4;          // of optimising on from a probe that ga
 class StagedRun {
 public:
     StagedRun(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options)
-        : problem_(problem), optimiser_(optimiser), options_(options), reserve_(options.max_evaluations >= 40 ? 12 : 0) {}
+        : problem_(problem),
+          optimiser_(optimiser),
+          options_(options),
+          reserve_(options.max_evaluations >= 40 ? 12
+                   : problem.smoother.empty()    ? 0
+                                                 : options.max_evaluations / 4) {}
 
     OptimiserReport run() {
         report_.point = problem_.start;
@@ -165,6 +170,10 @@ private:
         }
         report_.status = stopped_ == StopReason::interrupted ? OptimiserStatus::interrupted : OptimiserStatus::start_failed;
         report_.budget_spent = stopped_ == StopReason::budget;
+        report_.best = report_.start;  // no other design was evaluated as written
+        report_.feasible = report_.best.usable && report_.best.violation <= 0;
+        if (stopped_ == StopReason::interrupted)
+            report_.message = "stopped as asked after " + std::to_string(report_.evaluations) + " evaluations, of smoother models";
     }
 
     // @param spare  Evaluations that the native optimiser has not been given: they are the verdict's.

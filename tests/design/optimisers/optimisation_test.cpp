@@ -270,6 +270,16 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     CHECK(report.stages[2].evaluations < report.stages[0].evaluations + 20);
     CHECK(last == report.evaluations);
 
+    // Stopped among the smoother models, the start is what is known of the problem itself.
+    int asked = 0;
+    options.should_stop = [&] { return ++asked > 3; };
+    const OptimiserReport stopped = run(p, "ipopt", options);
+    CHECK(stopped.status == OptimiserStatus::interrupted);
+    CHECK(stopped.point == p.start);
+    CHECK(stopped.best.objective == Approx(16.0));
+    CHECK(stopped.message.find("after 3 evaluations") != std::string::npos);
+    options.should_stop = {};
+
     // A model that cannot be evaluated is left out.
     p.smoother[0].evaluate = [](const VectorX&) { return Evaluation{}; };
     const OptimiserReport without = run(p, "ipopt", options);
