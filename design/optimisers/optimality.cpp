@@ -57,8 +57,7 @@ public:
         moved = false;
         try {
             moved = probe();
-            if (!moved) measure_noise();
-            result_.judged = true;
+            result_.judged = !moved && solution_.solved && measure_noise();
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
         tell();
@@ -96,13 +95,14 @@ private:
         gain_ = predicted_gain(at_, rest.matrix(), solution_.step);
     }
 
-    void measure_noise() {
+    // @return whether it could be: a point next to the best one may be none that can be evaluated.
+    bool measure_noise() {
         const int m = evaluator_.constraints();
         MatrixX values(noise_values, 1 + m);
         const VectorX direction = inward(point_);
         for (int i = 0; i < noise_values; ++i) {
             const Evaluation& e = evaluator_.look(point_ + i * noise_spacing * direction);
-            if (!e.usable) return;
+            if (!e.usable) return false;
             values(i, 0) = e.objective;
             values.row(i).tail(m) = e.constraints.transpose();
         }
@@ -119,6 +119,7 @@ private:
             result_.noise_in_objective = std::max(result_.noise_in_objective, effect);
         }
         result_.noise_in_objective /= evaluator_.objective_scale();
+        return true;
     }
 
     Held what_holds(Eigen::Index k) const {

@@ -18,7 +18,9 @@ enum class Held { stationary, lower_bound, upper_bound, constraints, free };
 const char* to_string(Held held);
 
 struct Optimality {
-    bool judged = false;        ///< false: the budget or the user ended it before; then nothing below is complete
+    /// false: the budget or the user ended it before, no step could be computed, or the noise could not be measured; then nothing below is
+    /// complete.
+    bool judged = false;
     double predicted_gain = 0;  ///< in the objective, of the last step looked at
     double worth = 0;           ///< the gain that counts
     double radius = 0;          ///< of that step, of the variables' ranges

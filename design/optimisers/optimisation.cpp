@@ -152,7 +152,6 @@ private:
     }
 
     void optimise_problem(bool begun, const VectorX& from) {
-        const VectorX middle = 0.5 * (problem_.lower + problem_.upper);
         for (int k = 0; k < starts_tried; ++k) {
             if (stopped_ == StopReason::interrupted) break;
             const Problem problem = begun_at(candidate(from, k), nullptr);

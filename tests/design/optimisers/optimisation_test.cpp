@@ -326,6 +326,19 @@ TEST_CASE("a design that can be improved is not called optimal, and the variable
     CHECK(report.optimality.predicted_gain > report.optimality.worth);
 }
 
+TEST_CASE("where the noise cannot be measured, nothing is called optimal") {
+    Problem p = rough_bowl(0);
+    p.start.setZero();
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.usable = x.norm() < 1e-4;  // nothing beside the optimum can be evaluated
+        return e;
+    };
+    const OptimiserReport report = optimise(p, Idle(), tight(40));
+    CHECK(report.status == OptimiserStatus::feasible);
+    CHECK_FALSE(report.optimality.judged);
+}
+
 TEST_CASE("noise above the tolerance makes no optimum; below it, it does no harm") {
     OptimiserOptions options;
     options.tolerance = 1e-4;
