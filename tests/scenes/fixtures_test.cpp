@@ -11,7 +11,8 @@
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-using namespace fettle;
+namespace fettle::tests::scenes::fixtures_test {
+
 using namespace fettle::core;
 using namespace fettle::tests::support;
 namespace fs = std::filesystem;
@@ -98,3 +99,5 @@ TEST_CASE("every scene of the paper runs to its end, or long, without intersecti
         run_scene(path, model, steps_of(model, vertex_count(model) > 2000 ? 200 : 1000), 7);
     }
 }
+
+}  // namespace fettle::tests::scenes::fixtures_test

@@ -7,7 +7,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-using namespace fettle;
+namespace fettle::tests::scenes::standing_scenes_test {
+
 using namespace fettle::core;
 using namespace fettle::tests::support;
 
@@ -84,3 +85,5 @@ TEST_CASE("the paper's block slides down its incline at mu 0.49", "[paper][slow]
     const Vector3 second = run.poses_at(8)[0].position - run.poses_at(5)[0].position;
     CHECK((second - first).norm() / 9 == Approx(expected).epsilon(0.01));
 }
+
+}  // namespace fettle::tests::scenes::standing_scenes_test

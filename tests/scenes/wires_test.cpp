@@ -11,7 +11,8 @@
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-using namespace fettle;
+namespace fettle::tests::scenes::wires_test {
+
 using namespace fettle::core;
 
 namespace {
@@ -133,3 +134,5 @@ TEST_CASE("two wires do not pass through each other end-on") {
 TEST_CASE("wires that fly at one another end-on do not pass through each other") { fly_at_one_another(200, 1); }
 
 TEST_CASE("very many wires that fly at one another end-on do not pass through each other", "[slow]") { fly_at_one_another(3000, 2); }
+
+}  // namespace fettle::tests::scenes::wires_test

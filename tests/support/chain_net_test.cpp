@@ -6,8 +6,7 @@
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-using namespace fettle;
-using namespace fettle::tests::support;
+namespace fettle::tests::support::chain_net_test {
 
 TEST_CASE("the generated net of 4 x 4 is the paper's", "[support]") {
     FETTLE_NEEDS_SHARED();
@@ -43,3 +42,5 @@ TEST_CASE("a net of n x n has its bodies and its links", "[support]") {
         CHECK(static_cast<int>(scene->bodies.size()) == n * n - 4 + 2 * (n - 2) * (n - 1));
     }
 }
+
+}  // namespace fettle::tests::support::chain_net_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace fettle;
-using namespace fettle::tests::support;
+namespace fettle::tests::support::derivative_check_test {
 
 namespace {
 
@@ -94,3 +93,5 @@ TEST_CASE("an affine function has no remainder, with a wrong gradient slope 1", 
     CHECK(check_taylor(affine, VectorX::Ones(2), g, d).ok());
     CHECK_FALSE(check_taylor(affine, VectorX::Ones(2), wrong, d).ok());
 }
+
+}  // namespace fettle::tests::support::derivative_check_test

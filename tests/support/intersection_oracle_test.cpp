@@ -5,8 +5,7 @@
 #include <random>
 #include <set>
 
-using namespace fettle;
-using namespace fettle::tests::support;
+namespace fettle::tests::support::intersection_oracle_test {
 
 namespace {
 
@@ -194,3 +193,5 @@ TEST_CASE("a start configuration without steps is looked at once", "[support]") 
     bodies.trajectory.poses[0][1].position = Vector3(0.5, 0.1, 0.1);
     CHECK_FALSE(find_intersections(bodies.model, bodies.trajectory, 8).intersections.empty());
 }
+
+}  // namespace fettle::tests::support::intersection_oracle_test

@@ -6,7 +6,8 @@
 #include "fettle/tests/adjoint/clearance/clearance_cases.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
-using namespace fettle;
+namespace fettle::adjoint::clearance::clearance_adjoint_test {
+
 using namespace fettle::tests::clearance_cases;
 
 TEST_CASE("Clearance's derivative by poses and vertices agrees with differences of certified bounds", "[clearance][adjoint]") {
@@ -215,3 +216,5 @@ TEST_CASE("Bodies that touch have no direction and get no derivative", "[clearan
     const VectorX g = gradient_of(c, pair, 1);
     CHECK(g.allFinite());
 }
+
+}  // namespace fettle::adjoint::clearance::clearance_adjoint_test

@@ -4,7 +4,8 @@
 
 #include "fettle/tests/adjoint/clearance/clearance_cases.hpp"
 
-using namespace fettle;
+namespace fettle::adjoint::clearance::clearance_ties_test {
+
 using namespace fettle::tests::clearance_cases;
 
 namespace {
@@ -75,3 +76,5 @@ TEST_CASE("The same gap at two times ties", "[clearance][adjoint]") {
     REQUIRE(pair.upper > 0.1);
     check_one_sided(c, 6, 2, 1e-5);
 }
+
+}  // namespace fettle::adjoint::clearance::clearance_ties_test

@@ -7,7 +7,10 @@
 
 #include "fettle/tests/support/derivative_check.hpp"
 
-namespace fettle::tests {
+namespace fettle::adjoint::contact::contact_pair_adjoint_test {
+
+using namespace fettle::tests;
+
 namespace {
 
 using adjoint::contact::is_mollified;
@@ -91,4 +94,4 @@ TEST_CASE("eps follows the undeformed edges", "[adjoint][contact]") {
     CHECK(gradient.dot(x) == Approx(4 * eps(x)).epsilon(1e-13));
 }
 
-}  // namespace fettle::tests
+}  // namespace fettle::adjoint::contact::contact_pair_adjoint_test

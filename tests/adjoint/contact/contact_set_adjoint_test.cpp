@@ -10,7 +10,10 @@
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::tests {
+namespace fettle::adjoint::contact::contact_set_adjoint_test {
+
+using namespace fettle::tests;
+
 namespace {
 
 using core::contact::PairType;
@@ -183,4 +186,4 @@ TEST_CASE("contact residual follows the vertices: nearly parallel edges", "[adjo
         }
 }
 
-}  // namespace fettle::tests
+}  // namespace fettle::adjoint::contact::contact_set_adjoint_test

@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-namespace fettle::tests {
+namespace fettle::adjoint::energy::inertia_adjoint_test {
+
+using namespace fettle::tests;
 
 TEST_CASE("the inertia's gradient follows pose_hat and moments", "[adjoint][energy]") {
     std::mt19937_64 random(5);
@@ -30,4 +32,4 @@ TEST_CASE("the inertia's gradient follows pose_hat and moments", "[adjoint][ener
     CHECK(tangent.cwiseProduct(v).sum() == Approx(by_pose + by_hat + by_moments).epsilon(1e-13));
 }
 
-}  // namespace fettle::tests
+}  // namespace fettle::adjoint::energy::inertia_adjoint_test

@@ -7,8 +7,7 @@
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-using namespace fettle;
-using namespace fettle::adjoint::geometry;
+namespace fettle::adjoint::geometry::mass_moments_adjoint_test {
 
 namespace {
 
@@ -136,3 +135,5 @@ TEST_CASE("adjoint of the shift") {
     CHECK(bar.cwiseProduct(core::geometry::shifted_moments(dot, shift)).sum() ==
           Approx(shifted_moments_adjoint(bar, shift).cwiseProduct(dot).sum()).epsilon(1e-13));
 }
+
+}  // namespace fettle::adjoint::geometry::mass_moments_adjoint_test

@@ -7,9 +7,10 @@
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
+namespace fettle::adjoint::scene::mass_kind_adjoint_test {
+
 namespace {
 
-using namespace fettle;
 using core::geometry::Mesh;
 using core::scene::MassKind;
 
@@ -61,3 +62,5 @@ TEST_CASE("the volume of a nearly closed mesh takes its caps along") {
     REQUIRE(core::geometry::openings(mesh.vertices, mesh.triangles).size() == 1);
     CHECK(relative_error(mesh, MassKind::volume) < 1e-9);
 }
+
+}  // namespace fettle::adjoint::scene::mass_kind_adjoint_test

@@ -12,16 +12,19 @@
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::tests::adjoint {
+namespace fettle::adjoint::stepper::quasi_static_sweep_test {
+
+using namespace fettle::tests::adjoint;
+
 namespace {
 
 using core::scene::BodyType;
 using fettle::adjoint::stepper::reverse_sweep;
 using fettle::adjoint::stepper::tangent_sweep;
-using support::box_mesh;
-using support::make_body;
-using support::make_pose;
-using support::prescribe;
+using tests::support::box_mesh;
+using tests::support::make_body;
+using tests::support::make_pose;
+using tests::support::prescribe;
 
 SweepScene still(const std::string& name, std::vector<core::model::Body> bodies, int steps) {
     SweepScene scene{name, {}, steps};
@@ -126,7 +129,7 @@ void check_differences(const SweepScene& scene, const std::vector<TrajectoryGrad
             for (int k = 0; k < 3; ++k) out[k] = objective(seeds[k], trial.trajectory);
         return out;
     };
-    const auto check = support::check_directional(objectives, VectorX::Zero(1), VectorX::Ones(1), derivative, {1e-4, 0.3, 9});
+    const auto check = tests::support::check_directional(objectives, VectorX::Zero(1), VectorX::Ones(1), derivative, {1e-4, 0.3, 9});
     CAPTURE(check.step, check.analytic, check.difference);
     CHECK(check.relative_error < 1e-6);
 }
@@ -216,4 +219,4 @@ TEST_CASE("damping's moments follow the mass's", "[adjoint][damping]") {
     CHECK(pairing == Approx(bar.cwiseProduct(tangent).sum()).epsilon(1e-12));
 }
 
-}  // namespace fettle::tests::adjoint
+}  // namespace fettle::adjoint::stepper::quasi_static_sweep_test

@@ -10,7 +10,10 @@
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::tests::adjoint {
+namespace fettle::adjoint::stepper::reverse_sweep_test {
+
+using namespace fettle::tests::adjoint;
+
 namespace {
 
 using fettle::adjoint::stepper::reverse_sweep;
@@ -105,9 +108,9 @@ TEST_CASE("free fall has the derivatives of its closed form", "[adjoint][stepper
     scene.model.timestep = 0.01;
     scene.model.velocity_tolerance = 1e-6;
     scene.model.kappa = 1e4;
-    scene.model.bodies.push_back(
-        support::make_body("ball", support::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}), support::make_pose({0, 0, 0}, {1, 2, 30})));
-    support::set_velocity(scene.model.bodies[0], {0, 0, 3}, {0, 0, 0});
+    scene.model.bodies.push_back(tests::support::make_body("ball", tests::support::box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}),
+                                                           tests::support::make_pose({0, 0, 0}, {1, 2, 30})));
+    tests::support::set_velocity(scene.model.bodies[0], {0, 0, 3}, {0, 0, 0});
     scene.model.bodies[0].force = {0, 0, 7};
     const core::stepper::Trajectory trajectory = trajectory_of(scene);
     const auto gradients = reverse_sweep(scene.model, trajectory, {end_position(scene, 0, 2)});
@@ -128,10 +131,11 @@ TEST_CASE("a scripted body has the derivatives of its script", "[adjoint][steppe
     SweepScene scene{"script", {}, 10};
     scene.model.timestep = 0.1;
     scene.model.kappa = 1e4;
-    scene.model.bodies.push_back(support::make_body("crank", support::box_mesh({0, 0, 0}, {1, 0.1, 0.1}),
-                                                    support::make_pose({0, 0, 0.3}, {1, 0, 0}), core::scene::BodyType::kinematic_body));
-    support::prescribe(scene.model.bodies[0], 1, 0.5);
-    support::prescribe(scene.model.bodies[0], 5, 2);
+    scene.model.bodies.push_back(tests::support::make_body("crank", tests::support::box_mesh({0, 0, 0}, {1, 0.1, 0.1}),
+                                                           tests::support::make_pose({0, 0, 0.3}, {1, 0, 0}),
+                                                           core::scene::BodyType::kinematic_body));
+    tests::support::prescribe(scene.model.bodies[0], 1, 0.5);
+    tests::support::prescribe(scene.model.bodies[0], 5, 2);
     const core::stepper::Trajectory trajectory = trajectory_of(scene);
     // J = height of the tip (1, 0, 0) over y: 0.5 T + sin(0.3 + 2 T).
     TrajectoryGradient seed = end_position(scene, 0, 1);
@@ -265,11 +269,11 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
     }
     SECTION("a body without mass") {
         scene.model.bodies[0].density = 0;
-        support::refresh(scene.model.bodies[0]);
+        tests::support::refresh(scene.model.bodies[0]);
         const auto result = reverse_sweep(scene.model, trajectory, seeds);
         REQUIRE_FALSE(result);
         CHECK(result.errors()[0].message.find("singular") != std::string::npos);
     }
 }
 
-}  // namespace fettle::tests::adjoint
+}  // namespace fettle::adjoint::stepper::reverse_sweep_test

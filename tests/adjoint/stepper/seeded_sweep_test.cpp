@@ -7,7 +7,9 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 
-namespace fettle::tests::adjoint {
+namespace fettle::adjoint::stepper::seeded_sweep_test {
+
+using namespace fettle::tests::adjoint;
 
 using fettle::adjoint::add;
 using fettle::adjoint::Seeds;
@@ -49,4 +51,4 @@ TEST_CASE("seeds are swept together, and what they owe to the model is added", "
     }
 }
 
-}  // namespace fettle::tests::adjoint
+}  // namespace fettle::adjoint::stepper::seeded_sweep_test

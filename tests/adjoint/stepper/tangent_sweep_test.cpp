@@ -9,11 +9,14 @@
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
-namespace fettle::tests::adjoint {
+namespace fettle::adjoint::stepper::tangent_sweep_test {
+
+using namespace fettle::tests::adjoint;
+
 namespace {
 
 constexpr int seed_count = 3;
-const support::StepSweep sweep{1e-4, 0.3, 9};
+const tests::support::StepSweep sweep{1e-4, 0.3, 9};
 
 core::stepper::Simulation simulation_of(const SweepScene& scene, const core::model::Model& model) {
     core::stepper::SimulationOptions options;
@@ -32,7 +35,7 @@ double error_along(const SweepScene& scene, const std::vector<TrajectoryGradient
             for (int k = 0; k < seed_count; ++k) out[k] = objective(seeds[k], simulation.trajectory);
         return out;
     };
-    return support::check_directional(objectives, VectorX::Zero(1), VectorX::Ones(1), derivative, sweep).relative_error;
+    return tests::support::check_directional(objectives, VectorX::Zero(1), VectorX::Ones(1), derivative, sweep).relative_error;
 }
 
 void check_scene(const SweepScene& scene) {
@@ -67,4 +70,4 @@ TEST_CASE("differences: a motor that may tilt", "[adjoint][stepper][slow]") { ch
 TEST_CASE("differences: two prescribed rotations of three", "[adjoint][stepper][slow]") { check_scene(double_motor()); }
 TEST_CASE("differences: a scripted pusher and fixed coordinates", "[adjoint][stepper][slow]") { check_scene(pusher()); }
 
-}  // namespace fettle::tests::adjoint
+}  // namespace fettle::adjoint::stepper::tangent_sweep_test

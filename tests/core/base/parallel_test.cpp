@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-using namespace fettle::core::base;
+namespace fettle::core::base::parallel_test {
 
 namespace {
 
@@ -101,3 +101,5 @@ TEST_CASE("loops can be nested, and limits too", "[base]") {
     CHECK_THROWS_AS(ThreadLimit(0), ContractError);
     CHECK_THROWS_AS(parallel_for(-1, 1, [](int) {}), ContractError);
 }
+
+}  // namespace fettle::core::base::parallel_test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace fettle::core::base;
+namespace fettle::core::base::units_test {
 
 TEST_CASE("lengths with units become metres, rounded once", "[base]") {
     CHECK(parse_length("0.3mm").value() == 0.0003);
@@ -72,3 +72,5 @@ TEST_CASE("quantities beyond any mechanism are refused", "[base]") {
     CHECK(parse_length("1e31 um").errors().at(0).code == ErrorCode::out_of_range);
     CHECK(parse_length("-1e40 m").errors().at(0).code == ErrorCode::out_of_range);
 }
+
+}  // namespace fettle::core::base::units_test

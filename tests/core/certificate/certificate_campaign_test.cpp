@@ -9,9 +9,9 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/tests/core/clearance/mechanism_samples.hpp"
 
-using namespace fettle;
+namespace fettle::core::certificate::certificate_campaign_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::certificate;
 using namespace fettle::core::clearance;
 namespace kinematics = fettle::core::kinematics;
 
@@ -165,3 +165,5 @@ void campaign(int first, int count, int least_proven) {
 TEST_CASE("Certificates of a few generated mechanisms are accepted", "[clearance]") { campaign(0, 64, 32); }
 
 TEST_CASE("Certificates of 3,000 generated mechanisms are accepted", "[clearance][slow]") { campaign(1000, 3000, 1500); }
+
+}  // namespace fettle::core::certificate::certificate_campaign_test

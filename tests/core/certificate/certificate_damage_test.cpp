@@ -8,10 +8,10 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/tests/core/certificate/certificate_case.hpp"
 
-using namespace fettle;
+namespace fettle::core::certificate::certificate_damage_test {
+
 using namespace fettle::tests::certificate;
 using namespace fettle::tests::clearance;
-using namespace fettle::core::certificate;
 using namespace fettle::core::clearance;
 namespace kinematics = fettle::core::kinematics;
 
@@ -298,3 +298,5 @@ TEST_CASE("Ten thousand damaged certificates: ten thousand rejected", "[clearanc
     CHECK(made == 10000);
     CHECK(rejected == made);
 }
+
+}  // namespace fettle::core::certificate::certificate_damage_test

@@ -10,10 +10,10 @@
 #include "fettle/tests/core/certificate/certificate_case.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-using namespace fettle;
+namespace fettle::core::certificate::certificate_test {
+
 using namespace fettle::tests::certificate;
 using namespace fettle::tests::clearance;
-using namespace fettle::core::certificate;
 using namespace fettle::core::clearance;
 namespace kinematics = fettle::core::kinematics;
 
@@ -175,3 +175,5 @@ TEST_CASE("What the checker proves of a leaf is what sampling in extended precis
         CHECK(prover.prove(a, b, {s0, s0 + h}, plane, claim - 1e-11 * size, 24) > 0);  // what is true with a little room is proven
     }
 }
+
+}  // namespace fettle::core::certificate::certificate_test

@@ -6,9 +6,9 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/tests/core/certificate/certificate_case.hpp"
 
-using namespace fettle;
+namespace fettle::core::certificate::disjoint_solids_test {
+
 using namespace fettle::tests::certificate;
-using namespace fettle::core::certificate;
 
 namespace {
 
@@ -100,3 +100,5 @@ TEST_CASE("Inside and outside are told right up to rounding", "[clearance]") {
         CHECK(solids_of(a, b, body_path(trajectory, -1, 0, 0), body_path(trajectory, -1, 0, 1), 0) == Solids::unproven);
     }
 }
+
+}  // namespace fettle::core::certificate::disjoint_solids_test

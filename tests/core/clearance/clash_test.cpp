@@ -6,9 +6,9 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::clash_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 using core::certificate::check_certificate;
 
 namespace {
@@ -187,3 +187,5 @@ TEST_CASE("Of a body that is not closed disjoint solids cannot be verified, and 
     certificate.pairs[0].solids = Solids::disjoint;
     CHECK(!check_certificate(certificate, model, as_assembled(model)).accepted());
 }
+
+}  // namespace fettle::core::clearance::clash_test

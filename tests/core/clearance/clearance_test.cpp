@@ -6,9 +6,9 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::clearance_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 
 TEST_CASE("Boxes as assembled: bounds, status and witness", "[clearance]") {
     const auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5}), box({1, 1, 1})}, {{0, 0, 0}, {2, 0.1, 0.2}, {0, 2.00005, 0}});
@@ -245,3 +245,5 @@ TEST_CASE("Wires and points have clearances too", "[clearance]") {
     CHECK((results[3].witness.kind_a == Primitive::vertex && results[3].witness.kind_b == Primitive::vertex));
     CHECK((results[5].witness.kind_a == Primitive::triangle && results[5].witness.kind_b == Primitive::vertex));
 }
+
+}  // namespace fettle::core::clearance::clearance_test

@@ -5,7 +5,8 @@
 
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::element_pair_test {
+
 using namespace fettle::tests::clearance;
 using core::clearance::Corners;
 using core::clearance::element_pair_distance;
@@ -136,3 +137,5 @@ TEST_CASE("Slivers and triangles without area break nothing", "[clearance]") {
         if (!pair.intersecting) CHECK(pair.distance >= static_cast<double>(edges) - 2e-2);
     }
 }
+
+}  // namespace fettle::core::clearance::element_pair_test

@@ -9,9 +9,9 @@
 #include "fettle/core/clearance/pair_search.hpp"
 #include "fettle/tests/core/clearance/mechanism_samples.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::mechanism_campaign_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 
 namespace {
 
@@ -81,3 +81,5 @@ void campaign(int first, int count, int samples, int least_apart) {
 TEST_CASE("Bounds of a few generated mechanisms hold against samples in extended precision", "[clearance]") { campaign(0, 16, 1000, 11); }
 
 TEST_CASE("Bounds of 400 generated mechanisms hold against 100,000 samples each", "[clearance][slow]") { campaign(1000, 400, 100000, 300); }
+
+}  // namespace fettle::core::clearance::mechanism_campaign_test

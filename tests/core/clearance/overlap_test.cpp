@@ -5,9 +5,9 @@
 
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::overlap_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 
 namespace {
 
@@ -71,3 +71,5 @@ TEST_CASE("Nothing is told of the overlap of what is apart or has no inside", "[
     triangles.pop_back();
     CHECK(!overlap_of(make_solid(open.mesh.vertices, triangles), box({1, 1, 1}), {Matrix3::Identity(), Vector3(1, 0, 0)}));
 }
+
+}  // namespace fettle::core::clearance::overlap_test

@@ -5,7 +5,8 @@
 
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::pair_search_test {
+
 using namespace fettle::tests::clearance;
 using core::clearance::search_pair;
 using core::clearance::SearchOptions;
@@ -227,3 +228,5 @@ TEST_CASE("Many segments: those far away cost one bound each", "[clearance]") {
     CHECK((result.nearest.segment == 699 || result.nearest.segment == 700));
     CHECK(result.evaluations < 1500);
 }
+
+}  // namespace fettle::core::clearance::pair_search_test

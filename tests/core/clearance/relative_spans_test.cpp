@@ -6,9 +6,9 @@
 #include "fettle/core/clearance/witness_instant.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::relative_spans_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 
 namespace {
 
@@ -166,3 +166,5 @@ TEST_CASE("Bodies that move together are at rest for each other", "[clearance]")
     for (int j = 0; j < all.count; ++j) CHECK(bounds.spans[j] > nearest.distance - 0.01);
     CHECK(bounds.nodes[0] > nearest.distance - 1e-10);
 }
+
+}  // namespace fettle::core::clearance::relative_spans_test

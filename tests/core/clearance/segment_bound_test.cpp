@@ -7,9 +7,9 @@
 #include "fettle/core/clearance/witness_instant.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::segment_bound_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 using Exact = boost::multiprecision::cpp_bin_float_50;
 
 namespace {
@@ -159,3 +159,5 @@ TEST_CASE("The bound converges with the square of the interval, tilting faces in
         before = loss;
     }
 }
+
+}  // namespace fettle::core::clearance::segment_bound_test

@@ -7,9 +7,9 @@
 #include "fettle/core/clearance/search_front.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::clearance::unmeasured_test {
+
 using namespace fettle::tests::clearance;
-using namespace fettle::core::clearance;
 
 namespace {
 
@@ -83,3 +83,5 @@ TEST_CASE("A bound that is no number proves nothing", "[clearance]") {
         CHECK(front.is_settled());
     }
 }
+
+}  // namespace fettle::core::clearance::unmeasured_test

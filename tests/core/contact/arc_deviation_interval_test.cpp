@@ -9,7 +9,8 @@
 #include "fettle/core/contact/chord_deviation.hpp"
 #include "fettle/core/geometry/interval.hpp"
 
-using namespace fettle;
+namespace fettle::core::contact::arc_deviation_interval_test {
+
 using core::geometry::Interval;
 
 namespace {
@@ -139,3 +140,5 @@ TEST_CASE("the MPFI comparison sees rounding that is not outward") {
     }
     CHECK(outside > 300);
 }
+
+}  // namespace fettle::core::contact::arc_deviation_interval_test

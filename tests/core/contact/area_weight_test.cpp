@@ -7,8 +7,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
+namespace fettle::core::contact::area_weight_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -63,3 +63,5 @@ TEST_CASE("with area weights the gap does not depend on the mesh", "[area_weight
     CHECK(std::abs(coarse - fine) < 0.1 * dhat);
     CHECK(std::abs(resting_gap(1, false, kappa) - resting_gap(3, false, kappa)) > 0.2 * dhat);
 }
+
+}  // namespace fettle::core::contact::area_weight_test

@@ -8,8 +8,8 @@
 
 #include "fettle/tests/support/derivative_check.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::barrier_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -115,3 +115,5 @@ TEST_CASE("kappa is a stiffness near the activation distance") {
         CHECK(potential == Approx(weight * kappa * missing * missing * (2 * p.activation * missing / p.gap_hat)).epsilon(1e-3));
     }
 }
+
+}  // namespace fettle::core::contact::barrier_test

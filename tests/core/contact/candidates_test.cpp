@@ -13,9 +13,8 @@
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::candidates_test {
+
 using fettle::tests::support::box_mesh;
 using fettle::tests::support::make_body;
 
@@ -379,3 +378,5 @@ TEST_CASE("many bodies are searched as few are", "[candidates]") {
     CHECK(pairs == all.pairs.size());
     CHECK(pairs > 10);
 }
+
+}  // namespace fettle::core::contact::candidates_test

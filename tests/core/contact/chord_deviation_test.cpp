@@ -11,8 +11,8 @@
 
 #include "fettle/core/contact/curved_ccd.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::chord_deviation_test {
+
 using fettle::core::kinematics::PathSegment;
 
 namespace {
@@ -255,3 +255,5 @@ TEST_CASE("rotated_rounding bounds what is computed") {
     CHECK(largest <= 1);
     CHECK(largest > 0.005);  // a bound hundreds of times too large would hide a mistake in its derivation
 }
+
+}  // namespace fettle::core::contact::chord_deviation_test

@@ -8,8 +8,8 @@
 
 #include "fettle/core/kinematics/rotation.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::contact_pair_test {
+
 using fettle::core::kinematics::rotation;
 
 namespace {
@@ -183,3 +183,5 @@ TEST_CASE("a pair's derivatives are linear in kappa and independent of a common 
         CHECK(pair_potential(c.pair, doubled) == 2 * pair_potential(c.pair, parameters));
     }
 }
+
+}  // namespace fettle::core::contact::contact_pair_test

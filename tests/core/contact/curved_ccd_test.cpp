@@ -8,8 +8,8 @@
 
 #include "fettle/core/geometry/distance.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::curved_ccd_test {
+
 using fettle::core::kinematics::PathSegment;
 using fettle::core::kinematics::Pose;
 
@@ -197,3 +197,5 @@ TEST_CASE("curved CCD at rest or touching at the start") {
     q.a.position_step = Vector3(0, 0, 1);
     CHECK_FALSE(curved_ccd(q.type, q.a, q.b, q.X, 0).hit);
 }
+
+}  // namespace fettle::core::contact::curved_ccd_test

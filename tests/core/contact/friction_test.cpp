@@ -10,9 +10,8 @@
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::friction_test {
+
 using namespace fettle::tests::support;
 using kinematics::Pose;
 
@@ -152,3 +151,5 @@ TEST_CASE("pairs without friction are left out", "[friction]") {
     std::vector<Matrix34> reference(2, Matrix34::Zero());
     CHECK(lag_friction(s.model, contacts, s.lagged_at, barrier_parameters(0.2, 0, 2e4, 4e-4), reference, 0.02).pairs.empty());
 }
+
+}  // namespace fettle::core::contact::friction_test

@@ -7,8 +7,7 @@
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::linear_ccd_degenerate_test {
 
 namespace {
 
@@ -135,3 +134,5 @@ TEST_CASE("linear CCD keeps a minimum separation on each kind of degenerate pair
         }
     }
 }
+
+}  // namespace fettle::core::contact::linear_ccd_degenerate_test

@@ -10,8 +10,8 @@
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 
-using namespace fettle;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::linear_ccd_test {
+
 using fettle::tests::exact_distance_at_most;
 using fettle::tests::exact_linear_contact;
 using fettle::tests::exact_linear_contact_by_algebra;
@@ -353,3 +353,5 @@ TEST_CASE("distance_lower_bound is below the exact distance and close to it") {
     CHECK(above == 0);
     CHECK(loose == 0);
 }
+
+}  // namespace fettle::core::contact::linear_ccd_test

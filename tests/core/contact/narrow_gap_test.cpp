@@ -10,9 +10,7 @@
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::narrow_gap_test {
 
 namespace {
 
@@ -140,3 +138,5 @@ TEST_CASE("a small approach over a narrow gap is no hit at the start") {
     CHECK(cleared == 4 * 100 * kinds);
     CHECK(hits > 500);
 }
+
+}  // namespace fettle::core::contact::narrow_gap_test

@@ -11,9 +11,8 @@
 #include "fettle/core/contact/swept_pair.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::not_finite_test {
+
 using namespace fettle::tests::support;
 using kinematics::PathSegment;
 using kinematics::Pose;
@@ -152,3 +151,5 @@ TEST_CASE("contacts of a pose that is not finite stay contacts, of infinite pote
                   std::numeric_limits<double>::infinity());
         }
 }
+
+}  // namespace fettle::core::contact::not_finite_test

@@ -11,9 +11,8 @@
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::contact;
+namespace fettle::core::contact::safe_step_test {
+
 using namespace fettle::tests::support;
 using kinematics::PathSegment;
 
@@ -175,3 +174,5 @@ TEST_CASE("a path that is not finite is not safe") {
             CHECK(!is_path_clear(model, candidates, segments));
         }
 }
+
+}  // namespace fettle::core::contact::safe_step_test

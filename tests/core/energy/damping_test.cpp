@@ -5,8 +5,8 @@
 #include "fettle/tests/core/stepper/physics_models.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
+namespace fettle::core::energy::damping_test {
+
 using namespace fettle::tests::physics;
 using namespace fettle::tests::support;
 using scene::Integrator;
@@ -109,3 +109,5 @@ TEST_CASE("damping's and gravity's derivatives agree with differences", "[dampin
         CHECK(check_jacobian(gradient, y, derivatives(y).hessian.diagonal[0]).relative_error < 1e-7);
     }
 }
+
+}  // namespace fettle::core::energy::damping_test

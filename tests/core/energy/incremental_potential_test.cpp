@@ -7,9 +7,8 @@
 
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::energy;
+namespace fettle::core::energy::incremental_potential_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -104,3 +103,5 @@ TEST_CASE("the potential does not depend on where the candidates were found", "[
     const double there = incremental_potential(s.problem, s.points, poses, contact::find_candidates(s.model, s.problem.poses_t0, 3));
     CHECK(here == there);  // to the last bit: sums are ordered by primitives
 }
+
+}  // namespace fettle::core::energy::incremental_potential_test

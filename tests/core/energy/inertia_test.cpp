@@ -9,9 +9,8 @@
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::energy;
+namespace fettle::core::energy::inertia_test {
+
 using namespace fettle::tests::support;
 using kinematics::pose_matrix;
 
@@ -162,3 +161,5 @@ TEST_CASE("forces between bodies are listed once for each pair, in order", "[ter
     CHECK((report.contacts[1].a == 1 && report.contacts[1].b == 2 && report.contacts[1].normal == 3));
     CHECK((report.contacts[2].a == 1 && report.contacts[2].b == 4 && report.contacts[2].normal == 6));
 }
+
+}  // namespace fettle::core::energy::inertia_test

@@ -6,9 +6,8 @@
 
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::energy;
+namespace fettle::core::energy::time_integration_test {
+
 using namespace fettle::tests::support;
 using kinematics::pose_matrix;
 using scene::Integrator;
@@ -151,3 +150,5 @@ TEST_CASE("a body that is prescribed altogether has the velocity of its step", "
         if (integrator == Integrator::newmark) CHECK(next.accelerations[0] == Matrix34::Zero());
     }
 }
+
+}  // namespace fettle::core::energy::time_integration_test

@@ -8,8 +8,9 @@
 
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::core::files::atomic_file_test {
+
 using namespace fettle::core::base;
-using namespace fettle::core::files;
 using fettle::tests::support::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -50,3 +51,5 @@ TEST_CASE("files that are not there, and folders, are not read", "[base]") {
     CHECK(read_file(folder.path / "none").errors().at(0).code == ErrorCode::file_not_found);
     CHECK(read_file(folder.path).errors().at(0).code == ErrorCode::file_unreadable);
 }
+
+}  // namespace fettle::core::files::atomic_file_test

@@ -4,8 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::files {
+namespace fettle::core::files::json_document_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -21,7 +23,7 @@ base::Error only_error(const base::Errors& errors) {
     return errors.front();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 TEST_CASE("Faults of syntax have a line and a column", "[scene]") {
     const auto missing_comma = JsonDocument::parse("{\n  \"a\": 1\n  \"b\": 2\n}", "a.json");
@@ -148,4 +150,5 @@ TEST_CASE("What is said of several elements of a list is said once", "[scene]") 
 }
 
 }  // namespace
-}  // namespace fettle::core::files
+
+}  // namespace fettle::core::files::json_document_test

@@ -8,6 +8,8 @@
 
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::core::files::json_keys_test {
+
 using fettle::core::files::has_top_level_key;
 
 namespace {
@@ -38,3 +40,5 @@ TEST_CASE("What is no top-level key is not taken for one", "[scene]") {
     CHECK_FALSE(has_top_level_key("/no/such/file.json", "kind"));
     CHECK_FALSE(has_top_level_key("/", "kind"));
 }
+
+}  // namespace fettle::core::files::json_keys_test

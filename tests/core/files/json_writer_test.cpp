@@ -8,7 +8,7 @@
 
 #include "fettle/core/files/json_document.hpp"
 
-namespace fettle::core::files {
+namespace fettle::core::files::json_writer_test {
 
 TEST_CASE("Written JSON reads back bit for bit", "[scene]") {
     const std::vector<double> numbers{0, -0.0, 0.1, -1.0 / 3, 5e-324, 9.9999999999999989e29, 9007199254740993.0 * 1024};
@@ -49,4 +49,4 @@ TEST_CASE("Written JSON is this text", "[scene]") {
     CHECK(out.text == "{\"a\": [1,-0.0,0.5],\n \"b\": []}");
 }
 
-}  // namespace fettle::core::files
+}  // namespace fettle::core::files::json_writer_test

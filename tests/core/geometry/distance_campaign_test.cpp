@@ -9,7 +9,8 @@
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 
-using namespace fettle;
+namespace fettle::core::geometry::distance_campaign_test {
+
 using core::contact::PairType;
 using core::contact::PairVertices;
 using core::geometry::ClosestPoints;
@@ -150,3 +151,5 @@ TEST_CASE("a distance of what is not finite is not finite") {
                 CHECK(!std::isfinite(closest(PairType::edge_edge, y).distance_squared));
             }
 }
+
+}  // namespace fettle::core::geometry::distance_campaign_test

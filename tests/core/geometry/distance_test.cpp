@@ -8,7 +8,8 @@
 
 #include "fettle/tests/support/exact_ccd.hpp"
 
-using namespace fettle;
+namespace fettle::core::geometry::distance_test {
+
 using core::contact::PairType;
 using core::contact::PairVertices;
 using core::geometry::ClosestPoints;
@@ -114,3 +115,5 @@ TEST_CASE("weights say where the closest points are") {
     }
     CHECK(wrong == 0);
 }
+
+}  // namespace fettle::core::geometry::distance_test

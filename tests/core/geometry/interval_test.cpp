@@ -7,8 +7,7 @@
 #include <cmath>
 #include <random>
 
-using namespace fettle;
-using namespace fettle::core::geometry;
+namespace fettle::core::geometry::interval_test {
 
 namespace {
 
@@ -122,3 +121,5 @@ TEST_CASE("cross and norm_bound contain the exact results") {
     CHECK(norm_bound({Interval(3), Interval(-4), Interval(0)}) >= 5);
     CHECK(norm_bound({Interval(3), Interval(-4), Interval(0)}) < 5 + 1e-14);
 }
+
+}  // namespace fettle::core::geometry::interval_test

@@ -8,8 +8,7 @@
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-using namespace fettle;
-using namespace fettle::core::geometry;
+namespace fettle::core::geometry::mass_moments_test {
 
 namespace {
 
@@ -251,3 +250,5 @@ TEST_CASE("moments about another origin") {
         CHECK((shifted - expected).cwiseAbs().maxCoeff() <= 1e-13 * expected.cwiseAbs().maxCoeff());
     }
 }
+
+}  // namespace fettle::core::geometry::mass_moments_test

@@ -13,7 +13,8 @@
 #include "fettle/core/geometry/overlap_bound.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::geometry::mesh_judgement_test {
+
 namespace {
 
 double volume(const Mesh& mesh) { return capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
@@ -208,4 +209,4 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     CHECK(winding_number({2, 2, 2}, mesh.vertices, mesh.triangles) == 2);
 }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::geometry::mesh_judgement_test

@@ -8,8 +8,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-using namespace fettle;
-using namespace fettle::core::geometry;
+namespace fettle::core::geometry::mesh_test {
 
 namespace {
 
@@ -142,3 +141,5 @@ TEST_CASE("copies of a shape are found, other shapes are not") {
     CHECK(shapes.add(moved) == 1);
     CHECK(shapes.add(first) == 0);
 }
+
+}  // namespace fettle::core::geometry::mesh_test

@@ -12,8 +12,7 @@
 #include "fettle/core/geometry/predicates.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-using namespace fettle;
-using namespace fettle::core::geometry;
+namespace fettle::core::geometry::mesh_validity_test {
 
 namespace {
 
@@ -360,3 +359,5 @@ TEST_CASE("validity of fifty thousand triangles", "[slow]") {
     REQUIRE(sphere.triangles.size() > 49000);
     CHECK(validate_mesh(sphere, strict).empty());
 }
+
+}  // namespace fettle::core::geometry::mesh_validity_test

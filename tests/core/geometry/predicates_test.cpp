@@ -9,8 +9,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-using namespace fettle;
-using namespace fettle::core::geometry;
+namespace fettle::core::geometry::predicates_test {
 
 namespace {
 
@@ -218,3 +217,5 @@ TEST_CASE("segment against triangle") {
     CHECK(segment_intersects_triangle({2, 0, 1}, {0, 2, 1}, needle));
     CHECK_FALSE(segment_intersects_triangle({3, 0, 3}, {3, 6, 3}, needle));
 }
+
+}  // namespace fettle::core::geometry::predicates_test

@@ -9,8 +9,7 @@
 #include <random>
 #include <vector>
 
-using namespace fettle;
-using namespace fettle::core::kinematics;
+namespace fettle::core::kinematics::rotation_test {
 
 namespace {
 
@@ -230,3 +229,5 @@ TEST_CASE("orthonormalised squares the departure from a rotation") {
     const Matrix3 twice = orthonormalised(once);
     CHECK((twice.transpose() * twice - Matrix3::Identity()).norm() < 2e-15);
 }
+
+}  // namespace fettle::core::kinematics::rotation_test

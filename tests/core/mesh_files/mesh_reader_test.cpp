@@ -13,9 +13,10 @@
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
-using namespace fettle;
-using namespace fettle::core::mesh_files;
+namespace fettle::core::mesh_files::mesh_reader_test {
+
 using core::geometry::Edge;
 using core::geometry::Mesh;
 using core::geometry::Triangle;
@@ -73,7 +74,7 @@ Error only_error(const std::string& path) {
     return result.errors().front();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 double volume(const Mesh& mesh) { return core::geometry::solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
 
@@ -324,3 +325,5 @@ TEST_CASE("every mesh of the paper's scenes loads, and is judged as CGAL judges 
     // its 99 pairs the ones without a shared vertex have been compared above.
     CHECK(intersecting == std::map<std::string, int>{{"p5.off", 4}, {"suzanne.obj", 99}});
 }
+
+}  // namespace fettle::core::mesh_files::mesh_reader_test

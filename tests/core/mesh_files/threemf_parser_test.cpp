@@ -11,8 +11,10 @@
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 #include "fettle/core/mesh_files/xml_reader.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::mesh_files {
+namespace fettle::core::mesh_files::threemf_parser_test {
+
 namespace {
 
 std::string little_endian(std::uint64_t value, int bytes) {
@@ -79,7 +81,7 @@ Error only_error(const Result<RawMesh>& result) {
     return result.errors().front();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 }  // namespace
 
@@ -173,4 +175,4 @@ TEST_CASE("3MF: cut and damaged archives are read or refused, never out of bound
     }
 }
 
-}  // namespace fettle::core::mesh_files
+}  // namespace fettle::core::mesh_files::threemf_parser_test

@@ -8,8 +8,10 @@
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::model {
+namespace fettle::core::model::build_model_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -35,7 +37,7 @@ base::Error only_error(const base::Result<Model>& result) {
     return result.errors().front();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 TEST_CASE("A box gets its mass, frame and sizes", "[model]") {
     scene::Body box = box_body("box", {1, 2, 3}, {2, 4, 6});  // 1 x 2 x 3, centre (1.5, 3, 4.5)
@@ -386,4 +388,5 @@ TEST_CASE("Defaults of size follow what moves", "[model]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::model
+
+}  // namespace fettle::core::model::build_model_test

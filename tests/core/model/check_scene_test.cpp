@@ -7,8 +7,10 @@
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::model {
+namespace fettle::core::model::check_scene_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -34,7 +36,7 @@ base::Error only_error(const base::Result<Model>& result) {
     return result.errors().front();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
     scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
@@ -102,4 +104,5 @@ TEST_CASE("Copies of a part are measured once, and alike", "[model]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::model
+
+}  // namespace fettle::core::model::check_scene_test

@@ -5,8 +5,10 @@
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::model {
+namespace fettle::core::model::start_check_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -27,7 +29,7 @@ base::Errors errors_of(const std::vector<scene::Body>& bodies, double dmin = 0) 
     return build_model(scene).errors();
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 TEST_CASE("Bodies that cross at the start are named, with elements and place", "[model]") {
     const auto a = body_of("a", tests::box_mesh({0, 0, 0}, {1, 1, 1}));
@@ -176,4 +178,5 @@ TEST_CASE("Where a mesh is not closed, containment is not claimed", "[model]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::model
+
+}  // namespace fettle::core::model::start_check_test

@@ -11,9 +11,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::records;
+namespace fettle::core::records::continuation_test {
+
 using namespace fettle::core::stepper;
 using namespace fettle::tests::support;
 
@@ -148,3 +147,5 @@ TEST_CASE("kappa rises in a hard impact and falls again, and stays when it must"
     model.adaptive_kappa = false;
     for (const double kappa : kappas()) REQUIRE(kappa == model.kappa);
 }
+
+}  // namespace fettle::core::records::continuation_test

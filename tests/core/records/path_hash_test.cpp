@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-namespace fettle::core::records {
+namespace fettle::core::records::path_hash_test {
+
 namespace {
 
 stepper::Trajectory two_steps() {
@@ -63,4 +64,4 @@ TEST_CASE("A witness's time follows the nodes' fractions", "[stepper]") {
     CHECK(stepper::time_at(path, 1, 1, 0.5) == Approx(2.25));
 }
 
-}  // namespace fettle::core::records
+}  // namespace fettle::core::records::path_hash_test

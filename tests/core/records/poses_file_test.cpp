@@ -9,7 +9,8 @@
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-namespace fettle::core::records {
+namespace fettle::core::records::poses_file_test {
+
 namespace {
 
 using namespace stepper;
@@ -234,4 +235,4 @@ TEST_CASE("poses: every fault in a JSON has its pointer", "[stepper][poses]") {
     CHECK(mentions(of("[]", "{}"), "at least one time"));
 }
 
-}  // namespace fettle::core::records
+}  // namespace fettle::core::records::poses_file_test

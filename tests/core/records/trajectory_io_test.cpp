@@ -17,7 +17,8 @@
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-namespace fettle::core::records {
+namespace fettle::core::records::trajectory_io_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -311,4 +312,5 @@ TEST_CASE("Whatever is done to a trajectory file, its reader answers", "[stepper
 }
 
 }  // namespace
-}  // namespace fettle::core::records
+
+}  // namespace fettle::core::records::trajectory_io_test

@@ -8,7 +8,8 @@
 #include "fettle/core/scene/scene_motion.hpp"
 #include "fettle/tests/core/scene/fixture_texts.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene::fixture_motion_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -191,4 +192,5 @@ TEST_CASE("A saved simulation goes on from its last state", "[scene]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::scene
+
+}  // namespace fettle::core::scene::fixture_motion_test

@@ -9,7 +9,8 @@
 #include "fettle/tests/core/scene/fixture_texts.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene::fixture_reader_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -316,4 +317,5 @@ TEST_CASE("The scenes that must run load with what they say", "[scene]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::scene
+
+}  // namespace fettle::core::scene::fixture_reader_test

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::scene::test_support {
 
@@ -20,6 +21,6 @@ inline Scene scene_with_body(const std::string& body, const std::string& top = "
     return *scene;
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 }  // namespace fettle::core::scene::test_support

@@ -4,7 +4,8 @@
 
 #include "fettle/tests/core/scene/scene_workshop.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene::scene_faults_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -221,4 +222,5 @@ TEST_CASE("A mesh that cannot be read is the body's fault", "[scene]") {
 }
 
 }  // namespace
-}  // namespace fettle::core::scene
+
+}  // namespace fettle::core::scene::scene_faults_test

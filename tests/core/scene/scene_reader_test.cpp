@@ -14,7 +14,8 @@
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/core/scene/scene_workshop.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene::scene_reader_test {
+
 namespace {
 
 using base::ErrorCode;
@@ -360,4 +361,5 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
 }
 
 }  // namespace
-}  // namespace fettle::core::scene
+
+}  // namespace fettle::core::scene::scene_reader_test

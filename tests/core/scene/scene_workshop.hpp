@@ -10,6 +10,7 @@
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::scene::test_support {
 
@@ -55,6 +56,6 @@ inline json with(const std::string& pointer, const json& value) {
     return scene;
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using fettle::tests::support::contains;
 
 }  // namespace fettle::core::scene::test_support

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace fettle::core::solver::caution_test {
+
 using fettle::core::solver::Caution;
 
 TEST_CASE("no caution stays none", "[caution]") {
@@ -59,3 +61,5 @@ TEST_CASE("no step at all: larger shifts, six times", "[caution]") {
     caution.adapt({1, caution.shift(), 0, 0.5, true});
     CHECK(caution.may_try_again());
 }
+
+}  // namespace fettle::core::solver::caution_test

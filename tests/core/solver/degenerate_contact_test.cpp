@@ -13,8 +13,8 @@
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
+namespace fettle::core::solver::degenerate_contact_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -222,3 +222,5 @@ TEST_CASE("balanced features: ten decades of mass and of stiffness, seven of gap
     CHECK(count.cases == 38720);
     CHECK(count.refused < 388);  // 2 in 100 of those to rounding
 }
+
+}  // namespace fettle::core::solver::degenerate_contact_test

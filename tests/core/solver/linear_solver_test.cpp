@@ -7,9 +7,8 @@
 
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::solver;
+namespace fettle::core::solver::linear_solver_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -88,3 +87,5 @@ TEST_CASE("a new pattern replaces the symbolic factor", "[linear_solver]") {
     const VectorX b = VectorX::Ones(dofs.count);
     CHECK(residual(h, dofs, solver.solve(b), b) < 1e-12 * b.norm());
 }
+
+}  // namespace fettle::core::solver::linear_solver_test

@@ -11,9 +11,8 @@
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::solver;
+namespace fettle::core::solver::newton_test {
+
 using namespace fettle::tests::support;
 using Catch::Contains;
 
@@ -186,3 +185,5 @@ TEST_CASE("the direction solves the Newton system and descends", "[newton]") {
     CHECK(direction->slope == Approx(d.gradient[0].dot(direction->step[0])));
     CHECK(direction->residual == residual_at(problem, at, workspace));
 }
+
+}  // namespace fettle::core::solver::newton_test

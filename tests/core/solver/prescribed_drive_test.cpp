@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace fettle::core::solver::prescribed_drive_test {
+
 using fettle::core::solver::PrescribedDrive;
 
 TEST_CASE("a drive starts with all that remains and goes on so while the way is free", "[prescribed_drive]") {
@@ -82,3 +84,5 @@ TEST_CASE("fifty steps in a row that bring hardly anything are a stall", "[presc
     drive.count_stalls(0);
     CHECK(drive.is_stalled());
 }
+
+}  // namespace fettle::core::solver::prescribed_drive_test

@@ -3,7 +3,8 @@
 #include "fettle/tests/core/stepper/physics_models.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 
-using namespace fettle;
+namespace fettle::core::stepper::contact_physics_test {
+
 using namespace fettle::tests::physics;
 using namespace fettle::tests::support;
 using core::scene::Integrator;
@@ -115,3 +116,5 @@ TEST_CASE("Newmark gives an elastic bounce back to the height it fell from", "[p
     REQUIRE(touched);
     CHECK(highest_after == Approx(0.25).epsilon(2e-3));
 }
+
+}  // namespace fettle::core::stepper::contact_physics_test

@@ -4,7 +4,8 @@
 
 #include "fettle/tests/core/stepper/physics_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::stepper::free_motion_physics_test {
+
 using namespace fettle::tests::physics;
 using namespace fettle::tests::support;
 using core::scene::Integrator;
@@ -277,3 +278,5 @@ TEST_CASE("a physical pendulum has its period", "[physics]") {
         CHECK(zeros[4] - zeros[0] == Approx(2 * period).epsilon(error));
     }
 }
+
+}  // namespace fettle::core::stepper::free_motion_physics_test

@@ -2,7 +2,8 @@
 // Coulomb friction against closed forms.
 #include "fettle/tests/core/stepper/physics_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::stepper::friction_physics_test {
+
 using namespace fettle::tests::physics;
 using namespace fettle::tests::support;
 using core::scene::BodyType;
@@ -190,3 +191,5 @@ TEST_CASE("a cone rolls round its apex", "[physics]") {
     CHECK((position(rolling, 240) - start).norm() < 2e-3);
     CHECK(axis.z() == Approx(std::sin(half_angle)).margin(0.01));
 }
+
+}  // namespace fettle::core::stepper::friction_physics_test

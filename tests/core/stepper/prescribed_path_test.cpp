@@ -13,7 +13,8 @@
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::stepper {
+namespace fettle::core::stepper::prescribed_path_test {
+
 namespace {
 
 using namespace tests::support;
@@ -186,4 +187,4 @@ TEST_CASE("A dynamic body's motor goes through its table, and blocked it says so
     CHECK(blocked.trajectory.steps.empty());
 }
 
-}  // namespace fettle::core::stepper
+}  // namespace fettle::core::stepper::prescribed_path_test

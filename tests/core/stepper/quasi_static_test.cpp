@@ -3,7 +3,8 @@
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 
-using namespace fettle;
+namespace fettle::core::stepper::quasi_static_test {
+
 using namespace fettle::tests::physics;
 using namespace fettle::tests::support;
 using core::scene::BodyType;
@@ -267,3 +268,5 @@ TEST_CASE("boxes fall into a trough in one step, and their weight is carried", "
         if (f.b >= 2) carried += f.force.z();
     CHECK(carried == Approx(2 * model.bodies[0].moments(3, 3) * gravity).epsilon(1e-6));
 }
+
+}  // namespace fettle::core::stepper::quasi_static_test

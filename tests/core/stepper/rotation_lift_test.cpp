@@ -7,7 +7,8 @@
 
 #include "fettle/core/kinematics/rotation.hpp"
 
-namespace fettle::core::stepper {
+namespace fettle::core::stepper::rotation_lift_test {
+
 namespace {
 
 // Largest entry by which the polygon's rotations leave exp(s [turn]) exp([theta]).
@@ -60,4 +61,4 @@ TEST_CASE("A path that turns aside at a whole turn goes round its sphere", "[ste
     }
 }
 
-}  // namespace fettle::core::stepper
+}  // namespace fettle::core::stepper::rotation_lift_test

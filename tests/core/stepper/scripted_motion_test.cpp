@@ -6,7 +6,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::stepper {
+namespace fettle::core::stepper::scripted_motion_test {
+
 namespace {
 
 model::Model two_movers() {
@@ -57,4 +58,4 @@ TEST_CASE("Where every body is scripted the path is that of a simulation", "[ste
     }
 }
 
-}  // namespace fettle::core::stepper
+}  // namespace fettle::core::stepper::scripted_motion_test

@@ -10,9 +10,8 @@
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::stepper;
+namespace fettle::core::stepper::simulate_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -180,3 +179,5 @@ TEST_CASE("a run can be interrupted and what was reached is usable", "[simulate]
     CHECK(run.trajectory.steps.size() == 7);
     CHECK(run.trajectory.poses.size() == 8);
 }
+
+}  // namespace fettle::core::stepper::simulate_test

@@ -6,7 +6,7 @@
 
 #include "fettle/core/stepper/simulate.hpp"
 
-namespace fettle::core::stepper {
+namespace fettle::core::stepper::step_count_test {
 
 TEST_CASE("A duration takes the steps that cover it", "[stepper]") {
     CHECK(step_count(1, 0.3) == 4);
@@ -30,4 +30,4 @@ TEST_CASE("A model's steps are those of its end time, unless they are asked for"
     CHECK(step_count(model, options) == 7);
 }
 
-}  // namespace fettle::core::stepper
+}  // namespace fettle::core::stepper::step_count_test

@@ -10,9 +10,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::stepper;
+namespace fettle::core::stepper::step_outputs_test {
+
 using namespace fettle::tests::support;
 
 namespace {
@@ -149,3 +148,5 @@ TEST_CASE("tables of a run that was taken up again are those of one that was nev
     CHECK(records::joined_table("time,other\n0.01,2\n", records::steps_csv(later), until) == records::steps_csv(later));
     CHECK(records::joined_table("", records::steps_csv(later), until) == records::steps_csv(later));
 }
+
+}  // namespace fettle::core::stepper::step_outputs_test

@@ -7,9 +7,8 @@
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 
-using namespace fettle;
-using namespace fettle::core;
-using namespace fettle::core::stepper;
+namespace fettle::core::stepper::step_test {
+
 using namespace fettle::tests::support;
 using fettle::tests::physics::weightless;
 using fettle::tests::physics::world;
@@ -158,3 +157,5 @@ TEST_CASE("outputs are there when they are asked for", "[step]") {
     CHECK(result.outputs.contacts[0].distance == Approx(result.report.minimum_distance));
     CHECK(result.outputs.contacts[0].contacts == result.report.contacts);
 }
+
+}  // namespace fettle::core::stepper::step_test

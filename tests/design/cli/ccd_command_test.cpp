@@ -7,6 +7,8 @@
 #include "fettle/tests/support/shared_files.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::design::cli::ccd_command_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -115,3 +117,5 @@ TEST_CASE("ccd: the public queries") {
         CHECK(rigid.json()["files"][0]["kind"] == "rigid");
     }
 }
+
+}  // namespace fettle::design::cli::ccd_command_test

@@ -9,9 +9,9 @@
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-using namespace fettle;
+namespace fettle::design::cli::ccd_ground_truth_test {
+
 using namespace fettle::core::contact;
-using namespace fettle::design::cli;
 using namespace fettle::tests;
 
 namespace {
@@ -177,3 +177,5 @@ TEST_CASE("curved CCD on the public rigid queries") {
         }
     }
 }
+
+}  // namespace fettle::design::cli::ccd_ground_truth_test

@@ -7,9 +7,9 @@
 #include "fettle/tests/support/shared_files.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-using namespace fettle;
+namespace fettle::design::cli::ccd_queries_test {
+
 using namespace fettle::core::contact;
-using namespace fettle::design::cli;
 namespace fs = std::filesystem;
 
 namespace {
@@ -161,3 +161,5 @@ TEST_CASE("the public files are read whole") {
     CHECK(with_truth == linear);
     CHECK(rigid == 193 + 13);
 }
+
+}  // namespace fettle::design::cli::ccd_queries_test

@@ -8,6 +8,8 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 
+namespace fettle::design::cli::clearance_command_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -306,3 +308,5 @@ TEST_CASE("clearance: explanation, margin curves and a comparison with an earlie
     const std::string broken = folder.write("broken.json", R"({"pairs": [{"a": "x"}]})");
     CHECK(run(command + "--minimum 1mm --baseline " + broken).code == 3);
 }
+
+}  // namespace fettle::design::cli::clearance_command_test

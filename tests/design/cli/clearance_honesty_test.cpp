@@ -12,6 +12,8 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 
+namespace fettle::design::cli::clearance_honesty_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -218,3 +220,5 @@ TEST_CASE("Margin curves: printed bounds are bounds") {
     CHECK(static_cast<double>(static_cast<long double>(least) * 1e-3L) <= pair.at("lower").get<double>() * (1 + 1e-3));
     CHECK(least > 0);
 }
+
+}  // namespace fettle::design::cli::clearance_honesty_test

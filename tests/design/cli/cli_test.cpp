@@ -7,6 +7,8 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 
+namespace fettle::design::cli::cli_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -164,3 +166,5 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(unreachable.json()["relations"].empty());
     CHECK(unreachable.json()["unbuildable"].empty());
 }
+
+}  // namespace fettle::design::cli::cli_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-using namespace fettle::design::cli;
+namespace fettle::design::cli::rounded_lengths_test {
 
 TEST_CASE("A bound that is printed is still a bound, in every unit") {
     std::mt19937 random(2);
@@ -34,3 +34,5 @@ TEST_CASE("A bound that is printed is still a bound, in every unit") {
     CHECK(millimetres.fixed(0.0005, Towards::up) == "0.500");
     CHECK(millimetres.fixed(0, Towards::down) == "0");
 }
+
+}  // namespace fettle::design::cli::rounded_lengths_test

@@ -10,6 +10,8 @@
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
+namespace fettle::design::cli::simulate_command_test {
+
 namespace {
 
 using fettle::Vector3;
@@ -184,3 +186,5 @@ TEST_CASE("A path is proven, refuted or left open: never taken for granted") {
     run.trajectory.poses[0].pop_back();
     CHECK(design::cli::prove_path(model, run, [] { return false; }).state == ProofState::nothing);
 }
+
+}  // namespace fettle::design::cli::simulate_command_test

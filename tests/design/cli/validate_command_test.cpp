@@ -10,6 +10,8 @@
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::design::cli::validate_command_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -157,3 +159,5 @@ TEST_CASE("the README of scenes shows keys that are read") {
     CAPTURE(answer.out);
     CHECK(answer.code == 0);
 }
+
+}  // namespace fettle::design::cli::validate_command_test

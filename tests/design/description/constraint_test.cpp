@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace {
+namespace fettle::design::description::constraint_test {
 
-using namespace fettle::design::description;
+namespace {
 
 Bounds at_least(double minimum) {
     Bounds bounds;
@@ -42,3 +42,5 @@ TEST_CASE("a fault is a violation, whatever the numbers") {
     CHECK(violation({}, {-1e-3, -1e-3, -1e-3, {}, "so"}) == 1);
     CHECK(violation(at_least(3e-3), {-1e-3, -1e-3, -1e-3, {}, "so"}) == Approx(4));
 }
+
+}  // namespace fettle::design::description::constraint_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace fettle::design::description::parameter_test {
+
 using fettle::design::description::from_si;
 using fettle::design::description::representable;
 
@@ -19,3 +21,5 @@ TEST_CASE("units of parameters: file values and SI values go both ways bit for b
     CHECK(fettle::to_si(14.7, *fettle::find_unit("mm")) == 0.0147);
     CHECK(from_si(0.0147, *fettle::find_unit("mm")) == 14.7);
 }
+
+}  // namespace fettle::design::description::parameter_test

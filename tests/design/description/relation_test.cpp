@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+namespace fettle::design::description::relation_test {
+
 using fettle::design::description::Relation;
 using fettle::design::description::violation;
 
@@ -31,3 +33,5 @@ TEST_CASE("an equation is met within its tolerance; what is no number is never m
     CHECK(violation(Relation{}, std::numeric_limits<double>::quiet_NaN()) > 0);
     CHECK(violation(Relation{}, 7) == 0);
 }
+
+}  // namespace fettle::design::description::relation_test

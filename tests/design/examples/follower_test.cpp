@@ -7,7 +7,8 @@
 #include "fettle/design/quantities/marker.hpp"
 #include "fettle/tests/design/examples/example_files.hpp"
 
-namespace fettle::design {
+namespace fettle::design::examples::follower_test {
+
 namespace {
 
 using tests::design_support::Example;
@@ -96,4 +97,5 @@ TEST_CASE("example follower: the derivative is that of whole simulations, in ris
 }
 
 }  // namespace
-}  // namespace fettle::design
+
+}  // namespace fettle::design::examples::follower_test

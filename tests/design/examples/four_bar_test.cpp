@@ -11,7 +11,8 @@
 #include "fettle/design/quantities/marker.hpp"
 #include "fettle/tests/design/examples/example_files.hpp"
 
-namespace fettle::design {
+namespace fettle::design::examples::four_bar_test {
+
 namespace {
 
 using tests::design_support::Example;
@@ -133,4 +134,5 @@ TEST_CASE("example four-bar: with the target's dimensions the path is met but fo
 }
 
 }  // namespace
-}  // namespace fettle::design
+
+}  // namespace fettle::design::examples::four_bar_test

@@ -9,6 +9,8 @@
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::design::examples::tuned_examples_test {
+
 namespace {
 
 using namespace fettle::design::optimisers;
@@ -74,3 +76,5 @@ TEST_CASE("the four-bar linkage is tuned to its path", "[slow]") {
 }
 
 TEST_CASE("the eccentric is tuned to its rise", "[slow]") { tuned("follower", 9.2767); }
+
+}  // namespace fettle::design::examples::tuned_examples_test

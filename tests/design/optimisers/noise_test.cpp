@@ -7,10 +7,9 @@
 #include <limits>
 #include <random>
 
-namespace {
+namespace fettle::design::optimisers::noise_test {
 
-using namespace fettle;
-using namespace fettle::design::optimisers;
+namespace {
 
 constexpr double unit_rounding = std::numeric_limits<double>::epsilon() / 2;
 
@@ -179,3 +178,5 @@ TEST_CASE("noise: columns are judged one by one") {
     CHECK(found[1].status == NoiseStatus::detected);
     CHECK(found[2].status == NoiseStatus::spacing_too_small);
 }
+
+}  // namespace fettle::design::optimisers::noise_test

@@ -6,10 +6,9 @@
 #include <limits>
 #include <map>
 
-namespace {
+namespace fettle::design::optimisers::optimisation_test {
 
-using namespace fettle;
-using namespace fettle::design::optimisers;
+namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -358,3 +357,5 @@ TEST_CASE("unknown optimisers are refused by name") {
     CHECK(made.errors()[0].code == ErrorCode::out_of_range);
     CHECK(made.errors()[0].message.find("slsqp") != std::string::npos);
 }
+
+}  // namespace fettle::design::optimisers::optimisation_test

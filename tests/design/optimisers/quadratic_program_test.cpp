@@ -7,10 +7,9 @@
 
 #include "fettle/design/optimisers/projection.hpp"
 
-namespace {
+namespace fettle::design::optimisers::quadratic_program_test {
 
-using namespace fettle;
-using namespace fettle::design::optimisers;
+namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -92,3 +91,5 @@ TEST_CASE("a start is moved to the nearest point of constraints that cost nothin
     disc.rows = [](const VectorX&) { return std::optional<Rows>(); };
     CHECK(project(from, disc) == from);
 }
+
+}  // namespace fettle::design::optimisers::quadratic_program_test

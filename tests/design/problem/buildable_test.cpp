@@ -5,10 +5,10 @@
 
 #include "fettle/tests/design/small_problem.hpp"
 
+namespace fettle::design::problem::buildable_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::problem;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
 
@@ -106,3 +106,5 @@ TEST_CASE("obstacles are counted by their place, the commonest first") {
     CHECK(counted[1].where == "c");
     CHECK(counted[2].designs == 1);
 }
+
+}  // namespace fettle::design::problem::buildable_test

@@ -7,10 +7,10 @@
 #include "fettle/design/problem/optimiser_problem.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 
+namespace fettle::design::problem::design_problem_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::problem;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
 
@@ -92,3 +92,5 @@ TEST_CASE("an evaluation has the same bits each time, gradients asked for or not
     // the whole motion's least distance is that of the nearer window
     CHECK(a.constraints[0].value == Approx(std::min(a.constraints[1].value, a.constraints[2].value)).margin(2e-9));
 }
+
+}  // namespace fettle::design::problem::design_problem_test

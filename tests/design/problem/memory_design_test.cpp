@@ -15,10 +15,10 @@
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
+namespace fettle::design::problem::memory_design_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design;
 using namespace fettle::design::description;
 using namespace fettle::tests::design_support;
 using problem::DesignEvaluation;
@@ -297,3 +297,5 @@ TEST_CASE("what is wrong with a design made in memory is told, all of it, by nam
         CHECK(told(where) == 1);
     }
 }
+
+}  // namespace fettle::design::problem::memory_design_test

@@ -9,10 +9,10 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
+namespace fettle::design::problem::moved_scene_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::problem;
 using fettle::design::description::values_of;
 using fettle::design::reading::DesignFile;
 using fettle::design::reading::read_design;
@@ -122,3 +122,5 @@ TEST_CASE("a part that cannot be made is an error with its body and dimension") 
     CHECK(moved.errors()[0].where.find("cube") != std::string::npos);
     CHECK(moved.errors()[0].where.find("size_z") != std::string::npos);
 }
+
+}  // namespace fettle::design::problem::moved_scene_test

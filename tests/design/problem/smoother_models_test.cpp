@@ -6,11 +6,9 @@
 #include "fettle/design/problem/optimiser_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
-namespace {
+namespace fettle::design::problem::smoother_models_test {
 
-using namespace fettle;
-using namespace fettle::design;
-using namespace fettle::design::problem;
+namespace {
 
 DesignProblem slider_crank() {
     auto file = reading::read_design("examples/slider_crank/slider_crank.design.json", {});
@@ -62,3 +60,5 @@ TEST_CASE("a start is moved onto the required play, and contact begins nearly as
     REQUIRE(wide);
     CHECK(smoother_models(*wide, moved).empty());
 }
+
+}  // namespace fettle::design::problem::smoother_models_test

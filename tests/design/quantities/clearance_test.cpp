@@ -8,10 +8,10 @@
 #include "fettle/design/description/constraint.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
+namespace fettle::design::quantities::clearance_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::quantities;
 using design::description::Measurement;
 using design::description::Simulated;
 
@@ -102,3 +102,5 @@ TEST_CASE("a clearance of bodies that are not there, or of one body, is refused"
     CHECK(Clearance({.a = 1, .b = 1}).check(model, 0).size() == 1);
     CHECK(Clearance({.a = 0, .b = 1, .motion = true}).check(model, 0).size() == 1);
 }
+
+}  // namespace fettle::design::quantities::clearance_test

@@ -4,10 +4,10 @@
 #include "fettle/design/quantities/marker.hpp"
 #include "fettle/tests/design/quantities/quantity_fixture.hpp"
 
+namespace fettle::design::quantities::marker_path_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::quantities;
 using namespace fettle::tests::design_support;
 
 }  // namespace
@@ -28,3 +28,5 @@ TEST_CASE("marker path: value and derivative, timed and with free timing") {
     CHECK(MarkerPath(0, point, {there}, {}).value(simulated).value < 1e-30);
     CHECK(MarkerPath(0, point, {there + Vector3(0, 0, 0.5)}, {0.3}).value(simulated).value == Approx(0.25));
 }
+
+}  // namespace fettle::design::quantities::marker_path_test

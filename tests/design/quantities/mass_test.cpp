@@ -3,10 +3,10 @@
 
 #include "fettle/tests/design/quantities/quantity_fixture.hpp"
 
+namespace fettle::design::quantities::mass_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::quantities;
 using namespace fettle::tests::design_support;
 
 Mass mass_of(core::scene::MassKind kind) { return Mass(std::vector<Mass::Of>{{0, kind}}); }
@@ -70,3 +70,5 @@ TEST_CASE("mass: a body without any of its kind is named") {
     CHECK(errors[0].message.find("\"cube\"") != std::string::npos);
     CHECK(errors[0].message.find("kg/m^3") != std::string::npos);
 }
+
+}  // namespace fettle::design::quantities::mass_test

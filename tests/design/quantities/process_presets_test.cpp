@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-using namespace fettle;
+namespace fettle::design::quantities::process_presets_test {
+
 using design::quantities::part_tolerance;
 using design::quantities::process_preset;
 using design::quantities::process_presets;
@@ -55,3 +56,5 @@ TEST_CASE("A band holds its upper end, and nothing is said beyond the last", "[d
     CHECK(!process_preset("casting", ""));
     CHECK(design::quantities::process_table().find("per side") != std::string::npos);
 }
+
+}  // namespace fettle::design::quantities::process_presets_test

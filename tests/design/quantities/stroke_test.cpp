@@ -3,10 +3,10 @@
 
 #include "fettle/tests/design/quantities/quantity_fixture.hpp"
 
+namespace fettle::design::quantities::stroke_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::quantities;
 using namespace fettle::tests::design_support;
 
 }  // namespace
@@ -49,3 +49,5 @@ TEST_CASE("stroke: value and derivative") {
     CHECK(Stroke(0, Vector3::UnitX(), std::nullopt).value({model, trajectory, 1e-9}).value == Approx(2).epsilon(1e-3));
     CHECK(Stroke(0, Vector3::UnitZ(), std::nullopt).value({model, trajectory, 1e-9}).value == Approx(1.4));
 }
+
+}  // namespace fettle::design::quantities::stroke_test

@@ -6,10 +6,10 @@
 
 #include "fettle/tests/design/small_design.hpp"
 
+namespace fettle::design::reading::design_reader_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::reading;
 using fettle::design::description::representable;
 using fettle::design::description::values_of;
 using namespace fettle::tests::design_support;
@@ -156,3 +156,5 @@ TEST_CASE("an end time that no whole number of steps meets is covered, not cut s
     REQUIRE(file);
     CHECK(file->design.steps == 4);
 }
+
+}  // namespace fettle::design::reading::design_reader_test

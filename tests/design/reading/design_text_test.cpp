@@ -6,10 +6,10 @@
 
 #include "fettle/tests/design/small_design.hpp"
 
+namespace fettle::design::reading::design_text_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::reading;
 using namespace fettle::tests::design_support;
 using fettle::design::description::representable;
 using fettle::design::description::values_of;
@@ -47,3 +47,5 @@ TEST_CASE("a rewritten design reads back bit for bit, from another folder, and h
     const DesignFolder other_optimiser(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 9"));
     CHECK(design_hash(*read_design(other_optimiser.design())) == design_hash(*design));
 }
+
+}  // namespace fettle::design::reading::design_text_test

@@ -3,8 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace fettle;
-using namespace fettle::design::reading;
+namespace fettle::design::reading::dimension_powers_test {
 
 TEST_CASE("every dimension of a unit has powers, and is named by them") {
     for (const Unit& unit : units()) {
@@ -27,3 +26,5 @@ TEST_CASE("dimensions multiply, and have names where they are known") {
     CHECK(described(powers_of(Dimension::area)) == "an area");
     CHECK(described(product(length, powers_of(Dimension::stiffness), -1)) == "a quantity in m kg^-1 s^2");
 }
+
+}  // namespace fettle::design::reading::dimension_powers_test

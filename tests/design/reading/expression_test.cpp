@@ -6,10 +6,10 @@
 
 #include "fettle/tests/support/derivative_check.hpp"
 
+namespace fettle::design::reading::expression_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::reading;
 using fettle::design::description::Parameter;
 
 // a, b, c: lengths; n: a number; phi: an angle; one whose name is no word; two that are called like a function and a unit
@@ -196,3 +196,5 @@ TEST_CASE("a formula that nests without end is refused, not followed") {
     for (int k = 0; k < 10000; ++k) sum += "+n";
     CHECK(evaluate(parsed(sum), point()).gradient[3] == 10001);
 }
+
+}  // namespace fettle::design::reading::expression_test

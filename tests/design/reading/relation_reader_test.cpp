@@ -7,10 +7,10 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/tests/design/small_design.hpp"
 
+namespace fettle::design::reading::relation_reader_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::reading;
 using namespace fettle::tests::design_support;
 using fettle::design::description::Relation;
 using fettle::design::description::values_of;
@@ -121,3 +121,5 @@ TEST_CASE("every fault of a relation is named, with its place") {
         CHECK(error.message.find(fault.words) != std::string::npos);
     }
 }
+
+}  // namespace fettle::design::reading::relation_reader_test

@@ -6,7 +6,8 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
-namespace fettle::design::shapes {
+namespace fettle::design::shapes::dual_test {
+
 namespace {
 
 // Uses every operation, both orders of mixing with constants, and the compound forms.
@@ -80,4 +81,5 @@ TEST_CASE("dual: inputs of different problems do not mix") {
 }
 
 }  // namespace
-}  // namespace fettle::design::shapes
+
+}  // namespace fettle::design::shapes::dual_test

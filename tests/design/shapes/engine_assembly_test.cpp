@@ -15,7 +15,8 @@
 #include "fettle/design/shapes/engine_parts.hpp"
 #include "fettle/design/shapes/shape_generator.hpp"
 
-namespace fettle::design::shapes {
+namespace fettle::design::shapes::engine_assembly_test {
+
 namespace {
 
 using core::geometry::Mesh;
@@ -195,4 +196,5 @@ TEST_CASE("engine: the rod's length trades disc against piston for rod against c
 }
 
 }  // namespace
-}  // namespace fettle::design::shapes
+
+}  // namespace fettle::design::shapes::engine_assembly_test

@@ -3,8 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace fettle;
-using namespace fettle::design::shapes;
+namespace fettle::design::shapes::generated_part_test {
 
 TEST_CASE("every generator is a shape: as drawn it is what generate makes, and its derivative too") {
     for (const GeneratorInfo& info : generator_table()) {
@@ -35,3 +34,5 @@ TEST_CASE("a generated part keeps the dimensions it was drawn with, and refuses 
     CHECK_FALSE(GeneratedPart::create("pin", {{"radios", 3e-3}}));
     CHECK_FALSE(GeneratedPart::create("pim", {}));
 }
+
+}  // namespace fettle::design::shapes::generated_part_test

@@ -7,7 +7,8 @@
 
 #include "fettle/core/base/types.hpp"
 
-namespace fettle::design::shapes {
+namespace fettle::design::shapes::mesh_builder_test {
+
 namespace {
 
 using Builder = MeshBuilder<double>;
@@ -79,4 +80,5 @@ TEST_CASE("mesh builder: a strip along the axis looks outwards") {
 }
 
 }  // namespace
-}  // namespace fettle::design::shapes
+
+}  // namespace fettle::design::shapes::mesh_builder_test

@@ -12,7 +12,8 @@
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
-namespace fettle::design::shapes {
+namespace fettle::design::shapes::shape_generator_test {
+
 namespace {
 
 using Values = std::map<std::string, double>;
@@ -307,4 +308,5 @@ TEST_CASE("shapes: wrong input is refused with its place and what is allowed") {
 }
 
 }  // namespace
-}  // namespace fettle::design::shapes
+
+}  // namespace fettle::design::shapes::shape_generator_test

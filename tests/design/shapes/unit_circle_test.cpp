@@ -9,7 +9,8 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/types.hpp"
 
-namespace fettle::design::shapes {
+namespace fettle::design::shapes::unit_circle_test {
+
 namespace {
 
 double distance_to_segment(const Vector2& p, const Vector2& a, const Vector2& b) {
@@ -75,4 +76,5 @@ TEST_CASE("unit circle: an inscribed pin in a circumscribed bore keeps the nomin
 }
 
 }  // namespace
-}  // namespace fettle::design::shapes
+
+}  // namespace fettle::design::shapes::unit_circle_test

@@ -7,10 +7,10 @@
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/design/studies/density_design.hpp"
 
+namespace fettle::design::studies::difference_check_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::studies;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
 using namespace fettle::design::problem;
@@ -144,3 +144,5 @@ TEST_CASE("check: a kink is named, with the slopes of both sides") {
     CHECK(report.rows[1].kink == 0);
     CHECK(report.rows[1].relative_error < 1e-6);
 }
+
+}  // namespace fettle::design::studies::difference_check_test

@@ -10,10 +10,10 @@
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
+namespace fettle::design::studies::history_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::studies;
 namespace optimisers = fettle::design::optimisers;
 
 struct Folder : tests::support::TemporaryFolder {
@@ -165,3 +165,5 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     REQUIRE_FALSE(broken);
     CHECK(broken.errors()[0].where.find("line 2") != std::string::npos);
 }
+
+}  // namespace fettle::design::studies::history_test

@@ -6,11 +6,10 @@
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 
+namespace fettle::design::studies::limits_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design;
-using namespace fettle::design::studies;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
 
@@ -96,3 +95,5 @@ TEST_CASE("a run tells of parts that cannot be made before it simulates, and bla
     CHECK(any(outcome->limits, "`cube` and `wall` intersect"));
     CHECK_FALSE(any(outcome->limits, "required is"));
 }
+
+}  // namespace fettle::design::studies::limits_test

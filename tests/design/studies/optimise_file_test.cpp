@@ -8,13 +8,12 @@
 
 #include "fettle/tests/design/small_problem.hpp"
 
+namespace fettle::design::studies::optimise_file_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::studies;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
-using namespace fettle::design;
 
 std::string contents(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
@@ -58,3 +57,5 @@ TEST_CASE("a simulated design, killed and resumed, ends the same, bit for bit", 
     const auto again = problem::DesignProblem::create(final->design)->evaluate(values);
     CHECK(again.objective == whole->outcome.report.best.objective);
 }
+
+}  // namespace fettle::design::studies::optimise_file_test

@@ -10,10 +10,10 @@
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/design/studies/density_design.hpp"
 
+namespace fettle::design::studies::roughness_test {
+
 namespace {
 
-using namespace fettle;
-using namespace fettle::design::studies;
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
 using fettle::design::optimisers::NoiseStatus;
@@ -208,3 +208,5 @@ TEST_CASE("roughness: what does not depend on the simulation is smooth at roundi
     }
     CHECK(mass);
 }
+
+}  // namespace fettle::design::studies::roughness_test
