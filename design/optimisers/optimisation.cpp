@@ -62,6 +62,7 @@ public:
         bool begun = false;
         VectorX point = problem_.prepared && !problem_.smoother.empty() ? problem_.prepared(problem_.start) : problem_.start;
         if (!problem_.smoother.empty()) evaluate_start();
+        if (ended_at_start(report_.start)) return std::move(report_);
         for (const SmootherModel& model : problem_.smoother) {
             if (stopped_ != StopReason::none) break;
             begun = optimise_smoother(model, begun, point) || begun;
@@ -100,6 +101,16 @@ private:
         Evaluator evaluator(problem_, limits(std::min(1, left())));
         report_.start = evaluator.start_evaluation();
         count(evaluator);
+    }
+
+    // A feasible start whose objective cannot be less.
+    bool ended_at_start(const Evaluation& start) {
+        if (!start.usable || start.violation > 0 || start.objective > problem_.objective_floor) return false;
+        report_.status = OptimiserStatus::optimal;
+        report_.message = "the start meets every requirement, and no other can be better";
+        report_.start = report_.best = start;
+        report_.feasible = true;
+        return true;
     }
 
     // The start, and points on the way from it to the middle of the bounds.
@@ -157,7 +168,13 @@ private:
             const Problem problem = begun_at(candidate(from, k), nullptr);
             const int native = std::max(std::min(1, left()), left() - reserve_);
             Evaluator evaluator(problem, limits(native));
-            if (k == 0 && problem_.smoother.empty()) report_.start = evaluator.start_evaluation();
+            if (k == 0 && problem_.smoother.empty()) {
+                report_.start = evaluator.start_evaluation();
+                if (ended_at_start(report_.start)) {
+                    count(evaluator);
+                    return;
+                }
+            }
             if (evaluator.start_evaluation().usable) {
                 finish(evaluator, begun, left() - native);
                 return;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,7 +47,9 @@ struct Problem {
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
     std::function<Evaluation(const VectorX&)> evaluate;
-    std::vector<SmootherModel> smoother;  ///< the smoothest first; empty: none
+    double objective_floor =
+        -std::numeric_limits<double>::infinity();  ///< f is known not to be below it: a start that attains it is the end
+    std::vector<SmootherModel> smoother;           ///< the smoothest first; empty: none
     /// Optional: the nearest point that meets all that can be known without a simulation, as far as it was found. Starts are moved there.
     std::function<VectorX(const VectorX&)> prepared;
     std::function<Rows(const VectorX&)> relations;  ///< pure and cheap; null where k = 0. Numbers that are not finite: no such point

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/optimise_design.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
+#include "fettle/design/optimisers/nearest_design.hpp"
 #include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/optimiser_problem.hpp"
 #include "fettle/design/problem/smoother_models.hpp"
 #include "fettle/design/studies/limits.hpp"
+#include "fettle/design/studies/random_start.hpp"
 
 namespace fettle::design::studies {
 
@@ -24,6 +28,8 @@ std::string evaluation_line(int number, const optimisers::Evaluation& e, bool be
     std::snprintf(line, sizeof line, "%4d  objective %-13.8g violation %-11.4g%s", number, e.objective, e.violation, best ? " best" : "");
     return line;
 }
+
+constexpr double repair_tolerance = 1e-2;  // of the squared change: half a percent of the change
 
 using Compute = std::function<HistoryEntry(const problem::DesignProblem&, const VectorX&)>;
 
@@ -59,12 +65,20 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     evaluate.should_stop = options.should_stop;
     evaluate.on_step = options.on_step;
     optimisers::Problem seen = problem::optimiser_problem(problem, evaluate);
+    seen.start = start_of_seed(design, options.seed);
     int computed = 0;
     const Compute compute = [&](const problem::DesignProblem& model, const VectorX& p) {
         ++computed;
         return history_entry(design, p, model.evaluate(p, evaluate));
     };
     seen.evaluate = answered(problem, {}, compute, options.history);
+    OptimiseOutcome outcome;
+    outcome.start = seen.start;
+    seen.evaluate = [&outcome, evaluate_own = seen.evaluate](const VectorX& p) {
+        optimisers::Evaluation e = evaluate_own(p);
+        if (e.usable && p == outcome.start) outcome.objective_start = e.objective;
+        return e;
+    };
     const std::vector<problem::SmootherDesign> smoother =
         problem::smoother_models(problem, seen.prepared ? seen.prepared(seen.start) : seen.start);
     for (const problem::SmootherDesign& model : smoother) {
@@ -73,7 +87,7 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     }
     optimisers::OptimiserOptions settings;
     settings.max_evaluations = design.optimiser.max_evaluations;
-    settings.tolerance = design.optimiser.tolerance;
+    settings.tolerance = options.repair ? std::max(repair_tolerance, design.optimiser.tolerance) : design.optimiser.tolerance;
     settings.should_stop = options.should_stop;
     std::vector<FailedTrial> failures;
     settings.on_evaluation = [&](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
@@ -91,11 +105,11 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
         return reason;
     };
 
-    OptimiseOutcome outcome;
     outcome.unbuildable = problem::described(design, problem::try_bounds(problem));
     for (const std::string& line : outcome.unbuildable) {
         if (options.narrate) options.narrate("bounds: " + line);
     }
+    if (options.repair) seen = optimisers::nearest_to(description::values_of(design.parameters), std::move(seen));
     outcome.report = optimisers::optimise(seen, **optimiser, settings);
     outcome.replayed = outcome.report.evaluations - computed;
     if (!outcome.report.best.usable) return outcome;

@@ -3,7 +3,9 @@
 /// history, if one is given. Of a design file, with its files: optimise_file.hpp.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,11 @@
 namespace fettle::design::studies {
 
 struct OptimiseOptions {
-    std::string optimiser;                                        ///< empty: what the design says
+    std::string optimiser;   ///< empty: what the design says
+    std::uint64_t seed = 0;  ///< where it begins: random_start.hpp
+    /// Instead of the design's objective: the smallest change of the design's own values that meets every requirement
+    /// (nearest_design.hpp), to half a percent or the design's tolerance. `report` counts in that objective, `final` in the design's.
+    bool repair = false;
     std::function<bool()> should_stop;                            ///< optional
     std::function<void(const std::string&)> narrate;              ///< optional: a line per evaluation
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
@@ -24,6 +30,8 @@ struct OptimiseOptions {
 
 struct OptimiseOutcome {
     optimisers::OptimiserReport report;
+    VectorX start;                                          ///< where it began
+    std::optional<double> objective_start;                  ///< the design's own objective there, if it could be evaluated
     problem::DesignEvaluation final;                        ///< of report.point, without gradients; not usable if the start was not
     std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
     std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/optimise_starts.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <thread>
+
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/child_process.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> arguments_of(const StartsRequest& request, const StartResult& start, const CommonOptions& common, int threads) {
+    std::vector<std::string> words{"optimise",  request.design,          "--seed", std::to_string(start.seed), "--out", start.out,
+                                   "--threads", std::to_string(threads), "--quiet"};
+    if (!request.optimiser.empty()) words.insert(words.end(), {"--optimiser", request.optimiser});
+    if (request.resume) words.emplace_back("--resume");
+    if (request.repair) words.emplace_back("--repair");
+    if (common.strict) words.emplace_back("--strict");
+    for (const std::string& folder : common.mesh_dirs) words.insert(words.end(), {"--mesh-dir", folder});
+    return words;
+}
+
+std::string last_line(const std::string& text) {
+    const size_t end = text.find_last_not_of('\n');
+    if (end == std::string::npos) return {};
+    const size_t begin = text.find_last_of('\n', end);
+    return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
+}
+
+void read_result(StartResult& start, int exit_code) {
+    const std::filesystem::path folder = start.out;
+    const Result<std::string> text = core::files::read_file(folder / "result.json");
+    if (text) start.result = Json::parse(*text, nullptr, false);
+    if (start.result.is_object() && start.result.contains("status")) {
+        start.status = start.result["status"].get<std::string>();
+        start.message = start.result["message"].get<std::string>();
+        return;
+    }
+    start.result = Json();
+    start.status = "failed";
+    const Result<std::string> log = core::files::read_file(folder / "log.txt");
+    start.message = log ? last_line(*log) : "";
+    if (start.message.empty()) start.message = "ended with exit code " + std::to_string(exit_code) + ", no result written";
+}
+
+// The number at a key, NaN where there is none.
+double number(const Json& result, const char* key) {
+    if (!result.is_object() || !result.contains(key) || !result[key].is_number()) return std::numeric_limits<double>::quiet_NaN();
+    return result[key].get<double>();
+}
+
+std::string joined_names(const Json& list) {
+    std::string text;
+    for (const Json& name : list) text += (text.empty() ? "" : "; ") + name.get<std::string>();
+    return text;
+}
+
+std::string line_of(const StartResult& start) {
+    std::string text = formatted("seed %-8llu %-12s", static_cast<unsigned long long>(start.seed), start.status.c_str());
+    if (!start.result.is_object()) return text + " " + start.message;
+    text += formatted(" objective %-12.8g %3d evaluations", number(start.result, "objective"), start.result["evaluations"].get<int>());
+    const std::string limits = joined_names(start.result["limited_by"]);
+    return limits.empty() ? text : text + ", held by " + limits;
+}
+
+struct Running {
+    size_t start;
+    ChildProcess process;
+};
+
+// Those that have ended leave the list.
+bool collect(std::vector<Running>& running, std::vector<StartResult>& starts, Console& console) {
+    bool any = false;
+    for (auto run = running.begin(); run != running.end();) {
+        const std::optional<int> code = run->process.ended();
+        if (!code) {
+            ++run;
+            continue;
+        }
+        read_result(starts[run->start], *code);
+        console.narrate(line_of(starts[run->start]));
+        run = running.erase(run);
+        any = true;
+    }
+    return any;
+}
+
+}  // namespace
+
+std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOptions& common, Console& console) {
+    std::vector<StartResult> starts;
+    for (const std::uint64_t seed : request.seeds) {
+        const std::string folder = (std::filesystem::path(request.out) / ("start-" + std::to_string(seed))).string();
+        starts.push_back({seed, folder, "not run", "", Json()});
+    }
+    const int cores = core::base::thread_count(), at_once = std::min<int>(cores, static_cast<int>(starts.size()));
+    std::vector<Running> running;
+    size_t next = 0;
+    while (next < starts.size() || !running.empty()) {
+        const bool stop = interrupted();
+        if (stop) next = starts.size();
+        for (Running& run : running) {
+            if (stop) run.process.ask_to_stop();
+        }
+        for (; next < starts.size() && static_cast<int>(running.size()) < at_once; ++next) {
+            const std::filesystem::path folder = starts[next].out;
+            std::filesystem::create_directories(folder);
+            std::filesystem::remove(folder / "result.json");  // of an earlier run: it would pass for this one's
+            running.push_back(
+                {next, ChildProcess::start(arguments_of(request, starts[next], common, cores / at_once), folder / "log.txt")});
+        }
+        if (collect(running, starts, console)) {
+            const auto done = static_cast<int>(next - running.size());
+            if (!stop) console.progress("      starts", done, static_cast<int>(starts.size()));
+            continue;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return starts;
+}
+
+std::optional<size_t> best_start(const std::vector<StartResult>& starts) {
+    std::optional<size_t> best;
+    std::pair<double, double> best_rank;  // violation, then what is minimised
+    for (size_t i = 0; i < starts.size(); ++i) {
+        const Json& result = starts[i].result;
+        const double violation = std::max(0.0, number(result, "constraint_violation")), objective = number(result, "objective");
+        if (!(violation >= 0) || !std::isfinite(objective)) continue;
+        const bool repair = result.contains("repair");
+        const std::pair<double, double> rank{violation, repair ? number(result["repair"], "distance") : objective};
+        if (best && !(rank < best_rank)) continue;
+        best = i;
+        best_rank = rank;
+    }
+    return best;
+}
+
+Json starts_json(const std::vector<StartResult>& starts) {
+    Json list = Json::array();
+    for (const StartResult& start : starts) {
+        Json row{{"seed", start.seed}, {"status", start.status}, {"message", start.message}};
+        for (const char* key :
+             {"objective", "constraint_violation", "evaluations", "limited_by", "parameters_start", "parameters", "repair"}) {
+            if (start.result.is_object() && start.result.contains(key)) row[key] = start.result[key];
+        }
+        if (!row.contains("objective")) row["objective"] = Json();
+        if (!row.contains("evaluations")) row["evaluations"] = 0;
+        row["out"] = start.out;
+        list.push_back(std::move(row));
+    }
+    return list;
+}
+
+std::string starts_text(const std::vector<StartResult>& starts) {
+    std::string text;
+    for (const StartResult& start : starts) text += "  " + line_of(start) + "\n";
+    return text;
+}
+
+}  // namespace fettle::design::cli

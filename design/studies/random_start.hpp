@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// Where runs of an optimiser begin: a design can have several optima, and many starts find more of them than one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fettle/design/description/design.hpp"
+
+namespace fettle::design::studies {
+
+/// Seed 0: the design's own values. Any other: every parameter drawn from its bounds, uniformly and independently of the others; the same
+/// seed gives the same start, on any machine.
+VectorX start_of_seed(const description::Design& design, std::uint64_t seed);
+
+/// The seeds of a list of n starts: 0, then 1000 list + k for k = 1, ..., n - 1. Lists of different numbers share seed 0 alone.
+/// Contract: 1 <= n <= 1000.
+std::vector<std::uint64_t> seeds_of_list(std::uint64_t list, int n);
+
+}  // namespace fettle::design::studies

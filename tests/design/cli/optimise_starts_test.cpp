@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Many starts: which is the best one, and the program from outside.
+#include "fettle/design/cli/optimise_starts.hpp"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/program.hpp"
+
+namespace fettle::design::cli::optimise_starts_test {
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace fettle::tests::design_support;
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+
+StartResult ended(double violation, double objective) {
+    StartResult start;
+    start.result = {{"constraint_violation", violation}, {"objective", objective}};
+    return start;
+}
+
+std::string contents(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("the best start meets the requirements, then is lowest; the first of equals") {
+    StartResult failed, unusable;
+    failed.status = "failed";
+    unusable.result = {{"constraint_violation", nullptr}, {"objective", nullptr}};
+    CHECK(!best_start({}));
+    CHECK(!best_start({failed, unusable}));
+    CHECK(best_start({failed, ended(0.5, 1), ended(0.2, 9), unusable}) == 2);
+    CHECK(best_start({ended(0.5, 1), ended(0, 9), ended(0, 8), ended(0, 8)}) == 2);
+    CHECK(best_start({ended(0, 3), ended(1e-9, 2)}) == 0);
+    // With --repair the least change, not the least objective.
+    StartResult near = ended(0, 9), far = ended(0, 1);
+    near.result["repair"] = {{"distance", 0.1}};
+    far.result["repair"] = {{"distance", 0.2}};
+    CHECK(best_start({far, near}) == 1);
+}
+
+TEST_CASE("--starts: seeds that are too large are refused") {
+    const DesignFolder folder;
+    CHECK(run("optimise " + folder.design() + " --starts 2 --seed 2000001 --out " + (folder.path / "x").string()).code == 3);
+    CHECK(run("optimise " + folder.design() + " --starts 0").code == 3);
+}
+
+TEST_CASE("many starts: a table, the best one kept, each run as it is alone") {
+    const DesignFolder folder;
+    const std::filesystem::path out = folder.path / "many";
+    const Answer many = run("optimise " + folder.design() + " --starts 3 --seed 5 --json --out " + out.string());
+    const Json answer = many.json();
+    REQUIRE(answer.at("starts").size() == 3);
+    double best = 1e300;
+    for (const Json& row : answer["starts"]) {
+        for (const char* key : {"seed", "status", "objective", "evaluations", "limited_by", "parameters_start", "parameters", "out"})
+            CHECK(row.contains(key));
+        if (row["constraint_violation"] == 0) best = std::min(best, row["objective"].get<double>());
+    }
+    CHECK(answer["starts"][0]["seed"] == 0);
+    CHECK(answer["starts"][2]["seed"] == 5002);
+    CHECK(answer["objective"] == best);
+    CHECK(answer["replayed_evaluations"] == answer["evaluations"]);
+    const std::filesystem::path kept = out / ("start-" + std::to_string(answer["seed"].get<int>()));
+    CHECK(contents(out / "history.jsonl") == contents(kept / "history.jsonl"));
+    CHECK(contents(out / "trajectory.json") == contents(kept / "trajectory.json"));
+
+    // A row is what its seed gives alone.
+    const std::filesystem::path alone = out / "start-alone";
+    run("optimise " + folder.design() + " --seed 5002 --threads 2 --out " + alone.string());
+    CHECK(contents(alone / "design.final.json") == contents(out / "start-5002" / "design.final.json"));
+    CHECK(Json::parse(contents(alone / "result.json"))["parameters_start"] == answer["starts"][2]["parameters_start"]);
+
+    const Json again = run("optimise " + folder.design() + " --starts 3 --seed 5 --resume --json --out " + out.string()).json();
+    CHECK(again["parameters"] == answer["parameters"]);
+    CHECK(again["starts"][1]["objective"] == answer["starts"][1]["objective"]);
+    CHECK(!std::filesystem::exists(out / "history.1.jsonl"));
+}
+
+TEST_CASE("many starts, killed and resumed, end as they do undisturbed; so do they when they are asked to stop") {
+    const DesignFolder folder;
+    const std::string whole = (folder.path / "whole").string(), cut = (folder.path / "cut").string();
+    const std::string arguments = "optimise " + folder.design() + " --starts 3 --seed 5 --json --out ";
+    const Json undisturbed = run(arguments + whole).json();
+    for (const int signal : {SIGKILL, SIGTERM}) {
+        CAPTURE(signal);
+        std::filesystem::remove_all(cut);
+        const pid_t process = fork();
+        if (process == 0) {
+            const std::string program = FETTLE_PROGRAM, design = folder.design();
+            const std::string log = (folder.path / "log").string();
+            if (!freopen(log.c_str(), "w", stdout) || !freopen(log.c_str(), "a", stderr)) _exit(127);
+            execl(program.c_str(), "fettle", "optimise", design.c_str(), "--starts", "3", "--seed", "5", "--out", cut.c_str(), nullptr);
+            _exit(127);
+        }
+        REQUIRE(process > 0);
+        // In the middle: two runs have begun, and have something behind them.
+        const std::filesystem::path history = std::filesystem::path(cut) / "start-0" / "history.jsonl";
+        for (int wait = 0; wait < 3000; ++wait) {
+            if (std::filesystem::exists(history) && std::filesystem::file_size(history) > 3000) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        kill(process, signal);
+        int status = 0;
+        REQUIRE(waitpid(process, &status, 0) == process);
+        if (signal == SIGTERM) {
+            CHECK(WIFEXITED(status));
+            CHECK(WEXITSTATUS(status) == 2);
+            CHECK(contents(folder.path / "log").find("--resume") != std::string::npos);
+        }
+        const Json resumed = run(arguments + cut + " --resume").json();
+        CHECK(resumed["parameters"] == undisturbed["parameters"]);
+        CHECK(resumed["objective"] == undisturbed["objective"]);
+        CHECK(resumed["seed"] == undisturbed["seed"]);
+        for (size_t k = 0; k < 3; ++k) CHECK(resumed["starts"][k]["parameters"] == undisturbed["starts"][k]["parameters"]);
+    }
+}
+
+TEST_CASE("--repair: the smallest change, told by parameter; nothing where nothing is violated") {
+    const DesignFolder folder;
+    const Answer repair = run("optimise " + folder.design() + " --repair --json --out " + (folder.path / "repaired").string());
+    const Json answer = repair.json();
+    CHECK((repair.code == 0 || repair.code == 2));
+    CHECK(answer["constraint_violation"] == 0);
+    CHECK(answer["repair"]["changes"].size() == 5);
+    const std::string final = (folder.path / "repaired" / "design.final.json").string();
+    const Json again = run("optimise " + final + " --repair --json --out " + (folder.path / "again").string()).json();
+    CHECK(again["status"] == "optimal");
+    CHECK(again["evaluations"] == 1);
+    CHECK(again["repair"]["distance"] == 0);
+}
+
+}  // namespace fettle::design::cli::optimise_starts_test

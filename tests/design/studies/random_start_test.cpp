@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/random_start.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+namespace fettle::design::studies::random_start_test {
+
+namespace {
+
+description::Design two_parameters() {
+    description::Design design;
+    for (const double width : {1.0, 1e-3}) {
+        description::Parameter p;
+        p.value = 0.25 * width;
+        p.lower = -0.5 * width;
+        p.upper = 1.5 * width;
+        design.parameters.push_back(p);
+    }
+    return design;
+}
+
+}  // namespace
+
+TEST_CASE("a start is a function of its seed; seed 0 is the design's own") {
+    const description::Design design = two_parameters();
+    CHECK(start_of_seed(design, 0) == description::values_of(design.parameters));
+    CHECK(start_of_seed(design, 7001) == start_of_seed(design, 7001));
+    CHECK(start_of_seed(design, 7001) != start_of_seed(design, 7002));
+    // The generator's published first outputs of seed 1234567: a start is the same on any machine.
+    const VectorX known = start_of_seed(design, 1234567);
+    CHECK(known[0] == -0.5 + 2 * (static_cast<double>(6457827717110365317ULL >> 11) * 0x1p-53));
+    CHECK(known[1] == -0.5e-3 + (static_cast<double>(3203168211198807973ULL >> 11) * 0x1p-53) * 2e-3);
+}
+
+TEST_CASE("starts fill the bounds evenly, each parameter for itself") {
+    const description::Design design = two_parameters();
+    const int n = 4000, cells = 4;
+    int counts[cells][cells] = {};
+    for (int seed = 1; seed <= n; ++seed) {
+        const VectorX start = start_of_seed(design, static_cast<std::uint64_t>(seed));
+        const auto cell = [&](int k) {
+            const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+            REQUIRE((start[k] >= p.lower && start[k] <= p.upper));
+            return std::min(cells - 1, static_cast<int>(cells * (start[k] - p.lower) / (p.upper - p.lower)));
+        };
+        ++counts[cell(0)][cell(1)];
+    }
+    // 250 expected in each of 16 cells: within five standard deviations.
+    for (const auto& row : counts) {
+        for (const int count : row) CHECK(std::abs(count - n / 16) < 5 * std::sqrt(n / 16.0));
+    }
+}
+
+TEST_CASE("lists of seeds begin with the design's own start and share nothing else") {
+    CHECK(seeds_of_list(7, 3) == std::vector<std::uint64_t>{0, 7001, 7002});
+    CHECK(seeds_of_list(7, 1) == std::vector<std::uint64_t>{0});
+    std::set<std::uint64_t> all;
+    for (const std::uint64_t list : {0, 1, 2}) {
+        for (const std::uint64_t seed : seeds_of_list(list, 1000)) all.insert(seed);
+    }
+    CHECK(all.size() == 3 * 999 + 1);
+}
+
+}  // namespace fettle::design::studies::random_start_test
