@@ -220,7 +220,7 @@ bool LinearSolver::factorise_indefinite(const kinematics::BlockHessian& hessian)
 MatrixX LinearSolver::solve(const MatrixX& rhs) const {
     Implementation& self = *implementation_;
     using Factor = Implementation::Factor;
-    if (rhs.rows() == 0) return rhs;
+    if (rhs.size() == 0) return rhs;
     switch (self.factor) {
         case Factor::dense_cholesky:
             return self.dense_cholesky.solve(rhs);

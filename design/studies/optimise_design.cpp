@@ -116,6 +116,11 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
     last.gradients = false;
     outcome.final = problem.evaluate(outcome.report.point, last);
+    if (!smoother.empty()) {
+        last.should_stop = options.should_stop;
+        outcome.play_taken_up_by = smoother.front().name;
+        outcome.play_taken_up = smoother.front().problem.evaluate(outcome.report.point, last);
+    }
     for (const description::Measurement& measured : outcome.final.constraints) {
         if (measured.clearance) outcome.clearance.push_back(*measured.clearance);
     }

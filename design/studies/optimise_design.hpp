@@ -30,9 +30,13 @@ struct OptimiseOptions {
 
 struct OptimiseOutcome {
     optimisers::OptimiserReport report;
-    VectorX start;                                          ///< where it began
-    std::optional<double> objective_start;                  ///< the design's own objective there, if it could be evaluated
-    problem::DesignEvaluation final;                        ///< of report.point, without gradients; not usable if the start was not
+    VectorX start;                          ///< where it began
+    std::optional<double> objective_start;  ///< the design's own objective there, if it could be evaluated
+    problem::DesignEvaluation final;        ///< of report.point, without gradients; not usable if the start was not
+    /// The same design by its smoothest model, the one with the play of its fits taken up: where the two differ, the motion within the play
+    /// matters. Not usable where there is no smoother model, or it cannot be simulated.
+    problem::DesignEvaluation play_taken_up;
+    std::string play_taken_up_by;                           ///< that model's name
     std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
     std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)
     std::vector<std::string> unbuildable;  ///< what within the bounds makes no design, found before the first simulation (buildable.hpp)
