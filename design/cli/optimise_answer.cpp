@@ -60,38 +60,29 @@ Json terms_json(const Design& design, const DesignEvaluation& final) {
     return list;
 }
 
-struct ByModels {
-    std::string name;
-    double as_written, play_taken_up;  // SI
-    double unit;                       // in which people read it
-};
-
-// What the design measures by its own model and by its smoothest one, where that could be simulated.
-std::vector<ByModels> by_models(const Design& design, const OptimiseOutcome& outcome) {
-    std::vector<ByModels> rows;
-    const DesignEvaluation &own = outcome.final, &other = outcome.play_taken_up;
-    if (!other.usable) return rows;
-    for (size_t k = 0; k < own.terms.size(); ++k) rows.push_back({design.objective[k].name, own.terms[k].value, other.terms[k].value, 1});
-    for (size_t i = 0; i < own.constraints.size(); ++i)
-        rows.push_back(
-            {design.constraints[i].name, own.constraints[i].value, other.constraints[i].value, design.constraints[i].bounds.unit});
-    return rows;
+// What the design measures by its own model and by its smoothest one, SI.
+Json measured_json(const std::string& name, const description::Measurement& own, const description::Measurement& other) {
+    return {{"name", name}, {"as_written", own.value}, {"play_taken_up", other.value}};
 }
 
 Json by_models_json(const Design& design, const OptimiseOutcome& outcome) {
-    Json values = Json::object();
-    for (const ByModels& row : by_models(design, outcome))
-        values[row.name] = {{"as_written", row.as_written}, {"play_taken_up", row.play_taken_up}};
-    return {{"model", outcome.play_taken_up_by}, {"values", values}};
+    const DesignEvaluation &own = outcome.final, &other = outcome.play_taken_up;
+    if (!other.usable) return {};
+    Json terms = Json::array(), constraints = Json::array();
+    for (size_t k = 0; k < own.terms.size(); ++k) terms.push_back(measured_json(design.objective[k].name, own.terms[k], other.terms[k]));
+    for (size_t i = 0; i < own.constraints.size(); ++i)
+        constraints.push_back(measured_json(design.constraints[i].name, own.constraints[i], other.constraints[i]));
+    return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}};
 }
 
 // Where the two tell different things, by more than a ten thousandth.
 std::string by_models_text(const Design& design, const OptimiseOutcome& outcome) {
     std::string text;
-    for (const ByModels& row : by_models(design, outcome)) {
-        if (std::abs(row.as_written - row.play_taken_up) <= 1e-4 * std::abs(row.as_written)) continue;
-        text += formatted("  %-40s %.7g as written, %.7g with the play taken up\n", row.name.c_str(), row.as_written / row.unit,
-                          row.play_taken_up / row.unit);
+    for (size_t i = 0; outcome.play_taken_up.usable && i < outcome.final.constraints.size(); ++i) {
+        const double unit = design.constraints[i].bounds.unit, own = outcome.final.constraints[i].value / unit;
+        const double other = outcome.play_taken_up.constraints[i].value / unit;
+        if (std::abs(own - other) <= 1e-4 * std::abs(own)) continue;
+        text += formatted("  %-40s %.7g as written, %.7g with the play taken up\n", design.constraints[i].name.c_str(), own, other);
     }
     if (!text.empty()) text = "where the motion within the play matters (play taken up: " + outcome.play_taken_up_by + "):\n" + text;
     return text;
@@ -220,7 +211,7 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["iterations"] = report.iterations;
     json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
     json["stages"] = stages_json(report);
-    json["by_models"] = outcome.play_taken_up.usable ? by_models_json(design, outcome) : Json();
+    json["by_models"] = by_models_json(design, outcome);
     json["budget_spent"] = report.budget_spent;
     json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();

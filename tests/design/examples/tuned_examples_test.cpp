@@ -67,9 +67,10 @@ TEST_CASE("the slider-crank is tuned to its stroke", "[slow]") {
     CHECK(json.at("optimality").at("held_by").at("piston_length") == "lower bound");
     CHECK(json.at("stages").size() == 3);
     // Play in three joints: the stroke with it taken up is another one than that of parts that rattle within it.
-    const auto& stroke = json.at("by_models").at("values").at("stroke piston");
+    const auto& stroke = json.at("by_models").at("constraints").back();
+    CHECK(stroke.at("name") == "stroke piston");
     CHECK(stroke.at("as_written").get<double>() == Approx(0.03).margin(0.00005));
-    CHECK(stroke.at("play_taken_up").get<double>() == Approx(0.03).margin(0.0005));
+    CHECK(stroke.at("play_taken_up").get<double>() == Approx(0.029).margin(0.0005));
     CHECK(stroke.at("play_taken_up") != stroke.at("as_written"));
 }
 
