@@ -3,98 +3,46 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/clearance/body_motions.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
+#include "fettle/core/clearance/near_windows.hpp"
 #include "fettle/core/clearance/pair_certification.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
-kinematics::PathSegment held(const kinematics::Pose& pose) {
-    kinematics::PathSegment path;
-    path.base = pose.rotation;
-    path.position_t0 = pose.position;
-    return path;
-}
-
-// One place of the path: step -1 is the start pose, held.
-struct SegmentPlace {
-    int step = -1, segment = 0;
-};
-
-std::vector<SegmentPlace> segment_places(const stepper::Trajectory& trajectory, bool motion) {
-    if (!motion || trajectory.steps.empty()) return {{}};
-    std::vector<SegmentPlace> places;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
-        for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) places.push_back({t, k});
-    return places;
-}
+constexpr const char* unusable_numbers = "the numbers of its path are not finite, or larger than 1e30";
 
 // What all pairs of a body share.
 struct BodyMotion {
-    // Those of its first copy, if it is one of several; none: the body is not asked for.
-    std::shared_ptr<const PieceTree> tree;
-    std::shared_ptr<const certificate::SolidMesh> solid;
+    BodyShape shape;
     std::vector<BodySegment> segments;  // none: its path cannot be measured
 };
 
-std::vector<BodySegment> body_segments(const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places, int body) {
-    std::vector<BodySegment> segments;
-    segments.reserve(places.size());
-    for (const SegmentPlace& place : places)
-        segments.push_back(body_segment(place.step < 0 ? held(trajectory.poses.front()[body])
-                                                       : stepper::path_segment(trajectory, place.step, place.segment, body)));
-    return segments;
-}
-
-// Finite, and small enough that no product of a few of them overflows: as the checker's limit (certificate/interval_motion.hpp).
-bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<SegmentPlace>& places,
-                        int index) {
-    const auto usable = [](const auto& x) { return x.size() == 0 || (x.allFinite() && x.cwiseAbs().maxCoeff() < 1e30); };
-    if (!usable(body.mesh.vertices)) return false;
-    return std::all_of(places.begin(), places.end(), [&](const SegmentPlace& place) {
-        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][index];
-        if (!usable(pose.rotation) || !usable(pose.position)) return false;
-        if (place.step < 0) return true;
-        const auto& nodes = trajectory.steps[place.step].nodes;
-        const auto good = [&](int k) { return usable(nodes[k][index].position) && usable(nodes[k][index].rotation_vector); };
-        return good(place.segment) && good(place.segment + 1);
-    });
-}
-
-std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory,
-                                     const std::vector<SegmentPlace>& places, const std::vector<int>& bodies) {
+std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                                     const std::vector<int>& bodies) {
     std::vector<BodyMotion> motions(model.bodies.size());
-    geometry::ShapeIndex shapes;
-    std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
-    first.reserve(bodies.size());
-    for (const int body : bodies) first.push_back(shapes.add(model.bodies[body].mesh));
+    const std::vector<BodyShape> shapes = body_shapes(model, bodies);
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
-        const model::Body& body = model.bodies[bodies[i]];
-        BodyMotion& motion = motions[bodies[i]];
-        if (has_usable_numbers(body, trajectory, places, bodies[i])) motion.segments = body_segments(trajectory, places, bodies[i]);
-        if (first[i] != static_cast<std::size_t>(i)) return;
-        motion.tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
-        motion.solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_mesh(body.mesh));
+        const int body = bodies[i];
+        motions[body].shape = shapes[body];
+        if (!has_usable_numbers(model.bodies[body], trajectory, places, body)) return;
+        motions[body].segments.reserve(places.size());
+        for (const PathPlace& place : places) motions[body].segments.push_back(body_segment(segment_at(trajectory, place, body)));
     });
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        motions[bodies[i]].tree = motions[bodies[first[i]]].tree;
-        motions[bodies[i]].solid = motions[bodies[first[i]]].solid;
-    }
     return motions;
 }
 
 PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::Trajectory& trajectory,
-                       const std::vector<SegmentPlace>& places) {
-    PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
+                       const std::vector<PathPlace>& places) {
+    PairMotion pair{*a.shape.tree, *b.shape.tree, trajectory, {}, *a.shape.solid, *b.shape.solid};
     for (std::size_t i = 0; i < places.size(); ++i) {
-        pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], a.tree->radius(), b.tree->radius()));
+        pair.segments.push_back(pair_segment(a.segments[i], b.segments[i], pair.a.radius(), pair.b.radius()));
         pair.segments.back().step = places[i].step;
         pair.segments.back().segment = places[i].segment;
     }
@@ -142,13 +90,13 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
                   "a trajectory of the model's bodies");
     const auto count = static_cast<int>(pairs.size());
     const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
-    const std::vector<SegmentPlace> places = segment_places(trajectory, options.motion);
+    const std::vector<PathPlace> places = path_places(trajectory, options.motion);
     const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, bodies);
     std::vector<certificate::CertifiedBody> certified;
     if (options.certificate != nullptr) {
         std::vector<const PieceTree*> trees;
         trees.reserve(motions.size());
-        for (const BodyMotion& motion : motions) trees.push_back(motion.tree.get());
+        for (const BodyMotion& motion : motions) trees.push_back(motion.shape.tree.get());
         *options.certificate = start_certificate(model, trajectory, trees, options.motion && !trajectory.steps.empty(), pairs.size());
         certified = certified_bodies(*options.certificate, model);
     }
@@ -166,7 +114,7 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
         }
         const BodyMotion &a = motions[request.a], &b = motions[request.b];
         results[i] = a.segments.empty() || b.segments.empty()
-                         ? unmeasured(request, "the numbers of its path are not finite, or larger than 1e30")
+                         ? unmeasured(request, unusable_numbers)
                          : certify_pair(pair_motion(a, b, trajectory, places), request, model.dmin + model.dhat, options, record);
         if (!options.on_pair) return;
         const std::lock_guard<std::mutex> lock(report);
@@ -174,6 +122,50 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     });
     if (options.certificate != nullptr) drop_unbounded(*options.certificate);
     return results;
+}
+
+namespace {
+
+PairMotion window_motion(const std::vector<BodyShape>& shapes, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                         const NearWindow& window) {
+    const BodyShape &a = shapes[window.a], &b = shapes[window.b];
+    PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
+    pair.segments.reserve(static_cast<std::size_t>(window.last - window.first));
+    for (int i = window.first; i < window.last; ++i) {
+        const PathPlace& place = places[static_cast<std::size_t>(i)];
+        pair.segments.push_back(pair_segment(segment_at(trajectory, place, window.a), segment_at(trajectory, place, window.b),
+                                             pair.a.radius(), pair.b.radius()));
+        pair.segments.back().step = place.step;
+        pair.segments.back().segment = place.segment;
+    }
+    return pair;
+}
+
+}  // namespace
+
+NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options) {
+    FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
+                  "a trajectory of the model's bodies");
+    FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
+    const std::vector<PathPlace> places = path_places(trajectory, options.motion);
+    const NearWindows near = near_windows(model, trajectory, places, reach);
+    std::vector<int> bodies;
+    for (const NearWindow& window : near.windows) bodies.insert(bodies.end(), {window.a, window.b});
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    const std::vector<BodyShape> shapes = body_shapes(model, bodies);
+    options.enough = std::min(options.enough, reach);
+    NearClearances result;
+    result.everything = near.everything;
+    result.windows.resize(near.windows.size());
+    parallel_for(static_cast<int>(near.windows.size()), 1, [&](int i) {
+        const NearWindow& window = near.windows[i];
+        const PairRequest request{window.a, window.b, 0};
+        result.windows[i] = window.measurable ? certify_pair(window_motion(shapes, trajectory, places, window), request,
+                                                             model.dmin + model.dhat, options, std::nullopt)
+                                              : unmeasured(request, unusable_numbers);
+    });
+    return result;
 }
 
 stepper::Trajectory as_assembled(const model::Model& model) {

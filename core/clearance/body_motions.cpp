@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/body_motions.hpp"
+
+#include <algorithm>
+
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
+
+namespace fettle::core::clearance {
+
+std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion) {
+    if (!motion || trajectory.steps.empty()) return {{}};
+    std::vector<PathPlace> places;
+    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+        for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) places.push_back({t, k});
+    return places;
+}
+
+kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const PathPlace& place, int body) {
+    if (place.step >= 0) return stepper::path_segment(trajectory, place.step, place.segment, body);
+    const kinematics::Pose& pose = trajectory.poses.front()[static_cast<std::size_t>(body)];
+    kinematics::PathSegment held;
+    held.base = pose.rotation;
+    held.position_t0 = pose.position;
+    return held;
+}
+
+bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, int index) {
+    const auto usable = [](const auto& x) { return x.size() == 0 || (x.allFinite() && x.cwiseAbs().maxCoeff() < 1e30); };
+    if (!usable(body.mesh.vertices)) return false;
+    return std::all_of(places.begin(), places.end(), [&](const PathPlace& place) {
+        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][index];
+        if (!usable(pose.rotation) || !usable(pose.position)) return false;
+        if (place.step < 0) return true;
+        const auto& nodes = trajectory.steps[place.step].nodes;
+        const auto good = [&](int k) { return usable(nodes[k][index].position) && usable(nodes[k][index].rotation_vector); };
+        return good(place.segment) && good(place.segment + 1);
+    });
+}
+
+std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<int>& bodies) {
+    std::vector<BodyShape> shapes(model.bodies.size());
+    geometry::ShapeIndex index;
+    std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
+    first.reserve(bodies.size());
+    for (const int body : bodies) first.push_back(index.add(model.bodies[static_cast<std::size_t>(body)].mesh));
+    parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        if (first[i] != static_cast<std::size_t>(i)) return;
+        const model::Body& body = model.bodies[bodies[i]];
+        shapes[bodies[i]].tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
+        shapes[bodies[i]].solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_mesh(body.mesh));
+    });
+    for (std::size_t i = 0; i < bodies.size(); ++i) shapes[bodies[i]] = shapes[bodies[first[i]]];
+    return shapes;
+}
+
+}  // namespace fettle::core::clearance

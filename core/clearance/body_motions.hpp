@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// What the pairs of a body share in a certification: its pieces, its solid, and its path segment by segment.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fettle/core/clearance/pair_details.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::core::clearance {
+
+/// One segment of the path; step -1 is the start pose, held.
+struct PathPlace {
+    int step = -1, segment = 0;
+};
+/// All segments in order; without motion, or without steps, the start pose alone.
+std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion);
+
+/// The segment of a body at a place.
+kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const PathPlace& place, int body);
+
+/// Finite, and small enough that no product of a few of them overflows: as the checker's limit (certificate/interval_motion.hpp).
+bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, int index);
+
+/// A body's pieces and solid, those of its first copy if it is one of several parts of the same mesh; null: the body was not asked for.
+struct BodyShape {
+    std::shared_ptr<const PieceTree> tree;
+    std::shared_ptr<const certificate::SolidMesh> solid;
+};
+/// @param bodies  those that are asked for, each once.
+std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<int>& bodies);
+
+}  // namespace fettle::core::clearance
