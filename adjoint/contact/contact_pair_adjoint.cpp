@@ -28,6 +28,13 @@ std::array<Vector3, 4> pair_forces_eps_derivative(const ContactPair& pair, const
     return out;
 }
 
+double pair_potential_eps_derivative(const ContactPair& pair, const BarrierParameters& p) {
+    FETTLE_ASSERT(is_mollified(pair), "the potential of this pair does not depend on eps");
+    const double x = core::contact::edge_cross_squared(pair.x) / pair.mollifier_eps;
+    const double b = core::contact::barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat).value;
+    return p.factor * b * (-2 * x * (1 - x) / pair.mollifier_eps);
+}
+
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {
     const Vector3 e1 = ea1 - ea0, e2 = eb1 - eb0;
     const Vector3 d1 = 2 * core::contact::mollifier_scale * e2.squaredNorm() * e1;

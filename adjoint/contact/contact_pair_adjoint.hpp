@@ -21,6 +21,9 @@ inline bool is_mollified(const core::contact::ContactPair& pair) {
 std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPair& pair,
                                                   const core::contact::BarrierParameters& parameters);
 
+/// d(potential)/deps = factor b dm/deps. Contract: is_mollified(pair).
+double pair_potential_eps_derivative(const core::contact::ContactPair& pair, const core::contact::BarrierParameters& parameters);
+
 /// deps/dX_i of the four undeformed vertices, each in its own body's frame [m^3].
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1);
 

@@ -4,28 +4,12 @@
 #include <Eigen/Geometry>
 
 #include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "fettle/adjoint/contact/pair_bodies.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {
 
 using core::contact::ContactPair;
-using Four = std::array<Vector3, 4>;
-
-// The body of each of a pair's four vertices.
-std::array<int, 4> bodies_of(const core::contact::BodyPairContacts& list, const ContactPair& pair) {
-    std::array<int, 4> body;
-    for (int i = 0; i < 4; ++i) body[i] = i < first_count(pair.type) ? list.first : list.second;
-    return body;
-}
-
-Four undeformed(const core::model::Model& model, const std::array<int, 4>& body, const ContactPair& pair) {
-    Four X;
-    for (int i = 0; i < 4; ++i) X[i] = model.bodies[body[i]].mesh.vertices.col(pair.vertex[i]);
-    return X;
-}
-
-double dot(const Four& a, const Four& b) { return a[0].dot(b[0]) + a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]); }
-
 }  // namespace
 
 void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vector<std::vector<Vector6>>& lambda,

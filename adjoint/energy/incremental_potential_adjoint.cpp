@@ -4,6 +4,7 @@
 #include <array>
 
 #include "fettle/adjoint/energy/barrier_adjoint.hpp"
+#include "fettle/adjoint/energy/contact_damping_adjoint.hpp"
 #include "fettle/adjoint/energy/damping_adjoint.hpp"
 #include "fettle/adjoint/energy/friction_adjoint.hpp"
 #include "fettle/adjoint/energy/inertia_adjoint.hpp"
@@ -12,8 +13,8 @@
 namespace fettle::adjoint::energy {
 
 std::span<const TermAdjoint* const> term_adjoints() {
-    static const std::array list{&inertia_term_adjoint, &loads_term_adjoint, &damping_term_adjoint, &barrier_term_adjoint,
-                                 &friction_term_adjoint};
+    static const std::array list{&inertia_term_adjoint, &loads_term_adjoint,           &damping_term_adjoint,
+                                 &barrier_term_adjoint, &contact_damping_term_adjoint, &friction_term_adjoint};
     return list;
 }
 

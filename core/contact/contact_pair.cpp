@@ -141,13 +141,6 @@ EdgeCross edge_cross(const PairVertices& x) {
     return k;
 }
 
-Matrix12 positive_part(const Matrix12& lower) {
-    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(lower);
-    if (eigen.eigenvalues()[0] >= 0) return lower;
-    const Vector12 positive = eigen.eigenvalues().cwiseMax(0.0);
-    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
-}
-
 // m b with m < 1: product rule, dense 12x12.
 void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParameters& p, HessianKind kind, BodyPairSum& sum) {
     const ScalarDerivatives m = mollifier_of(pair);
@@ -181,6 +174,13 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
 }
 
 }  // namespace
+
+Matrix12 positive_part(const Matrix12& lower) {
+    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(lower);
+    if (eigen.eigenvalues()[0] >= 0) return lower;
+    const Vector12 positive = eigen.eigenvalues().cwiseMax(0.0);
+    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+}
 
 double pair_potential(const ContactPair& pair, const BarrierParameters& p) {
     const double gap = pair.closest.distance_squared - p.dmin * p.dmin;

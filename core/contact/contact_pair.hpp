@@ -58,6 +58,9 @@ std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const Barri
 /// Magnitude of the force between the closest points, times the potentials' weight (a mollifier's torque is left out).
 double normal_force(const ContactPair& pair, const BarrierParameters& parameters);
 
+/// The nearest positive semi-definite matrix. Both by their lower triangles.
+Matrix12 positive_part(const Matrix12& lower);
+
 /// Sums over the contacts of one pair of bodies.
 struct BodyPairSum {
     kinematics::PoseGradient first, second;

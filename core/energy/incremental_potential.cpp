@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/barrier.hpp"
+#include "fettle/core/energy/contact_damping.hpp"
 #include "fettle/core/energy/damping.hpp"
 #include "fettle/core/energy/friction.hpp"
 #include "fettle/core/energy/inertia.hpp"
@@ -51,7 +52,7 @@ TermDerivatives sum_of_terms(const DerivativesAt& at) {
 }  // namespace
 
 std::span<const Term* const> terms() {
-    static const std::array list{&inertia_term, &loads_term, &damping_term, &barrier_term, &friction_term};
+    static const std::array list{&inertia_term, &loads_term, &damping_term, &barrier_term, &contact_damping_term, &friction_term};
     return list;
 }
 

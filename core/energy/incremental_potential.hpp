@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// The function that one time step minimises over all bodies' poses: the sum of its terms (term.hpp), potentials times the integrator's
 /// weight. docs/method.md sections 3 and 6.
-///   E(y) = sum E_d(P) - weight sum (f . (q - q_t0) + tau . theta) + damping + barrier + friction
+///   E(y) = sum E_d(P) - weight sum (f . (q - q_t0) + tau . theta) + damping + barrier + contact damping
+///          + friction
 /// Coordinates: each body's (q, theta) in the chart of the step, R = exp([theta]) R_t0 (step_problem.hpp).
 #pragma once
 
@@ -12,7 +13,7 @@
 
 namespace fettle::core::energy {
 
-/// Inertia, loads, damping, barrier, friction: in the order of their sums.
+/// Inertia, loads, damping, barrier, contact damping, friction: in the order of their sums.
 std::span<const Term* const> terms();
 
 /// The value; infinity where a pair is at or below dmin. `poses` are those of `points` (poses_of).

@@ -8,7 +8,10 @@ namespace fettle::core::energy {
 using kinematics::Pose;
 
 StepProblem step_problem(const model::Model& model, const History& history, double kappa) {
-    StepProblem problem{integration_step(model, history), &model, history.poses, 0, {}, {}};
+    StepProblem problem{integration_step(model, history), &model, history.poses, 0, {}, {}, {}};
+    // Quasi-static steps know no rates.
+    if (model.contact_damping_time > 0 && model.integrator != scene::Integrator::quasi_static)
+        for (const Pose& pose : history.poses) problem.contact_damping.start.push_back(pose_matrix(pose));
     set_kappa(problem, kappa);
     return problem;
 }
@@ -16,6 +19,8 @@ StepProblem step_problem(const model::Model& model, const History& history, doub
 void set_kappa(StepProblem& problem, double kappa) {
     problem.kappa = kappa;
     problem.barrier = contact::barrier_parameters(problem.model->dhat, problem.model->dmin, kappa, problem.weight);
+    if (problem.contact_damping.start.empty()) return;
+    contact::set_contact_damping(problem.model->contact_damping_time / problem.model->timestep, problem.barrier, problem.contact_damping);
 }
 
 StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> poses_t0, const std::vector<Matrix34>& velocities_t0) {

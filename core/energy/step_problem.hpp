@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fettle/core/contact/barrier.hpp"
+#include "fettle/core/contact/contact_damping.hpp"
 #include "fettle/core/contact/friction.hpp"
 #include "fettle/core/energy/time_integration.hpp"
 #include "fettle/core/kinematics/path.hpp"
@@ -18,7 +19,8 @@ struct StepProblem : IntegrationStep {
     std::vector<kinematics::Pose> poses_t0;
     double kappa = 0;  ///< [N/m], or [N/m^3] if area-weighted
     contact::BarrierParameters barrier;
-    contact::FrictionSet friction;  ///< empty: none
+    contact::FrictionSet friction;            ///< empty: none
+    contact::ContactDamping contact_damping;  ///< factor 0: none
 };
 
 /// The step that follows `history`, without friction until it is lagged (contact/friction.hpp).

@@ -120,6 +120,8 @@ Errors check_areas(const Model& model) {
 
 // A file that is dynamic otherwise may have them; nothing of it is made up, but the user should know.
 void warn_of_unused_rates(Model& model) {
+    if (model.contact_damping_time > 0)
+        model.warnings.push_back("contact.damping_time has no effect in a quasi-static simulation, which knows no velocities");
     for (const Body& body : model.bodies) {
         const bool moving = !body.velocity_start.isZero(0), damped = body.damping.linear > 0 || body.damping.angular > 0;
         if (!moving && !damped) continue;
@@ -195,6 +197,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     model.friction = build_friction(scene, model.bodies);
     model.integrator = scene.integrator;
     model.area_weighted = scene.area_weighted;
+    model.contact_damping_time = scene.contact_damping_time;
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);

@@ -132,6 +132,8 @@ Errors check_numbers(const scene::Scene& scene) {
     want(positive(scene.dhat), "/contact/dhat", "the activation distance must be greater than 0 and finite");
     want(scene.dmin >= 0 && std::isfinite(scene.dmin), "/contact/dmin", "the minimum separation must be at least 0 and finite");
     want(positive(scene.kappa), "/contact/kappa", "the barrier stiffness must be greater than 0 and finite");
+    want(scene.contact_damping_time >= 0 && std::isfinite(scene.contact_damping_time), "/contact/damping_time",
+         "the damping time of contacts must be at least 0 and finite");
     want(positive(scene.velocity_tolerance), "/contact/velocity_tolerance", "the tolerance must be greater than 0 and finite");
     want(scene.gravity.allFinite(), "/gravity", "gravity must be finite");
     want(!scene.bodies.empty(), "/bodies", "a scene needs a body");

@@ -58,6 +58,7 @@ struct Model {
     double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
     bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and vary it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
+    double contact_damping_time = 0;  ///< T of contact/contact_damping.hpp [s]; 0: none
     Friction friction;
     scene::Integrator integrator = scene::Integrator::implicit_euler;
     double proximal_weight = 0;     ///< h^2/eps of quasi-static steps [s^2] (choose_proximal_weight.hpp); 0: not quasi-static

@@ -65,15 +65,21 @@ std::string integrator_hash(const model::Model& model) {
     return part.value();
 }
 
+std::string contact_model(const model::Model& model) {
+    Part part;
+    part.add(model.dhat).add(model.dmin).add(model.kappa).add(model.adaptive_kappa ? 1 : 0).add(model.area_weighted ? 1 : 0);
+    if (model.contact_damping_time > 0) part.add(model.contact_damping_time);
+    return part.value();
+}
+
 }  // namespace
 
 std::vector<ScenePart> scene_parts(const model::Model& model) {
-    const double adaptive = model.adaptive_kappa ? 1 : 0;
     return {
         {"time step", Part().add(model.timestep).value()},
         {"integrator", integrator_hash(model)},
         {"gravity", Part().add(model.gravity).value()},
-        {"contact model", Part().add(model.dhat).add(model.dmin).add(model.kappa).add(adaptive).add(model.area_weighted ? 1 : 0).value()},
+        {"contact model", contact_model(model)},
         {"friction", Part().add(model.friction.mu).add(model.friction.eps_v).add(model.friction.rounds).value()},
         {"solver's tolerance", Part().add(model.velocity_tolerance).value()},
         {"body types and groups", of_bodies(model, [](Part& p, const auto& b) { p.add(static_cast<double>(b.type)).add(b.group); })},

@@ -121,6 +121,7 @@ struct Scene {
     double dmin = 0;                    ///< minimum separation [m]
     std::optional<double> kappa;        ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method.md 4)
     bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
+    double contact_damping_time = 0;    ///< of contacts against kappa [s] (docs/method.md section 4); 0: none
     Friction friction;
     Integrator integrator = Integrator::implicit_euler;
     std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s

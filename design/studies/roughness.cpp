@@ -264,6 +264,25 @@ VectorX quantity_tolerances(const description::Design& design, const problem::De
     return tolerances;
 }
 
+namespace {
+
+// kappa is chosen to go with the time step (core/model/choose_kappa.hpp), and with kappa what damps critically.
+std::string contact_damping_remedy(const core::scene::Scene& scene) {
+    char told[160];
+    if (scene.contact_damping_time > 0)
+        std::snprintf(
+            told, sizeof told,
+            "another contact.damping_time (it is %.3g s): longer takes more of the impacts' energy, too long makes contacts stick",
+            scene.contact_damping_time);
+    else
+        std::snprintf(told, sizeof told,
+                      "damping in contact: contact.damping_time, from the timestep (%.3g s) upwards; too long makes contacts stick",
+                      scene.timestep);
+    return told;
+}
+
+}  // namespace
+
 std::vector<std::string> roughness_remedies(const description::Design& design, const RoughnessReport& report) {
     bool moving = false, fine = false;
     for (const QuantityRoughness& quantity : report.quantities) {
@@ -278,6 +297,7 @@ std::vector<std::string> roughness_remedies(const description::Design& design, c
             remedies.push_back("a wider contact.dhat (it is " + with_unit(*scene.dhat) +
                                "), up to the play of the fits: contact then sets in gently, and parts rattle less");
         remedies.push_back("\"integrator\": \"quasi_static\", where inertia does not matter: parts then do not rattle at all");
+        if (scene.integrator != core::scene::Integrator::quasi_static) remedies.push_back(contact_damping_remedy(scene));
         remedies.push_back("damping of the bodies that rattle");
         if (scene.integrator != core::scene::Integrator::implicit_euler)
             remedies.push_back("\"integrator\": \"implicit_euler\", which keeps least of the impacts' energy");

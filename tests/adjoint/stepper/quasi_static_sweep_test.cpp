@@ -90,6 +90,13 @@ SweepScene damped(SweepScene scene) {
     return scene;
 }
 
+// T about what damps a contact of these scenes critically.
+SweepScene with_damped_contacts(SweepScene scene) {
+    scene.name += ", contacts damped";
+    scene.model.contact_damping_time = 0.005;
+    return scene;
+}
+
 core::stepper::Simulation simulation_of(const SweepScene& scene, const core::model::Model& model) {
     core::stepper::SimulationOptions options;
     options.steps = scene.steps;
@@ -196,6 +203,18 @@ TEST_CASE("damped sweeps: backwards and forwards agree", "[adjoint][damping]") {
 }
 TEST_CASE("damped differences: free flight", "[adjoint][damping]") { check_scene(damped(free_flight()), true); }
 TEST_CASE("damped differences: a motor that may tilt", "[adjoint][damping][slow]") { check_scene(damped(tilting_motor()), true); }
+
+TEST_CASE("sweeps with damped contacts: backwards and forwards agree", "[adjoint][contact_damping]") {
+    for (const SweepScene& scene : {stack(), twisted_pair(), tilting_motor(), double_motor(), pusher()})
+        check_scene(with_damped_contacts(scene), false);
+    check_scene(with_damped_contacts(damped(pusher())), false);
+}
+TEST_CASE("differences with damped contacts: a motor that may tilt", "[adjoint][contact_damping]") {
+    check_scene(with_damped_contacts(tilting_motor()), true);
+}
+TEST_CASE("differences with damped contacts: stack, twisted pair, double motor, pusher", "[adjoint][contact_damping][slow]") {
+    for (const SweepScene& scene : {stack(), twisted_pair(), double_motor(), pusher()}) check_scene(with_damped_contacts(scene), true);
+}
 
 TEST_CASE("damping's moments follow the mass's", "[adjoint][damping]") {
     core::model::Body body = make_body("brick", box_mesh({-0.1, -0.2, -0.1}, {0.3, 0.2, 0.4}), {});

@@ -267,6 +267,26 @@ TEST_CASE("Scripts, loads and settings arrive, about the reference point", "[mod
     CHECK_FALSE(build_model(scene, options)->adaptive_kappa);
 }
 
+TEST_CASE("Damping of contacts arrives, is warned of in quasi-statics, and must be a finite time", "[model]") {
+    scene::Scene scene = scene_of({box_body("box", {0, 0, 0}, {2, 2, 2})});
+    scene.contact_damping_time = 0.004;
+    const auto model = build_model(scene);
+    REQUIRE(model);
+    CHECK(model->contact_damping_time == 0.004);
+    CHECK(model->warnings.empty());
+    scene.integrator = scene::Integrator::quasi_static;
+    const auto still = build_model(scene);
+    REQUIRE(still);
+    REQUIRE(still->warnings.size() == 1);
+    CHECK(still->warnings[0].find("contact.damping_time has no effect") != std::string::npos);
+    for (const double wrong : {-1e-3, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+        scene.contact_damping_time = wrong;
+        const auto refused = build_model(scene);
+        REQUIRE_FALSE(refused);
+        CHECK(refused.errors().at(0).where.find("/contact/damping_time") != std::string::npos);
+    }
+}
+
 TEST_CASE("Who may collide", "[model]") {
     std::vector<scene::Body> bodies;
     for (int i = 0; i < 5; ++i) bodies.push_back(box_body(std::to_string(i), Vector3(3.0 * i, 0, 0), Vector3(3.0 * i + 1, 1, 1)));

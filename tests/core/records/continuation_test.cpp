@@ -109,6 +109,7 @@ TEST_CASE("a run is not taken up by another scene", "[continuation]") {
     named("integrator", [](auto& m) { m.integrator = scene::Integrator::newmark; });
     named("gravity", [](auto& m) { m.gravity.z() = -1.62; });
     named("contact model", [](auto& m) { m.dhat *= 2; });
+    named("contact model", [](auto& m) { m.contact_damping_time = 1e-3; });
     named("friction", [](auto& m) { m.friction.mu *= 0.5; });
     named("solver's tolerance", [](auto& m) { m.velocity_tolerance *= 0.5; });
     named("masses", [](auto& m) { m.bodies[1].moments *= 2; });

@@ -104,6 +104,8 @@ TEST_CASE("Each wrong input gives its message and its place", "[scene]") {
     const std::vector<Wrong> cases{
         {with("/integrator", "euler"), ErrorCode::out_of_range, "#/integrator", "implicit_euler"},
         {with("/contact", {{"area_weighted", 1}}), ErrorCode::wrong_type, "#/contact/area_weighted", "true or false"},
+        {with("/contact", {{"damping_time", -1}}), ErrorCode::out_of_range, "#/contact/damping_time", "0"},
+        {with("/contact", {{"damping_time", "5ms"}}), ErrorCode::wrong_type, "#/contact/damping_time", "number"},
         {with("/friction", {{"mu", -0.1}}), ErrorCode::out_of_range, "#/friction/mu", "at least 0"},
         {with("/friction", {{"mu", "inf"}}), ErrorCode::not_finite, "#/friction/mu", "not finite"},
         {with("/friction", {{"muu", 1}}), ErrorCode::unknown_key, "#/friction/muu", "did you mean `mu`?"},

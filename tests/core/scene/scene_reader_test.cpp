@@ -99,7 +99,7 @@ TEST_CASE("Every key arrives, in SI units", "[scene]") {
 TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
     const Workshop shop;
     const json text = json::parse(R"({
-        "fettle_scene": 1, "units": "mm", "integrator": "bdf2", "contact": {"area_weighted": true},
+        "fettle_scene": 1, "units": "mm", "integrator": "bdf2", "contact": {"area_weighted": true, "damping_time": 0.004},
         "materials": {"PLA": {"density": 1240, "mu": 0.3}, "steel": {"density": 7850}, "felt": {"mu": 0.7}},
         "friction": {"mu": 0.2, "pairs": [{"a": "steel", "b": "PLA", "mu": 0.15}, {"a": "felt", "b": "felt", "mu": 0}],
                      "eps_v": "10um", "rounds": 3},
@@ -112,6 +112,7 @@ TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
     REQUIRE(scene);
     CHECK(scene->integrator == Integrator::bdf2);
     CHECK(scene->area_weighted);
+    CHECK(scene->contact_damping_time == 0.004);
     CHECK(scene->friction.mu == 0.2);
     CHECK(scene->friction.materials == std::map<std::string, double>{{"PLA", 0.3}, {"felt", 0.7}});
     REQUIRE(scene->friction.pairs.size() == 2);

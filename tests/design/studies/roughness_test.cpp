@@ -185,7 +185,8 @@ TEST_CASE("roughness: downhill within the bounds; remedies only where something 
     CHECK(rough.quantities[0].rough);
     std::string told;
     for (const std::string& remedy : roughness_remedies(problem.design(), rough)) told += remedy + "\n";
-    for (const char* word : {"contact.dhat", "0.1 mm", "quasi_static", "damping", "timestep", "0.01 s"})
+    for (const char* word :
+         {"contact.dhat", "0.1 mm", "quasi_static", "contact.damping_time", "damping of the bodies", "timestep", "0.01 s"})
         CHECK(told.find(word) != std::string::npos);
     const RoughnessReport smooth = roughness_of(density_problem(1, {falling()}));
     CHECK(roughness_remedies(problem.design(), smooth).empty());

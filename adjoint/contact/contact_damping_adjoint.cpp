@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
+
+#include <Eigen/Geometry>
+
+#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "fettle/adjoint/contact/pair_bodies.hpp"
+
+namespace fettle::adjoint::contact {
+namespace {
+
+using core::contact::BarrierParameters;
+using core::contact::ContactPair;
+using core::contact::DampedPair;
+
+// What of a contact does not depend on the seed or the direction.
+struct DampedPairSlopes {
+    DampedPair pair;
+    std::array<int, 4> body;
+    Four X, end, start;       // undeformed vertices; dphi/dx at the end and at P0
+    Four eps;                 // deps/dX: 0 where phi depends on eps neither at the end nor at P0
+    Four end_eps;             // d(dphi/dx)/deps at the end
+    double closeness_by_eps;  // d(phi - phi_t0)/deps
+};
+
+double closeness_by_eps(const ContactPair& pair, const BarrierParameters& closeness) {
+    return is_mollified(pair) ? pair_potential_eps_derivative(pair, closeness) : 0;
+}
+
+DampedPairSlopes slopes_of(const DampedContacts& at, const core::contact::BodyPairContacts& list, const ContactPair& contact) {
+    const BarrierParameters& closeness = at.damping.closeness;
+    DampedPairSlopes s;
+    s.pair = damped_pair(at.model, at.damping, list, contact);
+    s.body = bodies_of(list, contact);
+    s.X = undeformed(at.model, s.body, contact);
+    s.end = pair_forces(s.pair.end, closeness);
+    s.start = pair_forces(s.pair.start, closeness);
+    s.eps = s.end_eps = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    if (is_mollified(s.pair.end) || is_mollified(s.pair.start)) s.eps = mollifier_eps_gradient(s.X[0], s.X[1], s.X[2], s.X[3]);
+    if (is_mollified(s.pair.end)) s.end_eps = pair_forces_eps_derivative(s.pair.end, closeness);
+    s.closeness_by_eps = closeness_by_eps(s.pair.end, closeness) - closeness_by_eps(s.pair.start, closeness);
+    return s;
+}
+
+template <class Visit>
+void for_each_damped(const DampedContacts& at, const Visit& visit) {
+    for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
+        for (const ContactPair& contact : list.contacts) visit(slopes_of(at, list, contact));
+}
+
+}  // namespace
+
+void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vector<std::vector<Vector6>>& lambda,
+                                      std::vector<std::vector<Matrix34>>& start_bar, std::vector<ModelGradient>& model_bar) {
+    for_each_damped(at, [&](const DampedPairSlopes& p) {
+        const double a = p.pair.slope();
+        for (std::size_t s = 0; s < lambda.size(); ++s) {
+            Four v;
+            for (int i = 0; i < 4; ++i) {
+                const Vector6& motion = lambda[s][p.body[i]];
+                v[i] = motion.head<3>() + motion.tail<3>().cross(p.pair.end.x[i] - at.poses[p.body[i]].position);
+            }
+            const Four change = pair_hessian_product(p.pair.end, at.damping.closeness, v);
+            const double along = p.pair.stiffness * dot(p.end, v);
+            const double eps_bar = a * dot(p.end_eps, v) + along * p.closeness_by_eps;
+            for (int i = 0; i < 4; ++i) {
+                const int body = p.body[i];
+                const Matrix3 &R = at.poses[body].rotation, R0 = at.damping.start[body].leftCols<3>();
+                const Vector3 turned = change[i] - lambda[s][body].tail<3>().cross(p.end[i]);
+                model_bar[s].bodies[body].vertices_bar.col(p.pair.end.vertex[i]) -=
+                    R.transpose() * (a * turned + along * p.end[i]) - along * R0.transpose() * p.start[i] + eps_bar * p.eps[i];
+                start_bar[s][body] += along * p.start[i] * p.X[i].homogeneous().transpose();
+            }
+        }
+    });
+}
+
+void add_contact_damping_tangent(const DampedContacts& at, const std::vector<Matrix34>& poses_dot, const std::vector<Matrix34>& start_dot,
+                                 const ModelTangent& direction, PoseGradientTangent& out) {
+    for_each_damped(at, [&](const DampedPairSlopes& p) {
+        Four X_dot, v, v_start;
+        for (int i = 0; i < 4; ++i) {
+            const int body = p.body[i];
+            X_dot[i] = direction.bodies[body].vertices_dot.col(p.pair.end.vertex[i]);
+            v[i] = poses_dot[body] * p.X[i].homogeneous() + at.poses[body].rotation * X_dot[i];
+            v_start[i] = start_dot[body] * p.X[i].homogeneous() + at.damping.start[body].leftCols<3>() * X_dot[i];
+        }
+        const double eps_dot = dot(p.eps, X_dot), a = p.pair.slope();
+        const double a_dot = p.pair.stiffness * (dot(p.end, v) - dot(p.start, v_start) + p.closeness_by_eps * eps_dot);
+        const Four change = pair_hessian_product(p.pair.end, at.damping.closeness, v);
+        for (int i = 0; i < 4; ++i) {
+            const int body = p.body[i];
+            const Vector3 force_dot = a_dot * p.end[i] + a * (change[i] + eps_dot * p.end_eps[i]);
+            out.value[body] += a * p.end[i] * p.X[i].homogeneous().transpose();
+            out.dot[body] += force_dot * p.X[i].homogeneous().transpose();
+            out.dot[body].leftCols<3>() += a * p.end[i] * X_dot[i].transpose();
+        }
+    });
+}
+
+}  // namespace fettle::adjoint::contact

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/contact_damping.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "fettle/core/base/parallel.hpp"
+
+namespace fettle::core::contact {
+namespace {
+
+constexpr int damped_pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
+
+int body_of(const BodyPairContacts& list, const ContactPair& pair, int i) { return i < first_count(pair.type) ? list.first : list.second; }
+
+Eigen::Vector4d material_point(const model::Model& model, const BodyPairContacts& list, const ContactPair& pair, int i) {
+    return model.bodies[body_of(list, pair, i)].mesh.vertices.col(pair.vertex[i]).homogeneous();
+}
+
+ContactPair pair_at(const model::Model& model, const BodyPairContacts& list, const ContactPair& pair, const std::vector<Matrix34>& poses) {
+    ContactPair out = pair;
+    for (int i = 0; i < 4; ++i) out.x[i] = poses[body_of(list, pair, i)] * material_point(model, list, pair, i);
+    out.closest = closest_points(out.type, out.x);
+    return out;
+}
+
+bool is_apart(const ContactPair& pair, const BarrierParameters& p) {
+    return pair.closest.distance_squared > p.dmin * p.dmin && std::isfinite(pair.closest.distance_squared);
+}
+
+void add_damped_pair(const DampedPair& pair, const BarrierParameters& closeness, HessianKind kind, const Vector3& first_position,
+                     const Vector3& second_position, BodyPairSum& sum) {
+    const double slope = pair.slope();
+    const bool closing = slope >= 0;
+    BodyPairSum phi;
+    add_pair_derivatives(pair.end, closeness, closing ? kind : HessianKind::exact, first_position, second_position, phi);
+    Vector12 gradient;
+    gradient << tangent_gradient(phi.first), tangent_gradient(phi.second);
+    Matrix12 h = slope * phi.hessian;
+    h.selfadjointView<Eigen::Lower>().rankUpdate(gradient, pair.stiffness);
+    if (kind == HessianKind::projected && !closing) h = positive_part(h);
+    sum.hessian.triangularView<Eigen::Lower>() += h;
+    sum.first.force += slope * phi.first.force;
+    sum.first.arm += slope * phi.first.arm;
+    sum.second.force += slope * phi.second.force;
+    sum.second.arm += slope * phi.second.arm;
+}
+
+}  // namespace
+
+void set_contact_damping(double damping_share, const BarrierParameters& barrier, ContactDamping& damping) {
+    const double gap_hat_squared = barrier.gap_hat * barrier.gap_hat;
+    damping.closeness = barrier;
+    damping.closeness.factor = 1 / gap_hat_squared;
+    damping.factor = damping_share * barrier.factor * gap_hat_squared;
+}
+
+DampedPair damped_pair(const model::Model& model, const ContactDamping& damping, const BodyPairContacts& list, const ContactPair& pair) {
+    DampedPair out;
+    out.end = pair;
+    out.end.weight = 1;
+    out.start = pair_at(model, list, out.end, damping.start);
+    out.stiffness = damping.factor * pair.weight;
+    out.closeness = pair_potential(out.end, damping.closeness);
+    out.closeness_t0 = pair_potential(out.start, damping.closeness);
+    return out;
+}
+
+double contact_damping_potential(const model::Model& model, const ContactSet& set, const ContactDamping& damping) {
+    std::vector<double> values(set.pairs.size());
+    base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
+        const BodyPairContacts& list = set.pairs[k];
+        for (const ContactPair& contact : list.contacts) {
+            const bool apart = is_apart(contact, damping.closeness);
+            const DampedPair pair = apart ? damped_pair(model, damping, list, contact) : DampedPair{};
+            values[k] += apart ? 0.5 * pair.stiffness * pair.closeness * (pair.closeness - 2 * pair.closeness_t0)
+                               : std::numeric_limits<double>::infinity();
+        }
+    });
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum;
+}
+
+void add_contact_damping_derivatives(const model::Model& model, const ContactSet& set, const std::vector<kinematics::Pose>& poses,
+                                     const ContactDamping& damping, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
+                                     kinematics::BlockHessian& hessian) {
+    std::vector<BodyPairSum> sums(set.pairs.size());
+    base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
+        const BodyPairContacts& list = set.pairs[k];
+        for (const ContactPair& pair : list.contacts)
+            add_damped_pair(damped_pair(model, damping, list, pair), damping.closeness, kind, poses[list.first].position,
+                            poses[list.second].position, sums[k]);
+    });
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
+}
+
+}  // namespace fettle::core::contact

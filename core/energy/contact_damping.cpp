@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/energy/contact_damping.hpp"
+
+namespace fettle::core::energy {
+namespace {
+
+void add_contact_damping_value(const ValueAt& at, TermValues& values) {
+    if (!(at.problem.contact_damping.factor > 0)) return;
+    const model::Model& model = *at.problem.model;
+    const contact::ContactSet contacts = contact::find_contacts(model, at.candidates, at.poses);
+    values.couplings.push_back(contact::contact_damping_potential(model, contacts, at.problem.contact_damping));
+}
+
+void add_contact_damping_derivatives_here(const DerivativesAt& at, TermDerivatives& d) {
+    if (!(at.problem.contact_damping.factor > 0)) return;
+    contact::add_contact_damping_derivatives(*at.problem.model, at.contacts, at.poses, at.problem.contact_damping, at.kind, d.coupling,
+                                             d.coupling_hessian);
+}
+
+void add_contact_damping_report(const SolvedStep& step, TermReport& report) {
+    const contact::ContactDamping& damping = step.problem.contact_damping;
+    if (!(damping.factor > 0)) return;
+    for (const contact::BodyPairContacts& list : step.contacts.pairs) {
+        ContactForce& f = force_between(report, list.first, list.second);
+        for (const contact::ContactPair& contact : list.contacts) {
+            const contact::DampedPair pair = damped_pair(*step.problem.model, damping, list, contact);
+            const double scale = pair.slope() / step.problem.weight;
+            const auto gradient = pair_forces(pair.end, damping.closeness);
+            // On body a: the vertices of the first primitive, or those of the second if the pair is listed the other way round.
+            const int n = first_count(contact.type);
+            const bool first = list.first == f.a;
+            for (int i = first ? 0 : n; i < (first ? n : 4); ++i) {
+                f.force -= scale * gradient[i];
+                f.torque -= contact.x[i].cross(scale * gradient[i]);
+            }
+            f.normal += scale * normal_force(pair.end, damping.closeness);
+        }
+    }
+}
+
+}  // namespace
+
+const Term contact_damping_term{"contact damping", add_contact_damping_value, add_contact_damping_derivatives_here,
+                                add_contact_damping_report};
+
+}  // namespace fettle::core::energy
