@@ -7,8 +7,6 @@
 
 namespace fettle::adjoint::energy::inertia_adjoint_test {
 
-using namespace fettle::tests;
-
 TEST_CASE("the inertia's gradient follows pose_hat and moments", "[adjoint][energy]") {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> uniform(-1, 1);
