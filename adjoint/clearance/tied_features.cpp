@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/clearance/tied_features.hpp"
 
+#include <tuple>
+#include <utility>
+
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 
@@ -69,6 +72,18 @@ ClosestPoints closest(const Placed& a, const Feature& fa, const Placed& b, const
     return core::geometry::point_triangle_closest(b.x.col(cb[0]), a.x.col(ca[0]), a.x.col(ca[1]), a.x.col(ca[2]));
 }
 
+// Of a and of b, relative to b's reference point.
+std::pair<Vector3, Vector3> points(const Placed& a, const Feature& fa, const Placed& b, const Feature& fb, const ClosestPoints& pair) {
+    if (fa.kind == Primitive::triangle) {  // then b's is the vertex, and the difference points to it
+        const Vector3 vertex = b.x.col(fb.index);
+        return {vertex - pair.difference, vertex};
+    }
+    const std::vector<int> corners = a.corners(fa);
+    Vector3 point = Vector3::Zero();
+    for (std::size_t i = 0; i < corners.size(); ++i) point += pair.weight[i] * a.x.col(corners[i]);
+    return {point, point - pair.difference};
+}
+
 bool is_pair(const Feature& a, const Feature& b) {
     if (a.kind == Primitive::edge) return b.kind == Primitive::edge;
     return (a.kind == Primitive::vertex && b.kind == Primitive::triangle) || (a.kind == Primitive::triangle && b.kind == Primitive::vertex);
@@ -93,7 +108,8 @@ std::vector<Witness> tied_features(const core::model::Model& model, const core::
     core::geometry::visit_overlapping_pairs(boxes, [&](int i, int j) {
         const Feature &fa = features[i], &fb = features[j];  // a's features come first
         if (fa.on_a == fb.on_a || !is_pair(fa, fb)) return true;
-        const double distance = closest(on_a, fa, on_b, fb).difference.norm();
+        const ClosestPoints pair = closest(on_a, fa, on_b, fb);
+        const double distance = pair.difference.norm();
         if (distance > reach) return true;
         Witness tied = witness;
         tied.edge_edge = fa.kind == Primitive::edge;
@@ -103,6 +119,9 @@ std::vector<Witness> tied_features(const core::model::Model& model, const core::
         tied.primitive_a = fa.index;
         tied.primitive_b = fb.index;
         tied.distance = distance;
+        std::tie(tied.point_a, tied.point_b) = points(on_a, fa, on_b, fb, pair);
+        tied.point_a += pose_b.position;
+        tied.point_b += pose_b.position;
         out.push_back(tied);
         return true;
     });

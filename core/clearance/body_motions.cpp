@@ -10,8 +10,12 @@ namespace fettle::core::clearance {
 
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion) {
     if (!motion || trajectory.steps.empty()) return {{}};
+    return path_places(trajectory, 0, static_cast<int>(trajectory.steps.size()));
+}
+
+std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int first, int last) {
     std::vector<PathPlace> places;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = first; t < last; ++t)
         for (int k = 0; k < stepper::segment_count(trajectory, t); ++k) places.push_back({t, k});
     return places;
 }

@@ -17,6 +17,8 @@ struct PathPlace {
 };
 /// All segments in order; without motion, or without steps, the start pose alone.
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion);
+/// Those of steps [first, last).
+std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int first, int last);
 
 /// The segment of a body at a place.
 kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const PathPlace& place, int body);

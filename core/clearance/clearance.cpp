@@ -49,6 +49,22 @@ PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::
     return pair;
 }
 
+// Of one window: where it is nearest, and whether that is its very beginning or end.
+struct WindowMinimum {
+    std::optional<Witness> witness;
+    bool at_start = false, at_end = false;
+};
+
+WindowMinimum window_minimum(PairMotion pair, std::size_t begin, std::size_t end, const SearchOptions& search) {
+    const auto at = [&](std::size_t i) { return pair.segments.begin() + static_cast<std::ptrdiff_t>(i); };
+    pair.segments = std::vector<PairSegment>(at(begin), at(end));
+    const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    if (!(found.upper <= search.enough)) return {};
+    const auto count = static_cast<int>(pair.segments.size());
+    return {witness_of(pair, found.nearest), found.nearest.segment == 0 && found.nearest.s == 0,
+            found.nearest.segment == count - 1 && found.nearest.s == 1};
+}
+
 std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
     std::vector<int> bodies;
     for (const PairRequest& pair : pairs) {
@@ -149,23 +165,54 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
     FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
     const std::vector<PathPlace> places = path_places(trajectory, options.motion);
     const NearWindows near = near_windows(model, trajectory, places, reach);
-    std::vector<int> bodies;
-    for (const NearWindow& window : near.windows) bodies.insert(bodies.end(), {window.a, window.b});
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const std::vector<BodyShape> shapes = body_shapes(model, bodies);
+    std::vector<PairRequest> pairs;
+    for (const NearWindow& window : near.windows) pairs.push_back({window.a, window.b, 0});
+    const std::vector<BodyShape> shapes = body_shapes(model, bodies_of(pairs, static_cast<int>(model.bodies.size())));
     options.enough = std::min(options.enough, reach);
     NearClearances result;
     result.everything = near.everything;
     result.windows.resize(near.windows.size());
     parallel_for(static_cast<int>(near.windows.size()), 1, [&](int i) {
         const NearWindow& window = near.windows[i];
-        const PairRequest request{window.a, window.b, 0};
-        result.windows[i] = window.measurable ? certify_pair(window_motion(shapes, trajectory, places, window), request,
+        result.windows[i] = window.measurable ? certify_pair(window_motion(shapes, trajectory, places, window), pairs[i],
                                                              model.dmin + model.dhat, options, std::nullopt)
-                                              : unmeasured(request, unusable_numbers);
+                                              : unmeasured(pairs[i], unusable_numbers);
     });
     return result;
+}
+
+std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,
+                                       const TimeWindows& windows, double reach, double tolerance) {
+    const int steps = windows.last - windows.first;
+    FETTLE_ASSERT(windows.first >= 0 && steps > 0 && windows.last <= static_cast<int>(trajectory.steps.size()),
+                  "windows of the trajectory");
+    const std::vector<PathPlace> places = path_places(trajectory, windows.first, windows.last);
+    const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, {pair.a, pair.b});
+    const BodyMotion &a = motions[pair.a], &b = motions[pair.b];
+    if (a.segments.empty() || b.segments.empty()) return {};
+    const PairMotion whole = pair_motion(a, b, trajectory, places);
+    SearchOptions search;
+    search.tolerance = tolerance;
+    search.enough = reach;
+    const int count = std::clamp(windows.count, 1, steps);
+    std::vector<WindowMinimum> minima(static_cast<std::size_t>(count));
+    const auto begin_of = [&](int w) {
+        const int step = windows.first + static_cast<int>(static_cast<long>(w) * steps / count);
+        const auto before = [](const PathPlace& place, int t) { return place.step < t; };
+        return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), step, before) - places.begin());
+    };
+    parallel_for(count, 1, [&](int w) { minima[w] = window_minimum(whole, begin_of(w), begin_of(w + 1), search); });
+    std::vector<Witness> witnesses;
+    for (int w = 0; w < count; ++w) {
+        const WindowMinimum& here = minima[w];
+        if (!here.witness) continue;
+        const auto is_nearer = [&](int other) {
+            return other >= 0 && other < count && minima[other].witness && minima[other].witness->distance <= here.witness->distance;
+        };
+        if ((here.at_start && is_nearer(w - 1)) || (here.at_end && is_nearer(w + 1))) continue;
+        witnesses.push_back(*here.witness);
+    }
+    return witnesses;
 }
 
 stepper::Trajectory as_assembled(const model::Model& model) {

@@ -28,6 +28,18 @@ struct NearClearances {
 /// Contract: no certificate is asked for.
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options);
 
+/// Steps [first, last) of a trajectory, and into how many equal parts they are divided: at most one part a step.
+struct TimeWindows {
+    int first = 0, last = 0;
+    int count = 1;
+};
+
+/// Where two bodies are nearest in each window, of the windows in which they come within `reach` [m] of each other; in order of time. Found
+/// to within `tolerance` [m], with no proof. A window whose nearest instant is its edge, while they are nearer in the window beyond, has no
+/// minimum of its own and is left out. Contract: 0 <= first < last <= the trajectory's steps.
+std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,
+                                       const TimeWindows& windows, double reach, double tolerance);
+
 /// The start configuration as a trajectory without steps.
 stepper::Trajectory as_assembled(const model::Model& model);
 

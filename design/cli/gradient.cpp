@@ -39,6 +39,35 @@ Json failure_json(const DesignEvaluation& evaluation) {
     return json;
 }
 
+// Of a term of the objective or of a constraint; null where one branch alone attains its value.
+const problem::Tie* tie_of(const DesignEvaluation& evaluation, bool of_objective, size_t index) {
+    for (const problem::Tie& tie : evaluation.ties)
+        if (tie.of_objective == of_objective && tie.index == static_cast<int>(index)) return &tie;
+    return nullptr;
+}
+
+void add_tie(const Design& design, const problem::Tie* tie, Json& entry) {
+    if (tie == nullptr) return;
+    entry["ties"] = {{"witnesses", tie->branches},
+                     {"gradient_least", gradient_json(design, tie->least)},
+                     {"gradient_greatest", gradient_json(design, tie->greatest)}};
+}
+
+// @param unit  That the quantity is counted in.
+std::string tie_text(const Design& design, const problem::Tie* tie, double unit) {
+    if (tie == nullptr) return {};
+    std::string text = formatted("  no derivative: %d witnesses tie", tie->branches);
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        const Parameter& p = design.parameters[k];
+        const auto at = static_cast<Eigen::Index>(k);
+        const double least = tie->least[at], greatest = tie->greatest[at], factor = to_si(1, p.unit) / unit;
+        if (greatest - least <= 1e-6 * std::max(std::abs(least), std::abs(greatest))) continue;
+        text += formatted(", d/d %s from %.7g to %.7g per %s", p.name.c_str(), least * factor, greatest * factor,
+                          std::string(p.unit.name).c_str());
+    }
+    return text + "\n";
+}
+
 Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     Json json;
     json["status"] = "ok";
@@ -48,6 +77,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     Json terms = Json::array();
     for (size_t k = 0; k < design.objective.size(); ++k) {
         terms.push_back({{"name", design.objective[k].name}, {"weight", design.objective[k].weight}, {"value", evaluation.terms[k].value}});
+        add_tie(design, tie_of(evaluation, true, k), terms.back());
     }
     json["terms"] = terms;
     Json list = Json::array();
@@ -61,6 +91,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         entry["met"] = description::violation(constraint.bounds, measured) <= 0;
         if (!measured.fault.empty()) entry["fault"] = measured.fault;
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(static_cast<Eigen::Index>(i)).transpose());
+        add_tie(design, tie_of(evaluation, false, i), entry);
         list.push_back(std::move(entry));
     }
     json["constraints"] = list;
@@ -184,12 +215,17 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
         text += formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[static_cast<Eigen::Index>(k)] * to_si(1, p.unit),
                           std::string(p.unit.name).c_str());
     }
+    for (size_t k = 0; k < design.objective.size(); ++k) {
+        const problem::Tie* tie = tie_of(e, true, k);
+        if (tie != nullptr) text += design.objective[k].name + ", of the objective:\n" + tie_text(design, tie, design.objective[k].unit);
+    }
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = e.constraints[i];
         text += formatted("%-40s %12.7g, at least %12.7g, required [%g, %g]\n", name.c_str(), measured.value / bounds.unit,
                           measured.lower / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit);
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
+        text += tie_text(design, tie_of(e, false, i), bounds.unit);
     }
     text += relations_text(design, e.relations, console);
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
@@ -219,6 +255,7 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     problem::EvaluateOptions evaluate;
     evaluate.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     evaluate.should_stop = interrupted;
+    evaluate.branches = problem::BranchReach::tied;
     const DesignEvaluation evaluation = problem->evaluate(values, evaluate);
     if (!evaluation.usable) {
         console.result(failure_json(evaluation), "the design cannot be evaluated: " + evaluation.reason + "\n");

@@ -7,6 +7,8 @@ VectorX Quantity::deviations(const Simulated&) const { return {}; }
 
 void Quantity::add_deviation_seeds(const Simulated&, int, double, Seeds&) const {}
 
+std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, double) const { return {}; }
+
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }
 
 Errors check_body(const core::model::Model& model, int body) {

@@ -4,8 +4,10 @@
 /// twice. Those of the program: ../quantities. Add one: derive from Quantity, and hand it to the design (design.hpp).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/base/result.hpp"
@@ -33,6 +35,12 @@ struct Measurement {
 };
 inline Measurement exact(double value) { return {value, value, value, std::nullopt, {}}; }
 
+/// One of the smooth functions that a value is the least of: a distance between two features at one instant.
+struct Branch {
+    double value = 0;                               ///< at least the quantity's
+    std::function<void(double, Seeds&)> add_seeds;  ///< adds scale * d(value); holds references to what it was made from
+};
+
 class Quantity {
 public:
     virtual ~Quantity() = default;
@@ -51,6 +59,11 @@ public:
 
     /// Adds scale * d(r_i) to the seeds. Contract: 0 <= i < deviations().size().
     virtual void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const;
+
+    /// Of a value that is the least of several smooth functions (a clearance: of the distances at its witnesses): first the one that
+    /// add_seeds differentiates, then a few of the others that are at most `limit` (SI), which say most about where the value can go.
+    /// Empty: it is no such value. Not to outlive `simulated` and `measured`.
+    virtual std::vector<Branch> branches(const Simulated& simulated, const Measurement& measured, double limit) const;
 
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
     virtual bool is_at_rest() const { return false; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "fettle/core/base/contract.hpp"
 
@@ -17,6 +18,14 @@ std::string bits_of(const VectorX& x) {
     return key;
 }
 
+bool has_sizes(const Branches& b, int variables, int functions) {
+    const auto k = static_cast<Eigen::Index>(b.of.size());
+    return b.values.size() == k && b.jacobian.rows() == k && (k == 0 || b.jacobian.cols() == variables) &&
+           std::all_of(b.of.begin(), b.of.end(), [&](int i) { return i >= 0 && i < functions; });
+}
+
+bool all_finite(const Branches& b) { return b.values.allFinite() && b.jacobian.allFinite(); }
+
 // A NaN in an answer is a failure like any other: the optimisers must never compute with it.
 Evaluation checked(Evaluation e, int variables, int constraints) {
     if (!e.usable) return e;
@@ -24,8 +33,12 @@ Evaluation checked(Evaluation e, int variables, int constraints) {
                       e.jacobian.cols() == variables && e.residual_jacobian.rows() == e.residuals.size() &&
                       (e.residuals.size() == 0 || e.residual_jacobian.cols() == variables),
                   "an evaluation has the problem's sizes");
+    FETTLE_ASSERT(has_sizes(e.constraint_branches, variables, constraints) &&
+                      has_sizes(e.objective_branches, variables, std::numeric_limits<int>::max()),
+                  "branches have the problem's sizes");
     const bool finite = std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
-                        e.residual_jacobian.allFinite() && std::isfinite(e.violation);
+                        e.residual_jacobian.allFinite() && std::isfinite(e.violation) && all_finite(e.constraint_branches) &&
+                        all_finite(e.objective_branches);
     if (!finite) {
         e.usable = false;
         e.reason = "the evaluation gave a number that is not finite";
@@ -113,6 +126,15 @@ Evaluation Evaluator::scaled(const Record& record) const {
     s.jacobian = constraint_scale_.asDiagonal() * stacked(e.jacobian, record.relations.jacobian) * range_.asDiagonal();
     s.residuals = std::sqrt(objective_scale_) * e.residuals;
     if (e.residuals.size() > 0) s.residual_jacobian = std::sqrt(objective_scale_) * e.residual_jacobian * range_.asDiagonal();
+    for (size_t k = 0; k < e.constraint_branches.of.size(); ++k) {
+        const double scale = constraint_scale_[e.constraint_branches.of[k]];
+        const auto row = static_cast<Eigen::Index>(k);
+        s.constraint_branches.values[row] *= scale;
+        s.constraint_branches.jacobian.row(row) = scale * e.constraint_branches.jacobian.row(row).cwiseProduct(range_.transpose());
+    }
+    if (e.objective_branches.of.empty()) return s;
+    s.objective_branches.values = objective_scale_ * e.objective_branches.values;
+    s.objective_branches.jacobian = objective_scale_ * e.objective_branches.jacobian * range_.asDiagonal();
     return s;
 }
 

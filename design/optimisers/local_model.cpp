@@ -17,8 +17,50 @@ MatrixX positive_part(const MatrixX& symmetric) {
     return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-double lagrangian(const Evaluation& e, const VectorX& y) { return e.objective - y.dot(e.constraints); }
-VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) { return e.gradient - e.jacobian.transpose() * y; }
+bool is_first(const Branches& b, size_t k) { return k == 0 || b.of[k] != b.of[k - 1]; }
+
+// Both without the terms of the objective that have branches.
+double lagrangian(const Evaluation& e, const VectorX& y) {
+    double value = e.objective - y.dot(e.constraints);
+    for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
+        if (is_first(e.objective_branches, k)) value -= e.objective_branches.values[static_cast<Eigen::Index>(k)];
+    return value;
+}
+VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) {
+    VectorX gradient = e.gradient - e.jacobian.transpose() * y;
+    for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
+        if (is_first(e.objective_branches, k)) gradient -= e.objective_branches.jacobian.row(static_cast<Eigen::Index>(k)).transpose();
+    return gradient;
+}
+
+Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
+    const Branches &rows = e.constraint_branches, &terms = e.objective_branches;
+    Cuts cuts;
+    cuts.rows.resize(static_cast<Eigen::Index>(rows.of.size() + terms.of.size()), e.gradient.size());
+    cuts.lower.resize(cuts.rows.rows());
+    const auto add = [&cuts](int of, double lower, const VectorX& row) {
+        const auto at = static_cast<Eigen::Index>(cuts.of.size());
+        cuts.rows.row(at) = row.transpose();
+        cuts.lower[at] = lower;
+        cuts.of.push_back(of);
+    };
+    for (size_t k = 0; k < rows.of.size(); ++k) {
+        const auto j = static_cast<Eigen::Index>(k);
+        add(rows.of[k], evaluator.scaled_constraint_lower()[rows.of[k]] - rows.values[j], rows.jacobian.row(j).transpose());
+    }
+    Eigen::Index first = 0;
+    for (size_t k = 0; k < terms.of.size(); ++k) {
+        const auto j = static_cast<Eigen::Index>(k);
+        if (is_first(terms, k)) {
+            first = j;
+        } else {
+            add(-1 - terms.of[k], terms.values[j] - terms.values[first], (terms.jacobian.row(first) - terms.jacobian.row(j)).transpose());
+        }
+    }
+    cuts.rows.conservativeResize(static_cast<Eigen::Index>(cuts.of.size()), Eigen::NoChange);
+    cuts.lower.conservativeResize(cuts.rows.rows());
+    return cuts;
+}
 
 // The nearest evaluations to a point, it excepted.
 std::vector<int> nearest(const Evaluator& evaluator, const VectorX& point) {
@@ -94,6 +136,21 @@ void RestCurvature::learn(const VectorX& from_point, const Evaluation& from, con
     if (std::abs(seen - with) < std::abs(seen - without)) matrix_ = updated;
 }
 
+VectorX smooth_multipliers(const QuadraticSolution& solution) {
+    VectorX y = solution.multipliers;
+    const double size = y.size() > 0 ? y.lpNorm<Eigen::Infinity>() : 0;
+    for (size_t j = 0; j < solution.cut_of.size(); ++j)
+        if (solution.cut_of[j] >= 0 && solution.cut_multipliers[static_cast<Eigen::Index>(j)] > 1e-6 * size) y[solution.cut_of[j]] = 0;
+    return y;
+}
+
+VectorX whole_multipliers(const QuadraticSolution& solution) {
+    VectorX y = solution.multipliers;
+    for (size_t j = 0; j < solution.cut_of.size(); ++j)
+        if (solution.cut_of[j] >= 0) y[solution.cut_of[j]] += solution.cut_multipliers[static_cast<Eigen::Index>(j)];
+    return y;
+}
+
 QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
                             double penalty) {
     QuadraticProgram program;
@@ -106,6 +163,7 @@ QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, co
     program.box_lower = (-point).cwiseMax(-radius);
     program.box_upper = (VectorX::Ones(point.size()) - point).cwiseMin(radius);
     program.penalty = penalty;
+    program.cuts = cuts_of(evaluator, e);
     return solve(program);
 }
 

@@ -15,7 +15,8 @@ class RestCurvature {
 public:
     explicit RestCurvature(int n) : matrix_(MatrixX::Zero(n, n)) {}
     const MatrixX& matrix() const { return matrix_; }
-    /// @param y  Multipliers of the constraints, scaled.
+    /// Terms of f that have branches are left out at both points: their gradients jump, which is no curvature.
+    /// @param y  Multipliers of the constraints, scaled (smooth_multipliers).
     void learn(const VectorX& from_point, const Evaluation& from, const VectorX& to_point, const Evaluation& to, const VectorX& y);
 
 private:
@@ -25,7 +26,14 @@ private:
 /// 2 sum_i dr_i dr_i^T of the squared deviations that the objective has; zero if it has none.
 MatrixX residual_curvature(const Evaluation& e);
 
-/// The best step from a scaled point within |d_k| <= radius and the bounds, by what the evaluation there says.
+/// The multipliers of a solution, without those of constraints whose branches hold the step as well: their gradients jump.
+VectorX smooth_multipliers(const QuadraticSolution& solution);
+
+/// Those of the constraints as wholes: each with its branches'. What raising its bound costs.
+VectorX whole_multipliers(const QuadraticSolution& solution);
+
+/// The best step from a scaled point within |d_k| <= radius and the bounds, by what the evaluation there says: branches are cuts, in the
+/// order of constraint_branches, then of objective_branches but each term's first.
 /// @param rest  Curvature beside the residuals'; null: none.
 QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
                             double penalty);

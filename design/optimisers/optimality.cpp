@@ -36,9 +36,11 @@ RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, co
     return rest;
 }
 
-double predicted_gain(const Evaluation& at, const MatrixX& rest, const VectorX& step) {
+// Branches included: at a kink, what one promises another may take.
+double predicted_gain(const Evaluation& at, const MatrixX& rest, const QuadraticSolution& solution) {
+    const VectorX& step = solution.step;
     const MatrixX curvature = residual_curvature(at) + rest;
-    return std::max(0.0, -(at.gradient.dot(step) + 0.5 * std::max(0.0, step.dot(curvature * step))));
+    return std::max(0.0, -(at.gradient.dot(step) + 0.5 * std::max(0.0, step.dot(curvature * step)) + solution.kinks));
 }
 
 // Inward from the nearest bounds, all variables alike, so that no value is left out of the noise.
@@ -88,18 +90,18 @@ private:
         radius_ = radius;
         at_ = with_telling_derivatives(evaluator_, point_, evaluator_.best_scaled_evaluation());
         const VectorX none = VectorX::Zero(evaluator_.constraints());
-        const VectorX& y = solution_.multipliers.size() == none.size() ? solution_.multipliers : none;
+        const VectorX y = solution_.multipliers.size() == none.size() ? smooth_multipliers(solution_) : none;
         RestCurvature rest = curvature_near(evaluator_, point_, at_, y);
         solution_ = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
         if (!solution_.solved) return;
-        gain_ = predicted_gain(at_, rest.matrix(), solution_.step);
+        gain_ = predicted_gain(at_, rest.matrix(), solution_);
     }
 
     // @return whether it could be: a point next to the best one may be none that can be evaluated.
     bool measure_noise() {
         const int m = evaluator_.constraints();
         MatrixX values(noise_values, 1 + m);
-        const VectorX direction = inward(point_);
+        const VectorX direction = inward(point_), multipliers = whole_multipliers(solution_);
         for (int i = 0; i < noise_values; ++i) {
             const Evaluation& e = evaluator_.look(point_ + i * noise_spacing * direction);
             if (!e.usable) return false;
@@ -112,7 +114,7 @@ private:
             const double scale = q == 0 ? evaluator_.objective_scale() : evaluator_.constraint_scale()[q - 1];
             const NoiseLevel& level = levels[static_cast<size_t>(q)];
             result_.noise[q] = level.noise / scale;
-            const double weight = q == 0 ? 1 : solution_.solved ? std::abs(solution_.multipliers[q - 1]) : 0;
+            const double weight = q == 0 ? 1 : solution_.solved ? std::abs(multipliers[q - 1]) : 0;
             const double effect = weight * level.noise;
             if (level.status == NoiseStatus::spacing_too_large) continue;  // only a bound on it, made of what is smooth
             if (effect > worth_ && effect > result_.noise_in_objective) result_.roughest = q;
@@ -131,6 +133,9 @@ private:
         if (std::abs(d) >= radius_ * (1 - 1e-6) && gain_ > worth_) return Held::free;
         for (Eigen::Index i = 0; i < solution_.multipliers.size(); ++i)
             if (std::abs(solution_.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
+        for (Eigen::Index j = 0; j < solution_.cut_multipliers.size() && solution_.cut_of[static_cast<size_t>(j)] >= 0; ++j)
+            if (std::abs(solution_.cut_multipliers[j] * at_.constraint_branches.jacobian(j, k)) > telling_share * size)
+                return Held::constraints;
         return Held::stationary;
     }
 
@@ -142,7 +147,7 @@ private:
         result_.predicted_gain = gain_ / f;
         result_.radius = radius_;
         result_.step = solution_.step.cwiseProduct(evaluator_.range());
-        result_.multipliers = solution_.multipliers.cwiseProduct(evaluator_.constraint_scale()) / f;
+        result_.multipliers = whole_multipliers(solution_).cwiseProduct(evaluator_.constraint_scale()) / f;
         result_.residual = VectorX::Zero(n);
         result_.held.resize(static_cast<size_t>(n));
         for (Eigen::Index k = 0; k < n; ++k) {

@@ -4,8 +4,10 @@
 /// At the best point the local model (local_model.hpp: derivatives, Gauss-Newton, the curvature that the evaluations near it show) predicts
 /// how much the objective falls along the best step that keeps the constraints, within a tenth of each range. Where that is below the
 /// tolerance, the design is optimal. Where it is not, the step is tried: a gain that comes true is kept, and the run goes on from there; a
-/// gain that does not teaches the model, and the step is shortened. Values that scatter by more than the tolerance (noise.hpp: the
-/// objective's own noise, and each constraint's times its multiplier) show no optimum, whatever the derivatives say.
+/// gain that does not teaches the model, and the step is shortened. Where a clearance has several witnesses near its least one, the step
+/// keeps them all, and a term of the objective that is the greatest of several is taken as that: at a kink no single derivative tells.
+/// Values that scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show
+/// no optimum, whatever the derivatives say.
 #pragma once
 
 #include <vector>

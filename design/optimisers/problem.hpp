@@ -16,6 +16,14 @@
 
 namespace fettle::design::optimisers {
 
+/// Of functions that are the least or the greatest of several smooth ones: those near the one that is taken (its branches), linearised. To
+/// first order the function is their least (or greatest) at any point near.
+struct Branches {
+    std::vector<int> of;  ///< k: which function each belongs to; those of one stand together
+    VectorX values;       ///< k
+    MatrixX jacobian;     ///< k x n
+};
+
 /// f, c and their derivatives at one point; or the reason why there are none. Plain values: it is what the history keeps.
 struct Evaluation {
     bool usable = false;  ///< false: the point cannot be evaluated (not buildable, blocked ...); then only `reason` means anything
@@ -27,6 +35,12 @@ struct Evaluation {
     /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
     VectorX residuals;
     MatrixX residual_jacobian;
+    /// Of constraints that are the least of several (clearances, by their witnesses), c_i <= values(k) for k of i: the other branches,
+    /// c_i and its gradient being the first. Only of those that have a lower bound.
+    Branches constraint_branches;
+    /// Of terms of f that are the greatest of several (a clearance to be made large), by their numbers: all branches, first the one whose
+    /// value and gradient are part of f and `gradient`.
+    Branches objective_branches;
     double violation = 0;  ///< largest violation of the true requirements, relations too, in their own scale (constraint.hpp); 0: feasible
 };
 

@@ -22,20 +22,22 @@ constexpr double no_bound = 1e20;  // beyond 1e19 Ipopt takes a bound as none
 
 double bounded(double value) { return std::clamp(value, -no_bound, no_bound); }
 
-// Unknowns: d, then one slack for each side of a row that is finite: lower <= A d + below - above <= upper, both >= 0.
+// Unknowns: d, then one slack for each side of a row that is finite, and one for each kink, all >= 0:
+//   lower <= A d + below - above <= upper,   cut_lower <= C d + (below of its row, or its kink).
 class ElasticProgram : public Ipopt::TNLP {
 public:
     explicit ElasticProgram(const QuadraticProgram& program) : program_(program) {
         for (int i = 0; i < m(); ++i) {
-            if (std::isfinite(program.lower[i])) slacks_.push_back({i, 1});
-            if (std::isfinite(program.upper[i])) slacks_.push_back({i, -1});
+            if (std::isfinite(program.lower[i])) add_slack(i, 1, program.penalty, program.lower[i]);
+            if (std::isfinite(program.upper[i])) add_slack(i, -1, program.penalty, -program.upper[i]);
         }
+        for (int j = 0; j < cuts(); ++j) share_slack(j);
     }
 
     bool get_nlp_info(Index& n_out, Index& m_out, Index& jacobian, Index& hessian, IndexStyleEnum& index_style) override {
         n_out = n() + static_cast<Index>(slacks_.size());
-        m_out = m();
-        jacobian = n() * m() + static_cast<Index>(slacks_.size());
+        m_out = m() + cuts();
+        jacobian = n() * m_out + static_cast<Index>(places_.size());
         hessian = n() * (n() + 1) / 2;
         index_style = C_STYLE;
         return true;
@@ -50,55 +52,58 @@ public:
             g_l[i] = bounded(program_.lower[i]);
             g_u[i] = bounded(program_.upper[i]);
         }
+        for (Index j = 0; j < cuts(); ++j) {
+            g_l[m() + j] = bounded(program_.cuts.lower[j]);
+            g_u[m() + j] = no_bound;
+        }
         return true;
     }
 
     bool get_starting_point(Index size, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
         std::fill(x, x + size, 0.0);
-        for (size_t k = 0; k < slacks_.size(); ++k) {
-            const double bound = slacks_[k].sign > 0 ? program_.lower[slacks_[k].row] : program_.upper[slacks_[k].row];
-            x[n() + static_cast<Index>(k)] = std::max(0.0, slacks_[k].sign * bound);
-        }
+        for (size_t k = 0; k < slacks_.size(); ++k) x[n() + static_cast<Index>(k)] = slacks_[k].start;
         return true;
     }
 
     bool eval_f(Index, const Number* x, bool, Number& f) override {
         const auto d = step(x);
         f = program_.gradient.dot(d) + 0.5 * d.dot(program_.hessian * d);
-        for (size_t k = 0; k < slacks_.size(); ++k) f += program_.penalty * x[n() + static_cast<Index>(k)];
+        for (size_t k = 0; k < slacks_.size(); ++k) f += slacks_[k].price * x[n() + static_cast<Index>(k)];
         return true;
     }
 
     bool eval_grad_f(Index size, const Number* x, bool, Number* gradient) override {
-        std::fill(gradient, gradient + size, program_.penalty);
+        for (Index k = n(); k < size; ++k) gradient[k] = slacks_[static_cast<size_t>(k - n())].price;
         Eigen::Map<VectorX>(gradient, n()) = program_.gradient + program_.hessian * step(x);
         return true;
     }
 
     bool eval_g(Index, const Number* x, bool, Index, Number* g) override {
-        Eigen::Map<VectorX> values(g, m());
-        values = program_.rows * step(x);
-        for (size_t k = 0; k < slacks_.size(); ++k) values[slacks_[k].row] += slacks_[k].sign * x[n() + static_cast<Index>(k)];
+        Eigen::Map<VectorX> values(g, m() + cuts());
+        values.head(m()) = program_.rows * step(x);
+        if (cuts() > 0) values.tail(cuts()) = program_.cuts.rows * step(x);
+        for (const SlackPlace& place : places_) values[place.row] += place.sign * x[n() + place.slack];
         return true;
     }
 
     bool eval_jac_g(Index, const Number*, bool, Index, Index, Index* row, Index* column, Number* values) override {
-        const Index dense = n() * m();
+        const Index dense = n() * (m() + cuts());
         for (Index k = 0; k < dense; ++k) {
+            const Index i = k / n(), j = k % n();
             if (values == nullptr) {
-                row[k] = k / n();
-                column[k] = k % n();
+                row[k] = i;
+                column[k] = j;
             } else {
-                values[k] = program_.rows(k / n(), k % n());
+                values[k] = i < m() ? program_.rows(i, j) : program_.cuts.rows(i - m(), j);
             }
         }
-        for (Index k = 0; k < static_cast<Index>(slacks_.size()); ++k) {
-            const Slack& slack = slacks_[static_cast<size_t>(k)];
+        for (Index k = 0; k < static_cast<Index>(places_.size()); ++k) {
+            const SlackPlace& place = places_[static_cast<size_t>(k)];
             if (values == nullptr) {
-                row[dense + k] = slack.row;
-                column[dense + k] = n() + k;
+                row[dense + k] = place.row;
+                column[dense + k] = n() + place.slack;
             } else {
-                values[dense + k] = slack.sign;
+                values[dense + k] = place.sign;
             }
         }
         return true;
@@ -124,25 +129,53 @@ public:
                            const Number* lambda, Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
         solution_.step = step(x).cwiseMax(program_.box_lower).cwiseMin(program_.box_upper);
         solution_.multipliers = -Eigen::Map<const VectorX>(lambda, m());
+        solution_.cut_multipliers = -Eigen::Map<const VectorX>(lambda + m(), cuts());
     }
 
     QuadraticSolution solution_;
 
 private:
     struct Slack {
-        int row;
+        double price, start;
+    };
+    struct SlackPlace {
+        int row, slack;
         double sign;  // +1: lifts a row to its lower side
     };
+
+    // @param missing  By how much the row misses its side at d = 0.
+    void add_slack(int row, double sign, double price, double missing) {
+        places_.push_back({row, static_cast<int>(slacks_.size()), sign});
+        slacks_.push_back({price, std::max(0.0, missing)});
+    }
+
+    // With its row's lower side, or the cuts of its kink before it.
+    void share_slack(int j) {
+        const std::vector<int>& of = program_.cuts.of;
+        const auto here = static_cast<size_t>(j);
+        const int first = static_cast<int>(std::find(of.begin(), of.end(), of[here]) - of.begin());
+        const int row = of[here] >= 0 ? of[here] : m() + first;
+        const auto shared = std::find_if(places_.begin(), places_.end(), [&](const SlackPlace& p) { return p.row == row && p.sign > 0; });
+        const double missing = program_.cuts.lower[j];
+        if (shared == places_.end()) return add_slack(m() + j, 1, 1, missing);
+        const int slack = shared->slack;
+        slacks_[static_cast<size_t>(slack)].start = std::max(slacks_[static_cast<size_t>(slack)].start, missing);
+        places_.push_back({m() + j, slack, 1});
+    }
+
     int n() const { return static_cast<int>(program_.gradient.size()); }
     int m() const { return static_cast<int>(program_.rows.rows()); }
+    int cuts() const { return static_cast<int>(program_.cuts.of.size()); }
     Eigen::Map<const VectorX> step(const Number* x) const { return {x, n()}; }
 
     const QuadraticProgram& program_;
     std::vector<Slack> slacks_;
+    std::vector<SlackPlace> places_;
 };
 
 bool is_finite(const QuadraticProgram& p) {
-    return p.gradient.allFinite() && p.hessian.allFinite() && p.rows.allFinite() && std::isfinite(p.penalty);
+    return p.gradient.allFinite() && p.hessian.allFinite() && p.rows.allFinite() && std::isfinite(p.penalty) && p.cuts.rows.allFinite() &&
+           p.cuts.lower.allFinite();
 }
 
 void set_options(Ipopt::OptionsList& list, bool predictor_corrector) {
@@ -182,19 +215,56 @@ double row_violation(const VectorX& values, const VectorX& lower, const VectorX&
     return sum;
 }
 
+namespace {
+
+struct Prices {
+    double violation = 0, kinks = 0;
+};
+
+Prices prices_at(const QuadraticProgram& program, const VectorX& d) {
+    const Cuts& cuts = program.cuts;
+    const VectorX values = program.rows * d;
+    Prices prices{row_violation(values, program.lower, program.upper), 0};
+    for (size_t j = 0; j < cuts.of.size(); ++j) {
+        if (std::find(cuts.of.begin(), cuts.of.begin() + static_cast<std::ptrdiff_t>(j), cuts.of[j]) !=
+            cuts.of.begin() + static_cast<std::ptrdiff_t>(j))
+            continue;  // counted with the first of them
+        double most = 0;
+        for (size_t i = j; i < cuts.of.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(i);
+            if (cuts.of[i] == cuts.of[j]) most = std::max(most, cuts.lower[row] - cuts.rows.row(row).dot(d));
+        }
+        if (cuts.of[j] < 0) prices.kinks += most;
+        if (cuts.of[j] >= 0) prices.violation += std::max(0.0, most - std::max(0.0, program.lower[cuts.of[j]] - values[cuts.of[j]]));
+    }
+    return prices;
+}
+
+}  // namespace
+
 QuadraticSolution solve(const QuadraticProgram& program) {
+    const Cuts& cuts = program.cuts;
     FETTLE_ASSERT(program.hessian.rows() == program.gradient.size() && program.rows.cols() == program.gradient.size(), "sizes agree");
+    FETTLE_ASSERT(cuts.of.empty() || (cuts.rows.cols() == program.gradient.size() && cuts.rows.rows() == cuts.lower.size()), "sizes agree");
+    FETTLE_ASSERT(static_cast<Eigen::Index>(cuts.of.size()) == cuts.lower.size(), "one owner per cut");
+    FETTLE_ASSERT(std::all_of(cuts.of.begin(), cuts.of.end(),
+                              [&](int i) { return i < program.lower.size() && (i < 0 || std::isfinite(program.lower[i])); }),
+                  "a cut is of a kink, or of a row with a lower side");
     if (!is_finite(program) || (program.box_lower.array() == program.box_upper.array()).all()) return {};
     // Mehrotra's steps are few; where they fail, as with a high price on what is hard to meet, those with a line search do not.
     std::optional<QuadraticSolution> solved = solve_once(program, true);
     if (!solved) solved = solve_once(program, false);
     if (!solved) return {};
     QuadraticSolution solution = std::move(*solved);
+    solution.cut_of = cuts.of;
     const VectorX& d = solution.step;
     solution.box_multipliers = program.gradient + program.hessian * d - program.rows.transpose() * solution.multipliers;
-    solution.violation = row_violation(program.rows * d, program.lower, program.upper);
-    const double before = program.penalty * row_violation(VectorX::Zero(program.rows.rows()), program.lower, program.upper);
-    const double after = program.gradient.dot(d) + 0.5 * d.dot(program.hessian * d) + program.penalty * solution.violation;
+    if (solution.cut_multipliers.size() > 0) solution.box_multipliers -= program.cuts.rows.transpose() * solution.cut_multipliers;
+    const Prices start = prices_at(program, VectorX::Zero(d.size())), end = prices_at(program, d);
+    solution.violation = end.violation;
+    solution.kinks = end.kinks;
+    const double before = program.penalty * start.violation + start.kinks;
+    const double after = program.gradient.dot(d) + 0.5 * d.dot(program.hessian * d) + program.penalty * end.violation + end.kinks;
     solution.solved = true;
     solution.decrease = std::max(0.0, before - after);
     return solution;

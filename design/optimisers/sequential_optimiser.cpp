@@ -52,6 +52,7 @@ private:
         Evaluation feasibility = telling_;
         feasibility.gradient.setZero();
         feasibility.residual_jacobian.resize(0, point_.size());
+        feasibility.objective_branches = {};
         const QuadraticSolution least = best_step(evaluator_, point_, feasibility, nullptr, radius_, 1);
         if (!least.solved) return step;
         while (now - step.violation < accepted_share * (now - least.violation) - 1e-9 && penalty_ < most_penalty) {
@@ -81,9 +82,9 @@ private:
         if (share > accepted_share) {
             point_ = trial_point;
             at_ = &trial;
-            rest_.learn(old_point, *old, point_, *at_, step.multipliers);
+            rest_.learn(old_point, *old, point_, *at_, smooth_multipliers(step));
         } else {
-            rest_.learn(trial_point, trial, point_, *at_, step.multipliers);
+            rest_.learn(trial_point, trial, point_, *at_, smooth_multipliers(step));
         }
         if (share > good_share) radius_ = std::min(largest_radius, std::max(radius_, 2 * length));
         if (share < bad_share) radius_ = shrink * std::min(radius_, length);

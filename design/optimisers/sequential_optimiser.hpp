@@ -4,6 +4,7 @@
 /// Evaluations are simulations, minutes of them, and the problem's models are rough on a small scale. So each step is the best that the
 /// values and derivatives at the best point so far can say within a box:
 ///   minimise  g.d + 1/2 d.B d + penalty * violation(c + J d)   over |d_k| <= radius, within the bounds
+/// with a row for each branch of a constraint (one violation for all of them), and for each kink of f what it adds to it
 /// (elastic: from an infeasible point it is the feasibility phase as well), and one evaluation tells whether it was right: the decrease of
 /// f + penalty * violation(c) is compared with the predicted one, the point is taken if it is a tenth of it or more, and the box grows or
 /// shrinks with how well the prediction held (Nocedal and Wright, Numerical Optimization, 2nd ed., algorithm 18.4 with l1 penalty). B is

@@ -141,7 +141,7 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     evaluation.forward_seconds = forward.seconds();
     if (options.gradients) {
         const Stopwatch backward;
-        differentiate(*moved, evaluation);
+        differentiate(*moved, options.branches, evaluation);
         evaluation.backward_seconds = backward.seconds();
     }
     return evaluation;
@@ -218,7 +218,7 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     }
 }
 
-void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const {
+void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const {
     const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
     const auto zero = [&] { return adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())); };
     std::vector<adjoint::Seeds> seeds{zero()};
@@ -241,6 +241,9 @@ void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& eva
             term.quantity->add_deviation_seeds(simulated, static_cast<int>(i), root, seeds.back());
         }
     }
+    const size_t first_branch = seeds.size();
+    std::vector<QuantityBranches> branches = branches_of(design_, simulated, {evaluation.terms, evaluation.constraints}, reach);
+    for (const QuantityBranches& quantity : branches) add_seeds(quantity, simulated, seeds);
     const Result<std::vector<adjoint::ModelGradient>> gradients =
         adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
     if (!gradients) {
@@ -248,17 +251,19 @@ void DesignProblem::differentiate(const MovedScene& moved, DesignEvaluation& eva
         evaluation.reason = first_reason(gradients.errors());
         return;
     }
-    const int n = parameter_count();
-    evaluation.gradient = pull_back(moved, *evaluation.model, (*gradients)[0], n);
-    evaluation.jacobian.resize(static_cast<Eigen::Index>(design_.constraints.size()), n);
-    for (Eigen::Index i = 0; i < evaluation.jacobian.rows(); ++i) {
-        evaluation.jacobian.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i) + 1], n).transpose();
-    }
+    MatrixX rows(static_cast<Eigen::Index>(gradients->size()), parameter_count());
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+    evaluation.gradient = rows.row(0).transpose();
+    evaluation.jacobian = rows.middleRows(1, static_cast<Eigen::Index>(design_.constraints.size()));
     evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
-    evaluation.residual_jacobian.resize(static_cast<Eigen::Index>(gradients->size() - first_residual), n);
-    for (Eigen::Index i = 0; i < evaluation.residual_jacobian.rows(); ++i) {
-        evaluation.residual_jacobian.row(i) =
-            pull_back(moved, *evaluation.model, (*gradients)[first_residual + static_cast<size_t>(i)], n).transpose();
+    evaluation.residual_jacobian = rows.middleRows(static_cast<Eigen::Index>(first_residual), evaluation.residuals.size());
+    take_jacobians(rows.bottomRows(rows.rows() - static_cast<Eigen::Index>(first_branch)), evaluation.jacobian, branches);
+    if (reach == BranchReach::tied) {
+        evaluation.ties = ties_of(design_, branches);
+    } else {
+        evaluation.constraint_branches = constraint_rows(design_, branches);
+        evaluation.objective_branches = objective_rows(design_, branches);
     }
 }
 

@@ -17,6 +17,7 @@
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/optimisers/problem.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
+#include "fettle/design/problem/witness_branches.hpp"
 
 namespace fettle::design::problem {
 
@@ -24,6 +25,7 @@ struct EvaluateOptions {
     bool gradients = true;
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
     std::function<bool()> should_stop;                            ///< optional
+    BranchReach branches = BranchReach::near;  ///< with gradients: `near` fills in the evaluation's branches, `tied` its ties
 };
 
 /// A design, simulated and measured.
@@ -42,6 +44,9 @@ struct DesignEvaluation {
     MatrixX jacobian;                                   ///< d constraint values / d parameters, SI
     VectorX residuals;                                  ///< the objective's deviations (optimisers/problem.hpp)
     MatrixX residual_jacobian;                          ///< of the objective's squared deviations (optimisers/problem.hpp), a row each
+    optimisers::Branches constraint_branches;           ///< of clearances (optimisers/problem.hpp)
+    optimisers::Branches objective_branches;            ///< the same of terms with a negative weight
+    std::vector<Tie> ties;                              ///< if asked for: quantities whose derivative is one of several
     double forward_seconds = 0;                         ///< parts, model, simulation, values
     double backward_seconds = 0;                        ///< seeds, sweep, chain
 };
@@ -88,7 +93,7 @@ private:
     Errors undefined(const optimisers::Rows& relations) const;
     void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
     void measure(DesignEvaluation& evaluation) const;
-    void differentiate(const MovedScene& moved, DesignEvaluation& evaluation) const;
+    void differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const;
 
     description::Design design_;
     std::vector<Vector3> reference_points_;

@@ -73,9 +73,11 @@ optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) 
     e.jacobian = evaluation.jacobian;
     e.residuals = evaluation.residuals;
     e.residual_jacobian = evaluation.residual_jacobian;
+    e.constraint_branches = evaluation.constraint_branches;
+    e.objective_branches = evaluation.objective_branches;
     e.violation = evaluation.violation;
     if (std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
-        std::isfinite(e.violation))
+        e.constraint_branches.jacobian.allFinite() && e.objective_branches.jacobian.allFinite() && std::isfinite(e.violation))
         return e;
     optimisers::Evaluation failed;
     failed.reason = "a value or derivative is not finite";

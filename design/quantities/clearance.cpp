@@ -2,13 +2,18 @@
 #include "fettle/design/quantities/clearance.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
+#include "fettle/adjoint/clearance/distinct_witnesses.hpp"
+#include "fettle/adjoint/clearance/tied_features.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 
 namespace fettle::design::quantities {
 
 using core::clearance::PairClearance;
+using core::clearance::Witness;
+using description::Branch;
 using description::Measurement;
 using description::Simulated;
 
@@ -23,6 +28,8 @@ core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int fi
     part.steps.assign(whole.steps.begin() + first, whole.steps.begin() + last);
     return part;
 }
+
+constexpr double window_accuracy = 1e-3;  // of the value, to which the nearest instants of the windows are found
 
 // Surfaces apart, solids not.
 bool one_lies_inside(const PairClearance& pair) { return pair.solids == core::certificate::Solids::overlap && !pair.intersecting; }
@@ -66,6 +73,36 @@ Measurement Clearance::value(const Simulated& s) const {
 void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
     const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
     adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *measured.clearance, sign * scale, seeds.trajectory_bar, seeds.model_bar);
+}
+
+// Those at most `room` farther apart than the witness is.
+std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairClearance& pair, double room) const {
+    std::vector<Witness> near = adjoint::clearance::tied_features(s.model, s.trajectory, pair.a, pair.b, pair.witness, room);
+    if (range_.motion) {
+        const auto [first, last] = window_steps(static_cast<int>(s.trajectory.steps.size()), range_.window, range_.windows);
+        const std::vector<Witness> later =
+            core::clearance::nearest_by_window(s.model, s.trajectory, {pair.a, pair.b}, {first, last, branch_windows},
+                                               pair.witness.distance + room, std::min(window_accuracy * pair.upper, room));
+        near.insert(near.end(), later.begin(), later.end());
+    }
+    return adjoint::clearance::distinct_witnesses(s.model, s.trajectory, {pair.a, pair.b}, pair.witness, near,
+                                                  (range_.motion ? most_branches : most_branches_at_rest) - 1);
+}
+
+std::vector<Branch> Clearance::branches(const Simulated& s, const Measurement& measured, double limit) const {
+    std::vector<Branch> branches{{measured.value, [&](double scale, description::Seeds& seeds) { add_seeds(s, measured, scale, seeds); }}};
+    const PairClearance& pair = *measured.clearance;
+    if (pair.is_clash() || !(pair.witness.distance > 0) || !(limit >= measured.value)) return branches;
+    const double rounding = pair.upper - pair.witness.distance;  // that the certificate adds to the witness's
+    for (const Witness& witness : other_witnesses(s, pair, limit - measured.value)) {
+        PairClearance other = pair;
+        other.witness = witness;
+        branches.push_back({std::max(measured.value, witness.distance + rounding), [&s, other](double scale, description::Seeds& seeds) {
+                                adjoint::clearance::clearance_adjoint(s.model, s.trajectory, other, scale, seeds.trajectory_bar,
+                                                                      seeds.model_bar);
+                            }});
+    }
+    return branches;
 }
 
 Errors Clearance::check(const core::model::Model& model, int steps) const {

@@ -29,10 +29,19 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    /// Of the features that come as near at the witness's instant, and of the nearest instants in each of `branch_windows` equal parts of
+    /// the range's time, the most distinct ones (adjoint/clearance/distinct_witnesses.hpp), and before them the witness.
+    std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
+                                              double limit) const override;
     bool is_at_rest() const override { return !range_.motion; }
     Errors check(const core::model::Model& model, int steps) const override;
 
+    /// At most so many; each over the motion is one seed more in the sweep, those as assembled cost next to nothing.
+    static constexpr int most_branches = 6, most_branches_at_rest = 12, branch_windows = 8;
+
 private:
+    std::vector<core::clearance::Witness> other_witnesses(const description::Simulated& simulated,
+                                                          const core::clearance::PairClearance& pair, double room) const;
     core::clearance::PairClearance certify(const description::Simulated& simulated) const;
 
     ClearanceRange range_;

@@ -5,10 +5,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -45,6 +47,25 @@ MatrixX to_matrix(const Json& rows, Eigen::Index columns) {
         matrix.row(i) = row.transpose();
     }
     return matrix;
+}
+
+Json branches_json(const optimisers::Branches& branches) {
+    return {{"of", branches.of}, {"values", to_json(branches.values)}, {"jacobian", rows_json(branches.jacobian)}};
+}
+
+// None where the key is not there. Throws if sizes do not agree, or one is of a function that is not there.
+optimisers::Branches to_branches(const Json& entry, const char* key, Eigen::Index columns, int functions) {
+    optimisers::Branches branches;
+    branches.jacobian.resize(0, columns);
+    if (!entry.contains(key)) return branches;
+    branches.of = entry.at(key).at("of").get<std::vector<int>>();
+    branches.values = to_vector(entry.at(key).at("values"));
+    branches.jacobian = to_matrix(entry.at(key).at("jacobian"), columns);
+    const auto count = static_cast<Eigen::Index>(branches.of.size());
+    const bool known = std::all_of(branches.of.begin(), branches.of.end(), [&](int i) { return i >= 0 && i < functions; });
+    if (branches.values.size() != count || branches.jacobian.rows() != count || !known)
+        throw std::runtime_error("sizes do not match the header");
+    return branches;
 }
 
 Json named(const std::vector<std::pair<std::string, double>>& values) {
@@ -88,6 +109,8 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
             json["residuals"] = to_json(e.residuals);
             json["residual_jacobian"] = rows_json(e.residual_jacobian);
         }
+        if (!e.constraint_branches.of.empty()) json["constraint_branches"] = branches_json(e.constraint_branches);
+        if (!e.objective_branches.of.empty()) json["objective_branches"] = branches_json(e.objective_branches);
         json["violation"] = e.violation;
         json["terms"] = named(entry.terms);
         json["certified"] = named(entry.certified);
@@ -120,6 +143,8 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
         e.residuals = to_vector(json.at("residuals"));
         e.residual_jacobian = to_matrix(json.at("residual_jacobian"), n);
     }
+    e.constraint_branches = to_branches(json, "constraint_branches", n, static_cast<int>(header.constraints.size()));
+    e.objective_branches = to_branches(json, "objective_branches", n, std::numeric_limits<int>::max());
     e.violation = json.at("violation").get<double>();
     entry.terms = named_values(json.at("terms"));
     entry.certified = named_values(json.at("certified"));

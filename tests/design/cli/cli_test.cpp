@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fettle/tests/design/pin_in_bore.hpp"
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 
@@ -120,6 +121,19 @@ TEST_CASE("relations between parameters, and bounds within which no part can be 
     const Json valid = run("validate " + folder.design() + " --json").json();
     CHECK(valid.at("relations").at(0) == "flat");
     CHECK(valid.at("warnings").dump().find("bounds: `place` above 27.4") != std::string::npos);
+}
+
+TEST_CASE("gradient tells of witnesses that tie, and of none where none do") {
+    const DesignFolder centred(bore_design("0", "0", least_play), bore_scene);
+    const Json constraint = run("gradient " + centred.design() + " --json").json().at("constraints").at(0);
+    CHECK(constraint.at("ties").at("witnesses").get<int>() >= 3);
+    CHECK(constraint.at("ties").at("gradient_least").at("x").get<double>() < -0.5e-3);  // per mm
+    CHECK(constraint.at("ties").at("gradient_greatest").at("x").get<double>() > 0.5e-3);
+    CHECK(run("gradient " + centred.design()).out.find("witnesses tie, d/d x from -") != std::string::npos);
+    const DesignFolder aside(bore_design("0.1", "0.03", large_play), bore_scene);
+    const Answer without = run("gradient " + aside.design() + " --json");
+    CHECK(without.code == 0);
+    CHECK(without.out.find("ties") == std::string::npos);
 }
 
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {

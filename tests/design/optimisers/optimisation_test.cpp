@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/optimisers/optimisation.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -349,6 +350,118 @@ TEST_CASE("noise above the tolerance makes no optimum; below it, it does no harm
     const OptimiserReport smooth = run(rough_bowl(1e-6), "ipopt", options);
     CHECK(smooth.status == OptimiserStatus::optimal);
     CHECK(smooth.best.objective == Approx(1).margin(2e-4));
+}
+
+namespace {
+
+// Room of a point among planes n_i.x <= 1 all round: the least of 1 - n_i.x.
+struct Room {
+    std::vector<Vector2> normals;
+    explicit Room(int planes) {
+        for (int i = 0; i < planes; ++i) {
+            const double angle = 2 * M_PI * i / planes + 0.1;
+            normals.emplace_back(std::cos(angle), std::sin(angle));
+        }
+    }
+    // As rows, the least first.
+    Branches at(const Vector2& x) const {
+        Branches rows;
+        rows.values.resize(static_cast<Eigen::Index>(normals.size()));
+        rows.jacobian.resize(rows.values.size(), 2);
+        std::vector<Vector2> order = normals;
+        std::stable_sort(order.begin(), order.end(), [&](const Vector2& a, const Vector2& b) { return a.dot(x) > b.dot(x); });
+        for (const Vector2& n : order) {
+            const auto k = static_cast<Eigen::Index>(rows.of.size());
+            rows.of.push_back(0);
+            rows.values[k] = 1 - n.dot(x);
+            rows.jacobian.row(k) = -n.transpose();
+        }
+        return rows;
+    }
+};
+
+Problem among_planes() {
+    Problem p;
+    p.start = Vector2(0.31, -0.47);
+    p.lower = Vector2(-0.9, -0.9);
+    p.upper = Vector2(0.9, 0.9);
+    return p;
+}
+
+// Minimises 3 - room + 0.01 |x|^2: its only minimum is the kink at 0.
+Problem largest_room(bool with_branches) {
+    Problem p = among_planes();
+    p.evaluate = [with_branches, room = Room(16)](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        Branches rows = room.at(x);
+        rows.values *= -1;
+        rows.jacobian *= -1;
+        e.objective = 3 + rows.values[0] + 0.01 * x.squaredNorm();
+        e.gradient = rows.jacobian.row(0).transpose() + 0.02 * x;
+        e.constraints.resize(0);
+        e.jacobian.resize(0, 2);
+        if (with_branches) e.objective_branches = rows;
+        return e;
+    };
+    return p;
+}
+
+// Minimises x0 where the room is at least `least`: at `least` = 1 only 0 is left.
+Problem least_room(bool with_branches, double least) {
+    Problem p = among_planes();
+    p.constraint_lower = VectorX::Constant(1, least);
+    p.constraint_upper = VectorX::Constant(1, infinity);
+    p.evaluate = [with_branches, least, room = Room(16)](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = 2 + x[0];
+        e.gradient = Vector2(1, 0);
+        Branches rows = room.at(x);
+        e.constraints = rows.values.head(1);
+        e.jacobian = rows.jacobian.topRows(1);
+        e.violation = std::max(0.0, least - 1e-6 - rows.values[0]);
+        if (!with_branches) return e;
+        e.constraint_branches.of.assign(rows.of.begin() + 1, rows.of.end());
+        e.constraint_branches.values = rows.values.tail(rows.values.size() - 1);
+        e.constraint_branches.jacobian = rows.jacobian.bottomRows(rows.values.size() - 1);
+        return e;
+    };
+    return p;
+}
+
+OptimiserOptions usual(int evaluations) {
+    OptimiserOptions options;
+    options.max_evaluations = evaluations;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("an objective's kink is found, and called optimal, where its branches are known") {
+    const OptimiserReport report = run(largest_room(true), "ipopt", usual(40));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.point.norm() < 1e-3);
+    CHECK(report.optimality.predicted_gain <= report.optimality.worth);
+    const OptimiserReport blind = run(largest_room(false), "ipopt", usual(40));
+    INFO("blind: " << blind.message << ", " << blind.evaluations << " evaluations, at " << blind.point.transpose());
+    CHECK((blind.status != OptimiserStatus::optimal || blind.evaluations > report.evaluations));
+}
+
+TEST_CASE("branches of a constraint hold a step that one of them would let go") {
+    const OptimiserReport report = run(least_room(true, 0.4), "ipopt", usual(40));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    // The vertex of the planes next to -x: a linear programme, found at once.
+    CHECK(report.best.objective == Approx(2 - 0.6 / std::cos(M_PI / 16) * std::cos(0.1 + M_PI / 16 - M_PI / 8)).margin(3e-3));
+    CHECK(report.optimality.multipliers[0] > 0.9);  // both planes' together
+
+    const OptimiserReport centred = run(least_room(true, 1), "ipopt", usual(40));
+    INFO("centred: " << centred.message << ", " << centred.evaluations << " evaluations, at " << centred.point.transpose());
+    CHECK(centred.status == OptimiserStatus::optimal);
+    CHECK(centred.point.norm() < 1e-4);
+    CHECK(centred.optimality.held[0] == Held::constraints);
 }
 
 TEST_CASE("unknown optimisers are refused by name") {

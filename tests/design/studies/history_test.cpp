@@ -118,6 +118,8 @@ TEST_CASE("a history reads back bit for bit") {
     entry.evaluation.objective = 1.7976931348623157e308;
     entry.evaluation.gradient = Vector2(0.1 + 0.2, std::nextafter(1.0, 2.0));
     entry.evaluation.jacobian << 1.0 / 3, -2.2250738585072014e-308;
+    entry.evaluation.constraint_branches = {{0, 0}, Vector2(1.0 / 7, 1e-300), MatrixX{{0.1, -0.0}, {2.0 / 3, 1e300}}};
+    entry.evaluation.objective_branches = {{3}, VectorX::Constant(1, 0.3 - 0.1), MatrixX{{1.0 / 11, -5e-324}}};
     {
         Result<History> history = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::fresh);
         REQUIRE(history);
@@ -132,6 +134,13 @@ TEST_CASE("a history reads back bit for bit") {
     CHECK(read.evaluation.objective == entry.evaluation.objective);
     CHECK(same_bits(read.evaluation.gradient, entry.evaluation.gradient));
     CHECK(same_bits(read.evaluation.jacobian.transpose(), entry.evaluation.jacobian.transpose()));
+    for (const auto branches : {&optimisers::Evaluation::constraint_branches, &optimisers::Evaluation::objective_branches}) {
+        const optimisers::Branches &back = read.evaluation.*branches, &written = entry.evaluation.*branches;
+        CHECK(back.of == written.of);
+        CHECK(same_bits(back.values, written.values));
+        CHECK(same_bits(back.jacobian.reshaped(), written.jacobian.reshaped()));
+        CHECK((again->replayed()[1].evaluation.*branches).of.empty());
+    }
     CHECK(read.terms == entry.terms);
     CHECK_FALSE(again->replayed()[1].evaluation.usable);
     CHECK(again->replayed()[1].evaluation.reason == "too \"far\"\nout");

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// Of many witnesses of one pair of bodies the few that say most about how its least distance can change.
+///
+/// Each witness is a distance of its own, d_i, and the clearance is the least of them: it changes at most as any of them does,
+///   clearance(p) <= d_i(p),   and to first order   clearance(p + dp) = min_i (d_i + d_i' dp).
+/// Neighbours of one minimum say nearly the same. Two witnesses differ by the wrench with which they act on the bodies' relative position,
+///   w = (n, (m - o) x n / L),   n the unit direction from b to a, m the midpoint, o and L of the smaller body: reference point, radius,
+/// by |w_i - w_j|, and by 1 more if they are of different instants. Chosen is the one that differs most from all chosen so far (farthest
+/// first), or rather the nearest of those like it; until none differs by 0.2.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/clearance/clearance.hpp"
+
+namespace fettle::adjoint::clearance {
+
+/// @param first       The least one; not among the answers.
+/// @param candidates  Of the same pair, with their points; `first` may be one of them.
+/// @param most        At most so many are chosen. O(most * candidates).
+/// @return            In the order of choice: the first few are as spread out as can be.
+std::vector<core::clearance::Witness> distinct_witnesses(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                                         const core::clearance::PairRequest& pair, const core::clearance::Witness& first,
+                                                         const std::vector<core::clearance::Witness>& candidates, int most);
+
+}  // namespace fettle::adjoint::clearance

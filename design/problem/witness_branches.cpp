@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/witness_branches.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace fettle::design::problem {
+
+namespace {
+
+using description::Design;
+
+VectorX ranges_of(const Design& design) {
+    VectorX ranges(static_cast<Eigen::Index>(design.parameters.size()));
+    for (Eigen::Index k = 0; k < ranges.size(); ++k)
+        ranges[k] = design.parameters[static_cast<size_t>(k)].upper - design.parameters[static_cast<size_t>(k)].lower;
+    return ranges;
+}
+
+VectorX values_of(const QuantityBranches& quantity) {
+    VectorX values(static_cast<Eigen::Index>(quantity.branches.size()));
+    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = quantity.branches[static_cast<size_t>(k)].value;
+    return values;
+}
+
+struct Row {
+    int of;
+    double value;
+    VectorX gradient;
+};
+
+optimisers::Branches joined(const std::vector<Row>& rows, Eigen::Index parameters) {
+    optimisers::Branches branches;
+    branches.values.resize(static_cast<Eigen::Index>(rows.size()));
+    branches.jacobian.resize(branches.values.size(), parameters);
+    for (const Row& row : rows) {
+        const auto at = static_cast<Eigen::Index>(branches.of.size());
+        branches.of.push_back(row.of);
+        branches.values[at] = row.value;
+        branches.jacobian.row(at) = row.gradient.transpose();
+    }
+    return branches;
+}
+
+// What a branch may be to be asked for; nothing where none is.
+std::optional<double> limit_of(const Design& design, const QuantityBranches& quantity, double value, BranchReach reach) {
+    const auto index = static_cast<size_t>(quantity.index);
+    if (reach == BranchReach::tied) return value + design.clearance_tolerance;
+    if (quantity.of_objective) return design.objective[index].weight < 0 ? std::optional(2 * value) : std::nullopt;
+    const double limit = 2 * design.constraints[index].bounds.lower;
+    return std::isfinite(limit) && value <= limit ? std::optional(limit) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<QuantityBranches> branches_of(const Design& design, const description::Simulated& simulated, const Measurements& measured,
+                                          BranchReach reach) {
+    std::vector<QuantityBranches> all;
+    const auto add = [&](QuantityBranches quantity, const description::Quantity& of, const description::Measurement& at, size_t least) {
+        const std::optional<double> limit = limit_of(design, quantity, at.value, reach);
+        if (!limit) return;
+        quantity.branches = of.branches(simulated, at, *limit);
+        if (quantity.branches.size() >= least) all.push_back(std::move(quantity));
+    };
+    for (size_t k = 0; k < design.objective.size(); ++k)
+        add({true, static_cast<int>(k), {}, {}}, *design.objective[k].quantity, measured.terms[k], 1);
+    for (size_t i = 0; i < design.constraints.size(); ++i)
+        add({false, static_cast<int>(i), {}, {}}, *design.constraints[i].quantity, measured.constraints[i], 2);
+    return all;
+}
+
+void add_seeds(const QuantityBranches& quantity, const description::Simulated& simulated, std::vector<adjoint::Seeds>& seeds) {
+    for (size_t k = quantity.of_objective ? 0 : 1; k < quantity.branches.size(); ++k) {
+        seeds.push_back(adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())));
+        quantity.branches[k].add_seeds(1, seeds.back());
+    }
+}
+
+void take_jacobians(const MatrixX& rows, const MatrixX& constraint_jacobian, std::vector<QuantityBranches>& all) {
+    Eigen::Index next = 0;
+    for (QuantityBranches& quantity : all) {
+        const auto count = static_cast<Eigen::Index>(quantity.branches.size());
+        const Eigen::Index own = quantity.of_objective ? count : count - 1;
+        quantity.jacobian.resize(count, rows.cols());
+        if (!quantity.of_objective) quantity.jacobian.row(0) = constraint_jacobian.row(quantity.index);
+        quantity.jacobian.bottomRows(own) = rows.middleRows(next, own);
+        next += own;
+    }
+}
+
+std::vector<int> telling_branches(const VectorX& values, const MatrixX& jacobian, const VectorX& ranges) {
+    const double negligible = 1e-6 * jacobian.row(0).cwiseAbs().dot(ranges.transpose());
+    const auto nothing_beside = [&](Eigen::Index j, Eigen::Index k) {
+        const double reach = (jacobian.row(j) - jacobian.row(k)).cwiseAbs().dot(ranges.transpose());
+        return reach <= values[j] - values[k] + negligible;
+    };
+    std::vector<int> kept{0};
+    for (Eigen::Index j = 1; j < values.size(); ++j) {
+        bool telling = true;
+        for (const int k : kept) telling = telling && !nothing_beside(j, k);
+        if (telling) kept.push_back(static_cast<int>(j));
+    }
+    kept.erase(kept.begin());
+    return kept;
+}
+
+optimisers::Branches constraint_rows(const Design& design, const std::vector<QuantityBranches>& all) {
+    const VectorX ranges = ranges_of(design);
+    std::vector<Row> rows;
+    for (const QuantityBranches& quantity : all) {
+        if (quantity.of_objective) continue;
+        const VectorX values = values_of(quantity);
+        for (const int j : telling_branches(values, quantity.jacobian, ranges))
+            rows.push_back({quantity.index, values[j], quantity.jacobian.row(j).transpose()});
+    }
+    return joined(rows, ranges.size());
+}
+
+optimisers::Branches objective_rows(const Design& design, const std::vector<QuantityBranches>& all) {
+    const VectorX ranges = ranges_of(design);
+    std::vector<Row> rows;
+    for (const QuantityBranches& quantity : all) {
+        if (!quantity.of_objective) continue;
+        const description::ObjectiveTerm& term = design.objective[static_cast<size_t>(quantity.index)];
+        const double scale = term.weight / term.unit;
+        const VectorX values = values_of(quantity);
+        std::vector<int> kept = telling_branches(values, quantity.jacobian, ranges);
+        kept.insert(kept.begin(), 0);
+        for (const int j : kept) rows.push_back({quantity.index, scale * values[j], scale * quantity.jacobian.row(j).transpose()});
+    }
+    return joined(rows, ranges.size());
+}
+
+std::vector<Tie> ties_of(const Design& design, const std::vector<QuantityBranches>& all) {
+    const VectorX ranges = ranges_of(design);
+    std::vector<Tie> ties;
+    for (const QuantityBranches& quantity : all) {
+        const VectorX same = VectorX::Constant(static_cast<Eigen::Index>(quantity.branches.size()), quantity.branches.front().value);
+        const std::vector<int> others = telling_branches(same, quantity.jacobian, ranges);
+        if (others.empty()) continue;
+        Tie tie{quantity.of_objective, quantity.index, 1 + static_cast<int>(others.size()), quantity.jacobian.row(0).transpose(), {}};
+        tie.greatest = tie.least;
+        for (const int j : others) {
+            tie.least = tie.least.cwiseMin(quantity.jacobian.row(j).transpose());
+            tie.greatest = tie.greatest.cwiseMax(quantity.jacobian.row(j).transpose());
+        }
+        ties.push_back(std::move(tie));
+    }
+    return ties;
+}
+
+}  // namespace fettle::design::problem
