@@ -29,6 +29,13 @@ bool all_finite(const Branches& b) { return b.values.allFinite() && b.jacobian.a
 // A NaN in an answer is a failure like any other: the optimisers must never compute with it.
 Evaluation checked(Evaluation e, int variables, int constraints) {
     if (!e.usable) return e;
+    FETTLE_ASSERT(e.constraints.size() == constraints, "an evaluation has the problem's constraints");
+    if (!e.has_derivatives) {
+        if (std::isfinite(e.objective) && e.constraints.allFinite() && std::isfinite(e.violation)) return e;
+        e.usable = false;
+        e.reason = "the evaluation gave a number that is not finite";
+        return e;
+    }
     FETTLE_ASSERT(e.gradient.size() == variables && e.constraints.size() == constraints && e.jacobian.rows() == constraints &&
                       e.jacobian.cols() == variables && e.residual_jacobian.rows() == e.residuals.size() &&
                       (e.residuals.size() == 0 || e.residual_jacobian.cols() == variables),
@@ -73,7 +80,7 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
     scaled_start_ = (problem.start - problem.lower).cwiseQuotient(range_).cwiseMax(0).cwiseMin(1);
     constraint_scale_ = VectorX::Ones(constraints());
     try {
-        start_evaluation_ = evaluate_new(scaled_start_).evaluation;
+        start_evaluation_ = evaluate_new(scaled_start_, Wanted::derivatives).evaluation;
     } catch (const StopOptimisation&) {
         start_evaluation_.reason = stop_reason_ == StopReason::interrupted ? "interrupted" : "no evaluation allowed";
     }
@@ -82,7 +89,7 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
 }
 
 std::optional<Evaluation> Evaluator::scaled_reference() const {
-    if (!options_.reference || !options_.reference->usable) return std::nullopt;
+    if (!options_.reference || !tells(*options_.reference)) return std::nullopt;
     Record record;
     record.evaluation = *options_.reference;
     record.relations = records_.front().relations;  // of no model: not asked for
@@ -121,6 +128,10 @@ Evaluation Evaluator::scaled(const Record& record) const {
     Evaluation s = e;
     if (!e.usable) return s;
     s.objective = e.objective * objective_scale_;
+    if (!e.has_derivatives) {
+        s.constraints = joined(e.constraints, record.relations.values).cwiseProduct(constraint_scale_);
+        return s;
+    }
     s.gradient = e.gradient.cwiseProduct(range_) * objective_scale_;
     s.constraints = joined(e.constraints, record.relations.values).cwiseProduct(constraint_scale_);
     s.jacobian = constraint_scale_.asDiagonal() * stacked(e.jacobian, record.relations.jacobian) * range_.asDiagonal();
@@ -138,23 +149,29 @@ Evaluation Evaluator::scaled(const Record& record) const {
     return s;
 }
 
-const Evaluation& Evaluator::at(const VectorX& point) {
+const Evaluator::Record& Evaluator::asked(const VectorX& point, Wanted wanted) {
     const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
     const auto found = index_.find(bits_of(clamped));
-    if (found != index_.end()) return records_[static_cast<size_t>(found->second)].scaled_evaluation;
-    return evaluate_new(clamped).scaled_evaluation;
+    if (found == index_.end()) return evaluate_new(clamped, wanted);
+    const Record& known = records_[static_cast<size_t>(found->second)];
+    if (wanted == Wanted::values || !known.evaluation.usable || known.evaluation.has_derivatives) return known;
+    const bool was_best = best_index_ == found->second;
+    const Record& complete = evaluate_new(clamped, wanted);
+    if (was_best && complete.evaluation.usable) best_index_ = evaluations() - 1;
+    return complete;
 }
 
-const Evaluation& Evaluator::look(const VectorX& point) {
-    const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
-    const auto found = index_.find(bits_of(clamped));
-    if (found != index_.end()) return records_[static_cast<size_t>(found->second)].scaled_evaluation;
-    return evaluate_new(clamped, false).scaled_evaluation;
-}
+const Evaluation& Evaluator::at(const VectorX& point) { return asked(point, Wanted::derivatives).scaled_evaluation; }
 
-void Evaluator::evaluate(Record& record) const {
+const Evaluation& Evaluator::values_at(const VectorX& point) { return asked(point, Wanted::values).scaled_evaluation; }
+
+const Evaluation& Evaluator::look(const VectorX& point) { return asked(point, Wanted::derivatives_of_no_candidate).scaled_evaluation; }
+
+void Evaluator::evaluate(Record& record, Wanted wanted) const {
     const auto relations = static_cast<int>(problem_.relation_lower.size());
-    record.evaluation = checked(problem_.evaluate(record.point), variables(), constraints() - relations);
+    const bool values = wanted == Wanted::values && problem_.values;
+    record.evaluation =
+        checked(values ? problem_.values(record.point) : problem_.evaluate(record.point), variables(), constraints() - relations);
     record.relations.jacobian.resize(0, variables());
     if (relations == 0) return;
     record.relations = problem_.relations(record.point);
@@ -166,14 +183,14 @@ void Evaluator::evaluate(Record& record) const {
     record.evaluation.reason = "a relation between the parameters is not a finite number";
 }
 
-const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, bool may_be_best) {
+const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, Wanted wanted) {
     if (evaluations() >= options_.max_evaluations) stop(StopReason::budget);
     if (options_.should_stop && options_.should_stop()) stop(StopReason::interrupted);
     Record record;
     record.scaled_point = scaled_point;
     record.point = unscaled(scaled_point);
     try {
-        evaluate(record);
+        evaluate(record, wanted);
     } catch (const Interrupted&) {
         stop(StopReason::interrupted);
     } catch (...) {
@@ -185,7 +202,7 @@ const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, bo
     records_.push_back(std::move(record));
     index_[bits_of(scaled_point)] = evaluations() - 1;
     const int best_before = best_index_;
-    if (may_be_best) keep_best();
+    if (wanted != Wanted::derivatives_of_no_candidate) keep_best();
     if (options_.on_evaluation) {
         const Record& last = records_.back();
         options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);

@@ -34,6 +34,9 @@ struct StopOptimisation : std::exception {
 
 enum class StopReason { none, budget, interrupted, exception };
 
+/// Whether an evaluation tells of the functions near it: values and derivatives.
+inline bool tells(const Evaluation& e) { return e.usable && e.has_derivatives; }
+
 class Evaluator {
 public:
     /// Evaluates the start (which may fail: `start_evaluation().usable`) and fixes the scaling from it.
@@ -49,7 +52,11 @@ public:
     /// Throws StopOptimisation when the run is over.
     const Evaluation& at(const VectorX& scaled);
 
-    /// The same, but the point does not become the best one: to find out how rough the problem is.
+    /// The same, of which the values alone are needed: without derivatives where the problem can do that for less.
+    /// Asked for them later, at() evaluates the point again.
+    const Evaluation& values_at(const VectorX& scaled);
+
+    /// The same as at(), but the point does not become the best one: to find out how rough the problem is.
     const Evaluation& look(const VectorX& scaled);
 
     /// Why a point cannot be evaluated, without the cost of an evaluation; empty: nothing known against it.
@@ -89,10 +96,12 @@ private:
         Evaluation evaluation, scaled_evaluation;
         Rows relations;
     };
-    void evaluate(Record& record) const;
+    enum class Wanted { derivatives, values, derivatives_of_no_candidate };
+    const Record& asked(const VectorX& scaled, Wanted wanted);
+    void evaluate(Record& record, Wanted wanted) const;
     Evaluation scaled(const Record& record) const;
     void fix_scaling();
-    const Record& evaluate_new(const VectorX& scaled_point, bool may_be_best = true);
+    const Record& evaluate_new(const VectorX& scaled_point, Wanted wanted);
     void keep_best();
     void stop(StopReason reason);
 

@@ -69,7 +69,7 @@ std::vector<int> nearest(const Evaluator& evaluator, const VectorX& point) {
     std::vector<std::pair<double, int>> order;
     for (int k = 0; k < evaluator.evaluations(); ++k) {
         const double distance = (evaluator.scaled_point(k) - point).norm();
-        if (distance > 0 && distance < within && evaluator.scaled_evaluation(k).usable) order.emplace_back(distance, k);
+        if (distance > 0 && distance < within && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), most));

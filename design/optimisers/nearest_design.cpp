@@ -10,12 +10,18 @@ namespace {
 using Evaluate = std::function<Evaluation(const VectorX&)>;
 
 Evaluate with_change_as_objective(Evaluate evaluate, const VectorX& origin, const VectorX& range) {
+    if (!evaluate) return evaluate;
     return [evaluate = std::move(evaluate), origin, range](const VectorX& point) {
         Evaluation e = evaluate(point);
         if (!e.usable) return e;
         e.residuals = (point - origin).cwiseQuotient(range);
-        e.residual_jacobian = range.cwiseInverse().asDiagonal();
         e.objective = e.residuals.squaredNorm();
+        e.objective_branches = {};  // of the objective that this one replaces
+        if (!e.has_derivatives) {
+            e.residuals = {};
+            return e;
+        }
+        e.residual_jacobian = range.cwiseInverse().asDiagonal();
         e.gradient = 2 * e.residuals.cwiseQuotient(range);
         return e;
     };
@@ -31,7 +37,11 @@ Problem nearest_to(const VectorX& origin, Problem problem) {
     const VectorX range = problem.upper - problem.lower;
     problem.objective_floor = 0;
     problem.evaluate = with_change_as_objective(std::move(problem.evaluate), origin, range);
-    for (SmootherModel& model : problem.smoother) model.evaluate = with_change_as_objective(std::move(model.evaluate), origin, range);
+    problem.values = with_change_as_objective(std::move(problem.values), origin, range);
+    for (SmootherModel& model : problem.smoother) {
+        model.evaluate = with_change_as_objective(std::move(model.evaluate), origin, range);
+        model.values = with_change_as_objective(std::move(model.values), origin, range);
+    }
     return problem;
 }
 

@@ -28,6 +28,7 @@ struct Run {
     Evaluator& evaluator;
     nlopt_opt opt;
     bool stop_at_failure;
+    bool derivative_free;
     std::vector<Side> inequalities, equalities;
     bool over = false;  ///< StopOptimisation was thrown
     bool failed = false;
@@ -36,7 +37,8 @@ struct Run {
     const Evaluation* evaluate(unsigned n, const double* x) {
         if (over || (failed && stop_at_failure)) return nullptr;
         try {
-            const Evaluation& e = evaluator.at(Eigen::Map<const VectorX>(x, n));
+            const VectorX point = Eigen::Map<const VectorX>(x, n);
+            const Evaluation& e = derivative_free ? evaluator.values_at(point) : evaluator.at(point);
             if (e.usable) return &e;
             failed = true;
             failed_point = Eigen::Map<const VectorX>(x, n);
@@ -113,7 +115,7 @@ NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const Optim
     const auto n = static_cast<unsigned>(evaluator.variables());
     const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(native(algorithm), n), nlopt_destroy);
     const bool recovers = algorithm == NloptAlgorithm::mma || algorithm == NloptAlgorithm::ccsaq;
-    Run run{evaluator, opt.get(), !recovers, {}, {}, false, false, {}};
+    Run run{evaluator, opt.get(), !recovers, algorithm == NloptAlgorithm::cobyla, {}, {}, false, false, {}};
     list_sides(run, algorithm == NloptAlgorithm::slsqp);
     nlopt_set_min_objective(opt.get(), objective, &run);
     const std::vector<double> tolerances(std::max(run.inequalities.size(), run.equalities.size()) + 1, constraint_tolerance);

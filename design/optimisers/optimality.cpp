@@ -26,7 +26,7 @@ RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, co
     std::vector<std::pair<double, int>> order;
     for (int k = 0; k < evaluator.evaluations(); ++k) {
         const double distance = (evaluator.scaled_point(k) - best).norm();
-        if (distance > 0 && distance < near && evaluator.scaled_evaluation(k).usable) order.emplace_back(distance, k);
+        if (distance > 0 && distance < near && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), static_cast<size_t>(2 * best.size() + 2)));

@@ -93,7 +93,9 @@ private:
     Problem begun_at(const VectorX& point, const SmootherModel* model) const {
         Problem problem = problem_;
         problem.start = point.cwiseMax(problem_.lower).cwiseMin(problem_.upper);
-        if (model != nullptr) problem.evaluate = model->evaluate;
+        if (model == nullptr) return problem;
+        problem.evaluate = model->evaluate;
+        problem.values = model->values;
         return problem;
     }
 
@@ -201,8 +203,10 @@ private:
         report_.iterations += native.iterations;
         evaluator.allow(spare);
         const StopReason ended = evaluator.stop_reason();
-        if (evaluator.best_evaluation().violation <= 0 && (ended == StopReason::none || ended == StopReason::budget))
-            judge_and_go_on(evaluator, options);
+        if (ended == StopReason::none || ended == StopReason::budget) {
+            const bool complete = complete_best(evaluator);
+            if (complete && evaluator.best_evaluation().violation <= 0) judge_and_go_on(evaluator, options);
+        }
         evaluator.rethrow();
         report_.point = evaluator.best_point();
         report_.best = evaluator.best_evaluation();
@@ -214,6 +218,15 @@ private:
         report_.stages.push_back(stage);
         count(evaluator);
         conclude(native.message);
+    }
+
+    // The verdict needs derivatives, and so does what tells what limits a design. A derivative-free optimiser has had none.
+    static bool complete_best(Evaluator& evaluator) {
+        try {
+            return evaluator.at(evaluator.best_scaled_point()).usable;
+        } catch (const StopOptimisation&) {
+            return false;
+        }
     }
 
     // A probe that gains is where the optimiser goes on.

@@ -41,6 +41,8 @@ struct Evaluation {
     /// Of terms of f that are the greatest of several (a clearance to be made large), by their numbers: all branches, first the one whose
     /// value and gradient are part of f and `gradient`.
     Branches objective_branches;
+    /// false: values alone were asked for (Problem::values); gradient, jacobian, residuals and branches are empty.
+    bool has_derivatives = true;
     double violation = 0;  ///< largest violation of the true requirements, relations too, in their own scale (constraint.hpp); 0: feasible
 };
 
@@ -54,6 +56,7 @@ struct Rows {
 struct SmootherModel {
     std::string name;  ///< for people
     std::function<Evaluation(const VectorX&)> evaluate;
+    std::function<Evaluation(const VectorX&)> values = {};  ///< as Problem::values
 };
 
 struct Problem {
@@ -61,6 +64,8 @@ struct Problem {
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
     std::function<Evaluation(const VectorX&)> evaluate;
+    /// Optional: the same numbers without derivatives, for less. An optimiser that uses none is not charged for them.
+    std::function<Evaluation(const VectorX&)> values;
     double objective_floor =
         -std::numeric_limits<double>::infinity();  ///< f is known not to be below it: a start that attains it is the end
     std::vector<SmootherModel> smoother;           ///< the smoothest first; empty: none

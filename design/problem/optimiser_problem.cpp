@@ -23,6 +23,11 @@ std::function<VectorX(const VectorX&)> prepared(const DesignProblem& design_prob
 
 }  // namespace
 
+EvaluateOptions without_gradients(EvaluateOptions options) {
+    options.gradients = false;
+    return options;
+}
+
 optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const EvaluateOptions& options) {
     const description::Design& design = design_problem.design();
     const auto n = static_cast<Eigen::Index>(design.parameters.size()), m = static_cast<Eigen::Index>(design.constraints.size());
@@ -56,6 +61,9 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
     if (k > 0) problem.relations = [&design_problem](const VectorX& p) { return design_problem.relations(p); };
     problem.refusal = [&design_problem](const VectorX& p) { return design_problem.refusal(p); };
     problem.evaluate = [&design_problem, options](const VectorX& p) { return optimiser_evaluation(design_problem.evaluate(p, options)); };
+    problem.values = [&design_problem, values = without_gradients(options)](const VectorX& p) {
+        return optimiser_evaluation(design_problem.evaluate(p, values));
+    };
     return problem;
 }
 
@@ -66,16 +74,19 @@ optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) 
     e.reason = evaluation.reason;
     if (!e.usable) return e;
     e.objective = evaluation.objective;
-    e.gradient = evaluation.gradient;
+    e.has_derivatives = evaluation.gradient.size() > 0;
     e.constraints.resize(static_cast<Eigen::Index>(evaluation.constraints.size()));
     for (size_t i = 0; i < evaluation.constraints.size(); ++i)
         e.constraints[static_cast<Eigen::Index>(i)] = evaluation.constraints[i].value;
-    e.jacobian = evaluation.jacobian;
-    e.residuals = evaluation.residuals;
-    e.residual_jacobian = evaluation.residual_jacobian;
-    e.constraint_branches = evaluation.constraint_branches;
-    e.objective_branches = evaluation.objective_branches;
     e.violation = evaluation.violation;
+    if (e.has_derivatives) {
+        e.gradient = evaluation.gradient;
+        e.jacobian = evaluation.jacobian;
+        e.residuals = evaluation.residuals;
+        e.residual_jacobian = evaluation.residual_jacobian;
+        e.constraint_branches = evaluation.constraint_branches;
+        e.objective_branches = evaluation.objective_branches;
+    }
     if (std::isfinite(e.objective) && e.gradient.allFinite() && e.constraints.allFinite() && e.jacobian.allFinite() &&
         e.constraint_branches.jacobian.allFinite() && e.objective_branches.jacobian.allFinite() && std::isfinite(e.violation))
         return e;

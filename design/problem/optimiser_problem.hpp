@@ -11,6 +11,9 @@ namespace fettle::design::problem {
 /// problem.
 optimisers::Problem optimiser_problem(const DesignProblem& problem, const EvaluateOptions& options = {});
 
+/// The same options, values alone.
+EvaluateOptions without_gradients(EvaluateOptions options);
+
 /// An evaluation as optimisers take it; a number that is not finite makes it a failure. Throws optimisers::Interrupted if it was.
 optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation);
 

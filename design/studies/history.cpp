@@ -102,9 +102,11 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     json["parameters"] = parameters;
     if (e.usable) {
         json["objective"] = e.objective;
-        json["gradient"] = to_json(e.gradient);
         json["constraints"] = to_json(e.constraints);
-        json["jacobian"] = rows_json(e.jacobian);
+        if (e.has_derivatives) {
+            json["gradient"] = to_json(e.gradient);
+            json["jacobian"] = rows_json(e.jacobian);
+        }
         if (e.residuals.size() > 0) {
             json["residuals"] = to_json(e.residuals);
             json["residual_jacobian"] = rows_json(e.residual_jacobian);
@@ -136,9 +138,12 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
         return entry;
     }
     e.objective = json.at("objective").get<double>();
-    e.gradient = to_vector(json.at("gradient"));
+    e.has_derivatives = json.contains("gradient");
     e.constraints = to_vector(json.at("constraints"));
-    e.jacobian = to_matrix(json.at("jacobian"), n);
+    if (e.has_derivatives) {
+        e.gradient = to_vector(json.at("gradient"));
+        e.jacobian = to_matrix(json.at("jacobian"), n);
+    }
     if (json.contains("residuals")) {
         e.residuals = to_vector(json.at("residuals"));
         e.residual_jacobian = to_matrix(json.at("residual_jacobian"), n);
@@ -149,7 +154,7 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     entry.terms = named_values(json.at("terms"));
     entry.certified = named_values(json.at("certified"));
     const auto m = static_cast<Eigen::Index>(header.constraints.size());
-    if (e.gradient.size() != n || e.constraints.size() != m || e.jacobian.rows() != m)
+    if (e.constraints.size() != m || (e.has_derivatives && (e.gradient.size() != n || e.jacobian.rows() != m)))
         throw std::runtime_error("sizes do not match the header");
     return entry;
 }
@@ -283,10 +288,13 @@ History& History::operator=(History&& other) noexcept {
 }
 
 std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate,
-                                                               const std::string& model) {
+                                                               const std::string& model, Recorded wanted) {
+    const bool derivatives = wanted == Recorded::with_derivatives;
     std::map<std::string, optimisers::Evaluation> known;
-    for (const HistoryEntry& entry : history.replayed())
-        if (entry.model == model) known[bits_of(entry.point)] = entry.evaluation;
+    for (const HistoryEntry& entry : history.replayed()) {
+        const optimisers::Evaluation& e = entry.evaluation;
+        if (entry.model == model && (!e.usable || e.has_derivatives == derivatives)) known[bits_of(entry.point)] = e;
+    }
     return [&history, model, known = std::move(known), evaluate = std::move(evaluate)](const VectorX& point) {
         const auto found = known.find(bits_of(point));
         if (found != known.end()) return found->second;

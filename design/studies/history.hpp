@@ -4,10 +4,10 @@
 /// from here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
 ///   header      fettle_history 1, design (hash of all that an evaluation depends on), program, parameters, constraints (names)
 ///   evaluation  evaluation (1, 2, ...), model (a smoother one's name; not there: the file's own), usable, reason, parameters (by name,
-///               SI), objective, gradient, constraints, jacobian (rows), residuals and residual_jacobian (rows; where the objective has
-///               squared deviations), constraint_branches and objective_branches (of, values, jacobian by rows; where there are any:
-///               optimisers/problem.hpp), violation, terms (by name), certified (lower bounds by constraint), forward_seconds,
-///               backward_seconds
+///               SI), objective, constraints, gradient and jacobian (rows; not of values alone), residuals and residual_jacobian (rows;
+///               where the objective has squared deviations), constraint_branches and objective_branches (of, values, jacobian by rows;
+///               where there are any: optimisers/problem.hpp), violation, terms (by name), certified (lower bounds by constraint),
+///               forward_seconds, backward_seconds
 #pragma once
 
 #include <functional>
@@ -70,9 +70,11 @@ private:
     std::string kept_as_;
 };
 
-/// Wraps an evaluation: a point that the history has of this model (by the bits of its coordinates) is answered from it, others are
-/// computed by `evaluate` and appended. The history must outlive the function.
+enum class Recorded { with_derivatives, values };
+
+/// Wraps an evaluation: a point that the history has of this model (by the bits of its coordinates, with derivatives or without as
+/// `wanted`) is answered from it, others are computed by `evaluate` and appended. The history must outlive the function.
 std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate,
-                                                               const std::string& model = {});
+                                                               const std::string& model = {}, Recorded wanted = Recorded::with_derivatives);
 
 }  // namespace fettle::design::studies

@@ -31,13 +31,13 @@ std::string evaluation_line(int number, const optimisers::Evaluation& e, bool be
 
 constexpr double repair_tolerance = 1e-2;  // of the squared change: half a percent of the change
 
-using Compute = std::function<HistoryEntry(const problem::DesignProblem&, const VectorX&)>;
+using Compute = std::function<HistoryEntry(const problem::DesignProblem&, const VectorX&, Recorded)>;
 
 // Of one model: from the history, if there is one that has it, else computed. `model` and `compute` must outlive it.
 std::function<optimisers::Evaluation(const VectorX&)> answered(const problem::DesignProblem& model, const std::string& name,
-                                                               const Compute& compute, History* history) {
-    const auto entry = [&model, &compute](const VectorX& p) { return compute(model, p); };
-    if (history != nullptr) return recorded(*history, entry, name);
+                                                               const Compute& compute, History* history, Recorded wanted) {
+    const auto entry = [&model, &compute, wanted](const VectorX& p) { return compute(model, p, wanted); };
+    if (history != nullptr) return recorded(*history, entry, name, wanted);
     return [entry](const VectorX& p) { return entry(p).evaluation; };
 }
 
@@ -67,11 +67,13 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     optimisers::Problem seen = problem::optimiser_problem(problem, evaluate);
     seen.start = start_of_seed(design, options.seed);
     int computed = 0;
-    const Compute compute = [&](const problem::DesignProblem& model, const VectorX& p) {
+    const problem::EvaluateOptions values = problem::without_gradients(evaluate);
+    const Compute compute = [&](const problem::DesignProblem& model, const VectorX& p, Recorded wanted) {
         ++computed;
-        return history_entry(design, p, model.evaluate(p, evaluate));
+        return history_entry(design, p, model.evaluate(p, wanted == Recorded::values ? values : evaluate));
     };
-    seen.evaluate = answered(problem, {}, compute, options.history);
+    seen.evaluate = answered(problem, {}, compute, options.history, Recorded::with_derivatives);
+    seen.values = answered(problem, {}, compute, options.history, Recorded::values);
     OptimiseOutcome outcome;
     outcome.start = seen.start;
     seen.evaluate = [&outcome, evaluate_own = seen.evaluate](const VectorX& p) {
@@ -82,7 +84,8 @@ Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, c
     const std::vector<problem::SmootherDesign> smoother =
         problem::smoother_models(problem, seen.prepared ? seen.prepared(seen.start) : seen.start);
     for (const problem::SmootherDesign& model : smoother) {
-        seen.smoother.push_back({model.name, answered(model.problem, model.name, compute, options.history)});
+        seen.smoother.push_back({model.name, answered(model.problem, model.name, compute, options.history, Recorded::with_derivatives),
+                                 answered(model.problem, model.name, compute, options.history, Recorded::values)});
         if (options.narrate) options.narrate("to begin with: " + model.name);
     }
     optimisers::OptimiserOptions settings;

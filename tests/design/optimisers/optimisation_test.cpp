@@ -471,4 +471,42 @@ TEST_CASE("unknown optimisers are refused by name") {
     CHECK(made.errors()[0].message.find("slsqp") != std::string::npos);
 }
 
+TEST_CASE("an optimiser without derivatives is not charged for any, but for the scales at its start and the verdict at its end") {
+    Problem problem = hock_schittkowski_71(false);
+    int with = 0, without = 0;
+    problem.values = [&, evaluate = problem.evaluate](const VectorX& x) {
+        ++without;
+        Evaluation e = evaluate(x);
+        e.has_derivatives = false;
+        e.gradient = {};
+        e.jacobian = {};
+        return e;
+    };
+    problem.evaluate = [&, evaluate = problem.evaluate](const VectorX& x) {
+        ++with;
+        return evaluate(x);
+    };
+    OptimiserOptions options;
+    options.max_evaluations = 400;
+    const OptimiserReport report = optimise(problem, **make_optimiser("cobyla"), options);
+    CHECK(report.feasible);
+    CHECK(report.best.objective == Approx(17.014).epsilon(1e-2));
+    CHECK(report.evaluations == with + without);
+    CHECK(without > 3 * with);
+    CHECK(report.best.has_derivatives);  // what the verdict is of
+    CHECK(report.optimality.step.size() == 4);
+
+    // Values asked for again are not computed again; derivatives asked for later are.
+    with = without = 0;
+    Evaluator evaluator(problem, {20, {}, {}, {}});
+    const VectorX point = VectorX::Constant(4, 0.4);
+    CHECK_FALSE(evaluator.values_at(point).has_derivatives);
+    CHECK_FALSE(evaluator.values_at(point).has_derivatives);
+    CHECK(without == 1);
+    CHECK(evaluator.at(point).has_derivatives);
+    CHECK(evaluator.values_at(point).has_derivatives);  // better than what was asked for
+    CHECK(with == 2);                                   // the start's, and this
+    CHECK(evaluator.evaluations() == 3);
+}
+
 }  // namespace fettle::design::optimisers::optimisation_test
