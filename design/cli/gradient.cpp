@@ -245,7 +245,7 @@ CheckReport run_check(const DesignProblem& problem, const VectorX& values, const
 }
 
 int run_gradient(const GradientArguments& options, const CommonOptions& common, Console& console) {
-    Result<reading::DesignFile> read = reading::read_design(options.path, {common.mesh_dirs});
+    Result<reading::DesignFile> read = open_design(options.path, common);
     if (!read) return console.input_errors(read.errors());
     tell_warnings(console, read->warnings);
     const Result<DesignProblem> problem = DesignProblem::create(std::move(read->design));

@@ -63,16 +63,13 @@ Errors strict_faults(const std::string& scene_path, const CommonOptions& common)
 }
 
 Result<LoadedModel> load_design(const std::string& path, const CommonOptions& common) {
-    Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+    Result<reading::DesignFile> file = open_design(path, common);
     if (!file) return file.errors();
     LoadedModel loaded;
     loaded.kind = FileKind::design;
     loaded.scene_path = file->scene_path;
     loaded.steps = file->design.steps;
     loaded.warnings = file->warnings;
-    if (common.strict) {
-        if (Errors errors = strict_faults(loaded.scene_path, common); !errors.empty()) return errors;
-    }
     const VectorX values = description::values_of(file->design.parameters);
     Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
     if (!problem) return problem.errors();
@@ -117,6 +114,15 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
     const auto& more = loaded->model.warnings;
     loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
     return loaded;
+}
+
+Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common) {
+    if (is_foreign(path)) return foreign_error(path);
+    Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+    if (!file || !common.strict) return file;
+    Errors errors = strict_faults(file->scene_path, common);
+    if (!errors.empty()) return errors;
+    return file;
 }
 
 std::string certificate_trajectory(const std::string& certificate) {

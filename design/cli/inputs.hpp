@@ -10,6 +10,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::cli {
 
@@ -26,6 +27,10 @@ struct LoadedModel {
     std::vector<std::string> warnings;                      ///< of the files, the meshes and the start
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
+/// A design, for commands that take nothing else. Errors: a file that is something else by its name and first character is told with what
+/// is read instead; with --strict also faults of its meshes.
+Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common);
+
 /// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
 /// what is read instead.
 /// @param check_start  false: a scene whose bodies intersect at the start is taken all the same.

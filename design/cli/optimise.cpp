@@ -128,7 +128,7 @@ int run_all(Run run, const CommonOptions& common) {
 }
 
 int run_optimise(const OptimiseArguments& options, const CommonOptions& common, Console& console) {
-    const Result<reading::DesignFile> file = reading::read_design(options.path, {common.mesh_dirs});
+    const Result<reading::DesignFile> file = open_design(options.path, common);
     if (!file) return console.input_errors(file.errors());
     tell_warnings(console, file->warnings);
     const Result<DesignProblem> problem = DesignProblem::create(file->design);

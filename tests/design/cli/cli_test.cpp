@@ -136,6 +136,21 @@ TEST_CASE("gradient tells of witnesses that tie, and of none where none do") {
     CHECK(without.out.find("ties") == std::string::npos);
 }
 
+TEST_CASE("a file of another program, given for a design, is told with what is read") {
+    const fettle::tests::support::TemporaryFolder folder;
+    std::ofstream(folder.file("rod.scad")) << "cube(1);\n";
+    std::ofstream(folder.file("rod.stl")) << "solid rod\nendsolid rod\n";
+    for (const char* command : {"optimise", "gradient", "simulate"}) {
+        for (const char* name : {"rod.scad", "rod.stl"}) {
+            const Answer answer = run(std::string(command) + " " + folder.file(name) + " --json");
+            CAPTURE(command, name);
+            CHECK(answer.code == 3);
+            CHECK(answer.json()["errors"][0]["code"] == "unsupported");
+            CHECK(answer.out.find(".stl .obj .off .ply .3mf") != std::string::npos);
+        }
+    }
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
