@@ -66,7 +66,8 @@ DampedPair damped_pair(const model::Model& model, const ContactDamping& damping,
     return out;
 }
 
-double contact_damping_potential(const model::Model& model, const ContactSet& set, const ContactDamping& damping) {
+double contact_damping_potential(const DampedContacts& damped) {
+    const auto& [model, set, damping] = damped;
     std::vector<double> values(set.pairs.size());
     base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
         const BodyPairContacts& list = set.pairs[k];
@@ -82,9 +83,9 @@ double contact_damping_potential(const model::Model& model, const ContactSet& se
     return sum;
 }
 
-void add_contact_damping_derivatives(const model::Model& model, const ContactSet& set, const std::vector<kinematics::Pose>& poses,
-                                     const ContactDamping& damping, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
-                                     kinematics::BlockHessian& hessian) {
+void add_contact_damping_derivatives(const DampedContacts& damped, const std::vector<kinematics::Pose>& poses, HessianKind kind,
+                                     std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
+    const auto& [model, set, damping] = damped;
     std::vector<BodyPairSum> sums(set.pairs.size());
     base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
         const BodyPairContacts& list = set.pairs[k];

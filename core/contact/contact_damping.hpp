@@ -46,14 +46,20 @@ struct DampedPair {
 };
 DampedPair damped_pair(const model::Model& model, const ContactDamping& damping, const BodyPairContacts& list, const ContactPair& pair);
 
+/// What is damped, and how; `contacts` are those at the end poses.
+struct DampedContacts {
+    const model::Model& model;
+    const ContactSet& contacts;
+    const ContactDamping& damping;
+};
+
 /// Sum over the contacts; infinity where one is at or below dmin, or its distance is not finite.
-double contact_damping_potential(const model::Model& model, const ContactSet& set, const ContactDamping& damping);
+double contact_damping_potential(const DampedContacts& damped);
 
 /// Adds first and second derivatives (Gauss-Newton part of the Hessian), as add_barrier_derivatives does.
 /// @param kind  projected: positive semi-definite pair by pair. Of a pair that closes, by its parts, that of phi as the barrier's; of one
 ///              that opens phi's part is negative, and the eigenvalues of the whole are cut off at 0.
-void add_contact_damping_derivatives(const model::Model& model, const ContactSet& set, const std::vector<kinematics::Pose>& poses,
-                                     const ContactDamping& damping, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
-                                     kinematics::BlockHessian& hessian);
+void add_contact_damping_derivatives(const DampedContacts& damped, const std::vector<kinematics::Pose>& poses, HessianKind kind,
+                                     std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
 }  // namespace fettle::core::contact

@@ -86,8 +86,8 @@ double residual_along(const Step& step, const std::vector<Vector6>& lambda) {
     std::vector<core::kinematics::PoseGradient> gradients(2);
     core::kinematics::BlockHessian hessian;
     hessian.diagonal.assign(2, Matrix6::Zero());
-    add_contact_damping_derivatives(step.model, contacts_of(step), step.end, damping_of(step), core::contact::HessianKind::exact, gradients,
-                                    hessian);
+    add_contact_damping_derivatives({step.model, contacts_of(step), damping_of(step)}, step.end, core::contact::HessianKind::exact,
+                                    gradients, hessian);
     return tangent_gradient(gradients[0]).dot(lambda[0]) + tangent_gradient(gradients[1]).dot(lambda[1]);
 }
 

@@ -55,7 +55,7 @@ ContactSet contacts_at(const Setup& s, const std::vector<kinematics::Pose>& pose
 }
 
 double value(const Setup& s, const VectorX& y) {
-    return contact_damping_potential(s.model, contacts_at(s, poses_at(s, y)), s.problem.contact_damping);
+    return contact_damping_potential({s.model, contacts_at(s, poses_at(s, y)), s.problem.contact_damping});
 }
 
 // In the chart, the curvature of the rotations included.
@@ -68,7 +68,7 @@ Derivatives derivatives(const Setup& s, const VectorX& y, HessianKind kind = Hes
     std::vector<kinematics::PoseGradient> gradients(2);
     kinematics::BlockHessian blocks;
     blocks.diagonal.assign(2, Matrix6::Zero());
-    add_contact_damping_derivatives(s.model, contacts_at(s, poses), poses, s.problem.contact_damping, kind, gradients, blocks);
+    add_contact_damping_derivatives({s.model, contacts_at(s, poses), s.problem.contact_damping}, poses, kind, gradients, blocks);
     Derivatives out{VectorX(12), MatrixX(12, 12)};
     out.hessian << blocks.diagonal[0], blocks.off_diagonal.at(0).block, blocks.off_diagonal.at(0).block.transpose(), blocks.diagonal[1];
     MatrixX to_tangent = MatrixX::Identity(12, 12);
