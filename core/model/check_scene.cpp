@@ -59,7 +59,7 @@ Errors check_strictly(const scene::Body& body, const std::string& where) {
     geometry::MeshRequirements requirements;
     requirements.closed = must_be_closed(body);
     Errors errors = geometry::validate_mesh(body.mesh, requirements);
-    for (Error& error : errors) error = at_body(std::move(error), body, where);
+    for (Error& error : errors) error = at_body(error, body, where);
     return errors;
 }
 
@@ -146,7 +146,7 @@ Errors check_mesh(const scene::Body& body, const std::string& where, std::vector
     if (body.mesh_policy == MeshPolicy::strict) return check_strictly(body, where);
     geometry::MeshFindings found = geometry::judge_mesh(body.mesh, must_be_closed(body));
     for (const std::string& warning : found.warnings) warnings.push_back(where + ": body `" + body.name + "`: " + warning);
-    for (Error& error : found.errors) error = at_body(std::move(error), body, where);
+    for (Error& error : found.errors) error = at_body(error, body, where);
     return found.errors;
 }
 

@@ -36,6 +36,7 @@ ChildProcess ChildProcess::start(const std::vector<std::string>& arguments, cons
     std::vector<std::string> words{"fettle"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     const std::string log_name = log.string();

@@ -59,6 +59,7 @@ public:
         return true;
     }
 
+    // NOLINTBEGIN(readability-function-size): Ipopt's parameters
     bool get_starting_point(Index size, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
         std::fill(x, x + size, 0.0);
         for (size_t k = 0; k < slacks_.size(); ++k) x[n() + static_cast<Index>(k)] = slacks_[k].start;
@@ -131,6 +132,7 @@ public:
         solution_.multipliers = -Eigen::Map<const VectorX>(lambda, m());
         solution_.cut_multipliers = -Eigen::Map<const VectorX>(lambda + m(), cuts());
     }
+    // NOLINTEND(readability-function-size)
 
     QuadraticSolution solution_;
 

@@ -14,7 +14,8 @@ std::array<double, 2> first_quadrant(int i, int segments) {
     const double step = 2 * std::numbers::pi / segments;
     if (8 * i == segments) return {std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2};
     if (8 * i < segments) return {std::cos(step * i), std::sin(step * i)};
-    const double rest = step * (segments / 4 - i);
+    const int from_end = segments / 4 - i;  // exact: segments is a multiple of 4
+    const double rest = step * from_end;
     return {std::sin(rest), std::cos(rest)};
 }
 

@@ -41,6 +41,113 @@ std::function<optimisers::Evaluation(const VectorX&)> answered(const problem::De
     return [entry](const VectorX& p) { return entry(p).evaluation; };
 }
 
+// One run: the problem that the optimiser sees, what it has tried, and the outcome.
+class DesignRun {
+public:
+    DesignRun(const problem::DesignProblem& problem, const OptimiseOptions& options)
+        : problem_(problem), design_(problem.design()), options_(options) {
+        with_derivatives_.should_stop = options.should_stop;
+        with_derivatives_.on_step = options.on_step;
+        compute_ = [this](const problem::DesignProblem& model, const VectorX& p, Recorded wanted) {
+            ++computed_;
+            const bool values = wanted == Recorded::values;
+            return history_entry(design_, p, model.evaluate(p, values ? problem::without_gradients(with_derivatives_) : with_derivatives_));
+        };
+    }
+
+    OptimiseOutcome run(const optimisers::Optimiser& optimiser) {
+        optimisers::Problem seen = begun();
+        add_smoother_models(seen);
+        watch_refusals(seen);
+        outcome_.unbuildable = problem::described(design_, problem::try_bounds(problem_));
+        for (const std::string& line : outcome_.unbuildable) narrate("bounds: " + line);
+        if (options_.repair) seen = optimisers::nearest_to(description::values_of(design_.parameters), std::move(seen));
+        outcome_.report = optimisers::optimise(seen, optimiser, settings());
+        outcome_.replayed = outcome_.report.evaluations - computed_;
+        if (outcome_.report.best.usable) measure_end();
+        return std::move(outcome_);
+    }
+
+private:
+    void narrate(const std::string& line) const {
+        if (options_.narrate) options_.narrate(line);
+    }
+
+    optimisers::Problem begun() {
+        optimisers::Problem seen = problem::optimiser_problem(problem_, with_derivatives_);
+        seen.start = outcome_.start = start_of_seed(design_, options_.seed);
+        seen.values = answered(problem_, {}, compute_, options_.history, Recorded::values);
+        seen.evaluate = [this, own = answered(problem_, {}, compute_, options_.history, Recorded::with_derivatives)](const VectorX& p) {
+            optimisers::Evaluation e = own(p);
+            if (e.usable && p == outcome_.start) outcome_.objective_start = e.objective;
+            return e;
+        };
+        return seen;
+    }
+
+    void add_smoother_models(optimisers::Problem& seen) {
+        smoother_ = problem::smoother_models(problem_, seen.prepared ? seen.prepared(seen.start) : seen.start);
+        for (const problem::SmootherDesign& model : smoother_) {
+            seen.smoother.push_back({model.name,
+                                     answered(model.problem, model.name, compute_, options_.history, Recorded::with_derivatives),
+                                     answered(model.problem, model.name, compute_, options_.history, Recorded::values)});
+            narrate("to begin with: " + model.name);
+        }
+    }
+
+    void watch_refusals(optimisers::Problem& seen) {
+        seen.refusal = [this, ask = seen.refusal](const VectorX& p) {
+            std::string reason = ask(p);
+            if (!reason.empty()) {
+                ++refused_;
+                failures_.push_back({p, reason});
+            }
+            return reason;
+        };
+    }
+
+    optimisers::OptimiserOptions settings() {
+        optimisers::OptimiserOptions settings;
+        settings.max_evaluations = design_.optimiser.max_evaluations;
+        settings.tolerance = options_.repair ? std::max(repair_tolerance, design_.optimiser.tolerance) : design_.optimiser.tolerance;
+        settings.should_stop = options_.should_stop;
+        settings.on_evaluation = [this](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
+            if (!e.usable) failures_.push_back({p, e.reason});
+            narrate(evaluation_line(number, e, best));
+        };
+        return settings;
+    }
+
+    // The best design once more, with its certificates.
+    void measure_end() {
+        const VectorX& point = outcome_.report.point;
+        problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
+        last.gradients = false;
+        outcome_.final = problem_.evaluate(point, last);
+        if (!smoother_.empty()) {
+            last.should_stop = options_.should_stop;
+            outcome_.play_taken_up_by = smoother_.front().name;
+            outcome_.play_taken_up = smoother_.front().problem.evaluate(point, last);
+        }
+        for (const description::Measurement& measured : outcome_.final.constraints) {
+            if (measured.clearance) outcome_.clearance.push_back(*measured.clearance);
+        }
+        if (outcome_.report.feasible) return;
+        outcome_.limits =
+            limits_of(problem_, point, outcome_.final, outcome_.report.best.jacobian, failures_, outcome_.report.evaluations + refused_);
+    }
+
+    const problem::DesignProblem& problem_;
+    const Design& design_;
+    const OptimiseOptions& options_;
+    problem::EvaluateOptions with_derivatives_;
+    Compute compute_;
+    std::vector<problem::SmootherDesign> smoother_;
+    std::vector<FailedTrial> failures_;
+    int computed_ = 0, refused_ = 0;
+    OptimiseOutcome outcome_;
+};
+
 }  // namespace
 
 HistoryEntry history_entry(const Design& design, const VectorX& p, const DesignEvaluation& evaluation) {
@@ -57,80 +164,10 @@ HistoryEntry history_entry(const Design& design, const VectorX& p, const DesignE
 }
 
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options) {
-    const Design& design = problem.design();
-    const auto optimiser = optimisers::make_optimiser(options.optimiser.empty() ? design.optimiser.name : options.optimiser, "optimiser");
+    const std::string& name = options.optimiser.empty() ? problem.design().optimiser.name : options.optimiser;
+    const auto optimiser = optimisers::make_optimiser(name, "optimiser");
     if (!optimiser) return optimiser.errors();
-
-    problem::EvaluateOptions evaluate;
-    evaluate.should_stop = options.should_stop;
-    evaluate.on_step = options.on_step;
-    optimisers::Problem seen = problem::optimiser_problem(problem, evaluate);
-    seen.start = start_of_seed(design, options.seed);
-    int computed = 0;
-    const problem::EvaluateOptions values = problem::without_gradients(evaluate);
-    const Compute compute = [&](const problem::DesignProblem& model, const VectorX& p, Recorded wanted) {
-        ++computed;
-        return history_entry(design, p, model.evaluate(p, wanted == Recorded::values ? values : evaluate));
-    };
-    seen.evaluate = answered(problem, {}, compute, options.history, Recorded::with_derivatives);
-    seen.values = answered(problem, {}, compute, options.history, Recorded::values);
-    OptimiseOutcome outcome;
-    outcome.start = seen.start;
-    seen.evaluate = [&outcome, evaluate_own = seen.evaluate](const VectorX& p) {
-        optimisers::Evaluation e = evaluate_own(p);
-        if (e.usable && p == outcome.start) outcome.objective_start = e.objective;
-        return e;
-    };
-    const std::vector<problem::SmootherDesign> smoother =
-        problem::smoother_models(problem, seen.prepared ? seen.prepared(seen.start) : seen.start);
-    for (const problem::SmootherDesign& model : smoother) {
-        seen.smoother.push_back({model.name, answered(model.problem, model.name, compute, options.history, Recorded::with_derivatives),
-                                 answered(model.problem, model.name, compute, options.history, Recorded::values)});
-        if (options.narrate) options.narrate("to begin with: " + model.name);
-    }
-    optimisers::OptimiserOptions settings;
-    settings.max_evaluations = design.optimiser.max_evaluations;
-    settings.tolerance = options.repair ? std::max(repair_tolerance, design.optimiser.tolerance) : design.optimiser.tolerance;
-    settings.should_stop = options.should_stop;
-    std::vector<FailedTrial> failures;
-    settings.on_evaluation = [&](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
-        if (!e.usable) failures.push_back({p, e.reason});
-        if (options.narrate) options.narrate(evaluation_line(number, e, best));
-    };
-
-    int refused = 0;
-    seen.refusal = [&, ask = seen.refusal](const VectorX& p) {
-        std::string reason = ask(p);
-        if (!reason.empty()) {
-            ++refused;
-            failures.push_back({p, reason});
-        }
-        return reason;
-    };
-
-    outcome.unbuildable = problem::described(design, problem::try_bounds(problem));
-    for (const std::string& line : outcome.unbuildable) {
-        if (options.narrate) options.narrate("bounds: " + line);
-    }
-    if (options.repair) seen = optimisers::nearest_to(description::values_of(design.parameters), std::move(seen));
-    outcome.report = optimisers::optimise(seen, **optimiser, settings);
-    outcome.replayed = outcome.report.evaluations - computed;
-    if (!outcome.report.best.usable) return outcome;
-    problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
-    last.gradients = false;
-    outcome.final = problem.evaluate(outcome.report.point, last);
-    if (!smoother.empty()) {
-        last.should_stop = options.should_stop;
-        outcome.play_taken_up_by = smoother.front().name;
-        outcome.play_taken_up = smoother.front().problem.evaluate(outcome.report.point, last);
-    }
-    for (const description::Measurement& measured : outcome.final.constraints) {
-        if (measured.clearance) outcome.clearance.push_back(*measured.clearance);
-    }
-    if (outcome.report.feasible) return outcome;
-    outcome.limits = limits_of(problem, outcome.report.point, outcome.final, outcome.report.best.jacobian, failures,
-                               outcome.report.evaluations + refused);
-    return outcome;
+    return DesignRun(problem, options).run(**optimiser);
 }
 
 }  // namespace fettle::design::studies
