@@ -67,7 +67,9 @@ DampedPair damped_pair(const model::Model& model, const ContactDamping& damping,
 }
 
 double contact_damping_potential(const DampedContacts& damped) {
-    const auto& [model, set, damping] = damped;
+    const model::Model& model = damped.model;  // by name: clang 14 captures no structured bindings
+    const ContactSet& set = damped.contacts;
+    const ContactDamping& damping = damped.damping;
     std::vector<double> values(set.pairs.size());
     base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
         const BodyPairContacts& list = set.pairs[k];
@@ -85,7 +87,9 @@ double contact_damping_potential(const DampedContacts& damped) {
 
 void add_contact_damping_derivatives(const DampedContacts& damped, const std::vector<kinematics::Pose>& poses, HessianKind kind,
                                      std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
-    const auto& [model, set, damping] = damped;
+    const model::Model& model = damped.model;  // by name: clang 14 captures no structured bindings
+    const ContactSet& set = damped.contacts;
+    const ContactDamping& damping = damped.damping;
     std::vector<BodyPairSum> sums(set.pairs.size());
     base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
         const BodyPairContacts& list = set.pairs[k];
