@@ -48,7 +48,9 @@ std::vector<SmootherDesign> smoother_models(const DesignProblem& problem, const 
     const Result<core::model::Model> model = problem.model_at(p);
     if (!model) return models;
     const double unit = problem.design().scene.length_unit;
-    for (double width = widest_share * play_of_fits(problem, p); width > worth_a_stage * model->dhat; width *= 0.5) {
+    const double widest = widest_share * play_of_fits(problem, p);
+    for (int k = 0; std::ldexp(widest, -k) > worth_a_stage * model->dhat; ++k) {  // halved each time, exactly
+        const double width = std::ldexp(widest, -k);
         Result<DesignProblem> wide = problem.with_contact_width(width);
         if (!wide) continue;
         char name[80];
