@@ -14,7 +14,7 @@ namespace fettle::core::clearance {
 namespace {
 
 constexpr int most_boxes = 1 << 18;
-constexpr int most_time_spans = 4096;  // of time
+constexpr int most_time_spans = 4096;
 
 struct BodyBox {
     Vector3 center, half;
@@ -40,14 +40,14 @@ struct Swept {
     }
 };
 
-// @param pad  [m] both ends grow by it
+// The boxes at both ends of a segment, grown by what points leave their chords and by rounding.
 void take_segment(const kinematics::PathSegment& path, const BodyBox& box, Swept& swept) {
     const double w = path.rotation_vector_step.norm(), theta = path.rotation_vector_t0.norm() + w;
     // The base may be a rotation up to rounding only: |base X| <= sqrt(1 + |B^T B - I|) |X|.
-    const double reach = box.radius * std::sqrt(1 + (path.base.transpose() * path.base - Matrix3::Identity()).norm());
+    const double radius = box.radius * std::sqrt(1 + (path.base.transpose() * path.base - Matrix3::Identity()).norm());
     const double position = path.position_t0.norm() + path.position_step.norm();
-    const double rest = std::min(w * w / 8, 2.0) * reach;
-    const double rounding = 2 * unit_roundoff * ((256 + 48 * theta) * reach + 64 * position);
+    const double rest = std::min(w * w / 8, 2.0) * radius;
+    const double rounding = 2 * unit_roundoff * ((256 + 48 * theta) * radius + 64 * position);
     const Vector3 pad = Vector3::Constant((rest + rounding) * rounded_up + std::numeric_limits<double>::min());
     for (const double s : {0.0, 1.0}) {
         const kinematics::Pose pose = kinematics::pose_at(path, s);

@@ -106,18 +106,19 @@ PathProof prove_path(const core::model::Model& model, const core::stepper::Simul
     options.sample_nodes = false;
     options.measure_overlap = false;
     options.should_stop = should_stop;
-    double known = infinity;  // a distance that was found
-    for (int k = 0; k < most_reaches; ++k) {
+    double known = infinity;  // a distance that was found: the least is no more
+    for (int round = 1;; ++round) {
         options.tolerance = share * reach;
         const core::clearance::NearClearances near = core::clearance::certify_near(model, simulation.trajectory, reach, options);
         const Judgement judged = judge(model, near.windows, near.everything ? infinity : reach);
         if (!judged.whole && should_stop()) return stopped();
         if (!judged.open.empty()) return look_closer(model, simulation, options, judged);
         known = std::min(known, judged.upper);
-        if (judged.lower >= (1 - 2 * share) * known || k + 1 == most_reaches) return {ProofState::proven, judged.lower, {}};
-        reach = std::isfinite(known) ? std::max(known, 2 * reach) : 8 * reach;
+        // Found within the reach, and the reach is no coarse measure of it.
+        const bool told = known <= reach && 2 * known >= reach;
+        if (told || round == most_reaches) return {ProofState::proven, judged.lower, {}};
+        reach = known <= reach ? known : std::min(known, 8 * reach);
     }
-    return {ProofState::not_certified, std::nullopt, "no bound was found"};
 }
 
 }  // namespace fettle::design::cli

@@ -170,6 +170,13 @@ TEST_CASE("A path is proven, refuted or left open: never taken for granted") {
     };
     using design::cli::ProofState;
     CHECK(to(0.5).state == ProofState::proven);
+    // As well told wherever the least distance lies beside the contact's width and what the ends of the steps saw.
+    for (const double lowest : {0.9, 0.3, 0.02, 2e-3, 1e-3, 7e-4, 3e-4, 1e-4, 2e-5}) {
+        const auto told = to(lowest);
+        CAPTURE(lowest, *told.lower);
+        CHECK(told.state == ProofState::proven);
+        CHECK((*told.lower >= 0.98 * lowest && *told.lower <= lowest));
+    }
     const auto near = to(1e-7);  // far closer than the ends of the steps saw
     CHECK(near.state == ProofState::proven);
     CHECK(*near.lower > 0.9e-7);
