@@ -31,15 +31,14 @@ bool is_apart(const ContactPair& pair, const BarrierParameters& p) {
 void add_damped_pair(const DampedPair& pair, const BarrierParameters& closeness, HessianKind kind, const Vector3& first_position,
                      const Vector3& second_position, BodyPairSum& sum) {
     const double slope = pair.slope();
-    const bool closing = slope >= 0;
+    const bool closing = slope >= 0 && pair.stiffness >= 0;  // the sum of its positive parts is one
     BodyPairSum phi;
     add_pair_derivatives(pair.end, closeness, closing ? kind : HessianKind::exact, first_position, second_position, phi);
-    Vector12 gradient;
-    gradient << tangent_gradient(phi.first), tangent_gradient(phi.second);
-    Matrix12 h = slope * phi.hessian;
-    h.selfadjointView<Eigen::Lower>().rankUpdate(gradient, pair.stiffness);
-    if (kind == HessianKind::projected && !closing) h = positive_part(h);
-    sum.hessian.triangularView<Eigen::Lower>() += h;
+    PairVector gradient;  // the forces are opposite
+    gradient << tangent_gradient(phi.first), tangent_gradient(phi.second).tail<3>();
+    PairMatrix h = slope * phi.hessian;
+    add_outer_product(h, pair.stiffness, gradient);
+    sum.hessian += kind == HessianKind::projected && !closing ? positive_part(h) : h;
     sum.first.force += slope * phi.first.force;
     sum.first.arm += slope * phi.first.arm;
     sum.second.force += slope * phi.second.force;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
 
 namespace fettle::core::contact {
 namespace {
@@ -49,10 +50,18 @@ void forward_solve(const Matrix2& l, int count, std::array<V, 2>& a) {
     if (count > 1) a[1] = (a[1] - l(1, 0) * a[0]) / l(1, 1);
 }
 
+// The lower triangle, column by column, of sizes that the compiler knows.
+template <std::size_t... J>
+void add_columns(PairMatrix& h, double factor, const PairVector& v, std::index_sequence<J...>) {
+    ((h.col(J).template tail<9 - static_cast<int>(J)>() += (factor * v[J]) * v.template tail<9 - static_cast<int>(J)>()), ...);
+}
+
 // Pull-back of the pattern w (x) m (m at the closest point of the first body, -m at that of the second).
-Vector12 pull_back(const Vector3& m, const Vector3& arm_first, const Vector3& arm_second) {
-    Vector12 v;
-    v << m, arm_first.cross(m), -m, -arm_second.cross(m);
+PairVector pull_back(const Vector3& m, const Vector3& arm_first, const Vector3& arm_second) {
+    PairVector v;
+    v.segment<3>(0) = m;
+    v.segment<3>(3) = arm_first.cross(m);
+    v.segment<3>(6) = m.cross(arm_second);
     return v;
 }
 
@@ -74,50 +83,98 @@ bool on_first(const ContactPair& pair, int a) {
     return pair.closest.free_weight[a][0] != 0 || (pair.type == PairType::edge_edge && pair.closest.free_weight[a][1] != 0);
 }
 
-void rank_one(Matrix12& h, double factor, const Vector12& v) { h.selfadjointView<Eigen::Lower>().rankUpdate(v, factor); }
+// How the interior parameters follow: what slides (w (x) r_a) and what turns (w'_a (x) n), both times L^-1.
+struct Following {
+    int count = 0;
+    std::array<PairVector, 2> slide, turn;
+    std::array<double, 2> spread{};  // crude sizes of the turn patterns' weights
+};
 
-// Gauss-Newton Hessian of factor * b(D), added to h.
-void add_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, HessianKind kind, Matrix12& h) {
+Following following_of(const ContactPair& pair, const Arms& arms, const Vector3& n) {
     const ClosestPoints& c = pair.closest;
-    const double d = std::sqrt(c.distance_squared);
-    const Vector3 n = c.difference / d;
-    const double normal = 4 * b.second * c.distance_squared + 2 * b.first;
-    rank_one(h, kind == HessianKind::projected ? std::max(0.0, normal) : normal, pull_back(n, arms.first, arms.second));
-
     const FreeDirections free = free_directions(c, pair.x);
-    std::array<Vector12, 2> slide, turn;  // w (x) r_a and w'_a (x) n, then both times L^-1
-    std::array<Vector2, 2> spread{};      // crude sizes of the turn patterns' weights
+    Following f;
+    f.count = c.free_count;
+    std::array<Vector2, 2> spread{};
     for (int a = 0; a < c.free_count; ++a) {
-        slide[a] = pull_back(free.r[a], arms.first, arms.second);
-        turn[a].setZero();
-        turn[a].segment<3>(on_first(pair, a) ? 3 : 9) = free.r[a].cross(n);
+        f.slide[a] = pull_back(free.r[a], arms.first, arms.second);
+        f.turn[a].setZero();
+        f.turn[a].segment<3>(on_first(pair, a) ? 3 : 6) = free.r[a].cross(n);
         spread[a] = Vector2::Unit(a);
     }
-    forward_solve(free.l, c.free_count, slide);
-    forward_solve(free.l, c.free_count, turn);
+    forward_solve(free.l, c.free_count, f.slide);
+    forward_solve(free.l, c.free_count, f.turn);
     forward_solve(free.l, c.free_count, spread);
+    for (int a = 0; a < c.free_count; ++a) f.spread[a] = spread[a].norm();
+    return f;
+}
 
+// Of factor * b(D), added to h: the true second derivative, without the curvature of the rotations.
+void add_exact_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, PairMatrix& h) {
+    const double d = std::sqrt(pair.closest.distance_squared);
+    const Vector3 n = pair.closest.difference / d;
+    add_outer_product(h, 4 * b.second * pair.closest.distance_squared + 2 * b.first, pull_back(n, arms.first, arms.second));
     const double tension = -2 * b.first;  // >= 0
-    if (kind == HessianKind::exact) {
-        for (int j = 0; j < c.free_count; ++j) rank_one(h, tension, slide[j] + d * turn[j]);
-        // - tension * (projector on the tangent plane) pattern: two orthonormal tangents of n.
-        const Vector3 t1 = n.unitOrthogonal();
-        rank_one(h, -tension, pull_back(t1, arms.first, arms.second));
-        rank_one(h, -tension, pull_back(n.cross(t1), arms.first, arms.second));
-        return;
-    }
+    const Following f = following_of(pair, arms, n);
+    for (int j = 0; j < f.count; ++j) add_outer_product(h, tension, f.slide[j] + d * f.turn[j]);
+    // - tension * (projector on the tangent plane) pattern: two orthonormal tangents of n.
+    const Vector3 t1 = n.unitOrthogonal();
+    add_outer_product(h, -tension, pull_back(t1, arms.first, arms.second));
+    add_outer_product(h, -tension, pull_back(n.cross(t1), arms.first, arms.second));
+}
+
+// Its positive part but for what lies along n.
+void add_positive_sliding(const ContactPair& pair, const Arms& arms, double tension, double d, const Vector3& n, PairMatrix& h) {
+    const Following f = following_of(pair, arms, n);
     double weight_squared = 0;
-    for (double w : c.weight) weight_squared += w * w;
-    for (int j = 0; j < c.free_count; ++j) {
+    for (double w : pair.closest.weight) weight_squared += w * w;
+    for (int j = 0; j < f.count; ++j) {
         // (p + d s)(p + d s)^T - p p^T = d (p s^T + s p^T) + d^2 s s^T: its positive eigenvector in the basis (p, s), scaled to unit
         // patterns.
-        const double rho_p = std::sqrt(weight_squared), rho_s = std::sqrt(2.0) * spread[j].norm();
+        const double rho_p = std::sqrt(weight_squared), rho_s = std::sqrt(2.0) * f.spread[j];
         const double off = d * rho_p * rho_s, corner = d * d * rho_s * rho_s;
         const double eigenvalue = 0.5 * (corner + std::sqrt(corner * corner + 4 * off * off));
         const double norm_squared = off * off + eigenvalue * eigenvalue;
         if (!(norm_squared > 0)) continue;
-        rank_one(h, tension * eigenvalue / norm_squared, (off / rho_p) * slide[j] + (eigenvalue / rho_s) * turn[j]);
+        add_outer_product(h, tension * eigenvalue / norm_squared, (off / rho_p) * f.slide[j] + (eigenvalue / rho_s) * f.turn[j]);
     }
+}
+
+// Adds the positive part of  nn v v^T + vw (v w^T + w v^T) + ww w w^T,  v and w taken as right-angled.
+void add_positive_pair(double nn, double vw, double ww, const PairVector& v, const PairVector& w, PairMatrix& h) {
+    const double size_v = v.norm(), size_w = w.norm();
+    const double a = nn * size_v * size_v, b = vw * size_v * size_w, c = ww * size_w * size_w;
+    const double middle = 0.5 * (a + c), radius = std::hypot(0.5 * (a - c), b);
+    if (b == 0) {
+        if (a > 0) add_outer_product(h, nn, v);
+        if (c > 0) add_outer_product(h, ww, w);
+        return;
+    }
+    if (middle >= radius) {  // positive as it is
+        add_outer_product(h, nn - vw * vw / ww, v);
+        add_outer_product(h, ww, w + (vw / ww) * v);
+        return;
+    }
+    const double eigenvalue = middle + radius;
+    if (!(eigenvalue > 0)) return;
+    // (b, eigenvalue - a) is the eigenvector; the other form where that cancels.
+    const double x = a <= c ? b : eigenvalue - c, y = a <= c ? eigenvalue - a : b;
+    add_outer_product(h, eigenvalue / (x * x + y * y), (x / size_v) * v + (y / size_w) * w);
+}
+
+// Gauss-Newton Hessian of factor * b(D), added to h.
+void add_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, HessianKind kind, PairMatrix& h) {
+    if (kind == HessianKind::exact) return add_exact_distance_hessian(pair, arms, b, h);
+    const double d = std::sqrt(pair.closest.distance_squared);
+    const Vector3 n = pair.closest.difference / d;
+    if (pair.weight < 0) {  // only what the exact one takes off is left
+        const Vector3 t1 = n.unitOrthogonal();
+        for (const Vector3& t : {t1, Vector3(n.cross(t1))}) add_outer_product(h, 2 * b.first, pull_back(t, arms.first, arms.second));
+        return;
+    }
+    const double normal = 4 * b.second * pair.closest.distance_squared + 2 * b.first;
+    if (normal > 0) add_outer_product(h, normal, pull_back(n, arms.first, arms.second));
+    add_positive_sliding(pair, arms, -2 * b.first, d, n, h);
 }
 
 // Derivatives of c = |e1 x e2|^2.
@@ -141,45 +198,101 @@ EdgeCross edge_cross(const PairVertices& x) {
     return k;
 }
 
-// m b with m < 1: product rule, dense 12x12.
-void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParameters& p, HessianKind kind, BodyPairSum& sum) {
-    const ScalarDerivatives m = mollifier_of(pair);
-    const ScalarDerivatives b = barrier_of(pair, p);
-    const EdgeCross k = edge_cross(pair.x);
-    const double f = p.factor * pair.weight;
+// Where two edges are nearly parallel: f m(c) b(D) with m < 1.
+struct Mollified {
+    ScalarDerivatives m, b;
+    EdgeCross k;
+    double f;  // factor and weight
+};
 
-    const Vector3 force = 2 * f * m.value * b.first * pair.closest.difference;
-    sum.first.add_force(force, arms.first);
-    sum.second.add_force(-force, arms.second);
-    sum.first.arm += f * b.value * m.first * k.c1 * k.e1.transpose();
-    sum.second.arm += f * b.value * m.first * k.c2 * k.e2.transpose();
-
-    Matrix12 h = Matrix12::Zero();
-    const ScalarDerivatives scaled{0, f * m.value * b.first, f * m.value * b.second};
-    if (m.value > 0) add_distance_hessian(pair, arms, scaled, HessianKind::exact, h);
-    h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
-    const Vector12 dD = 2 * pull_back(pair.closest.difference, arms.first, arms.second);
-    Vector12 dc = Vector12::Zero();
+// The product rule, term by term.
+void add_exact_mollified_hessian(const ContactPair& pair, const Arms& arms, const Mollified& q, PairMatrix& h) {
+    const ScalarDerivatives &m = q.m, &b = q.b;
+    const EdgeCross& k = q.k;
+    const double f = q.f;
+    if (m.value > 0) add_exact_distance_hessian(pair, arms, {0, f * m.value * b.first, f * m.value * b.second}, h);
+    const PairVector dD = 2 * pull_back(pair.closest.difference, arms.first, arms.second);
+    PairVector dc = PairVector::Zero();
     dc.segment<3>(3) = k.e1.cross(k.c1);
-    dc.segment<3>(9) = k.e2.cross(k.c2);
-    h += f * b.first * m.first * (dD * dc.transpose() + dc * dD.transpose()) + f * b.value * m.second * dc * dc.transpose();
+    dc.segment<3>(6) = k.e2.cross(k.c2);
+    // b' m' (dD dc^T + dc dD^T) + b m'' dc dc^T.
+    const PairVector across = f * b.first * m.first * dD + 0.5 * f * b.value * m.second * dc;
+    h += across * dc.transpose() + dc * across.transpose();
     const Matrix3 j1 = -cross_matrix(k.e1), j2 = -cross_matrix(k.e2);
     const double g = f * b.value * m.first;
     h.block<3, 3>(3, 3) += g * j1.transpose() * k.c11 * j1;
-    h.block<3, 3>(9, 9) += g * j2.transpose() * k.c22 * j2;
-    const Matrix3 cross_block = g * j1.transpose() * k.c12 * j2;
-    h.block<3, 3>(3, 9) += cross_block;
-    h.block<3, 3>(9, 3) += cross_block.transpose();
-    sum.hessian.triangularView<Eigen::Lower>() += kind == HessianKind::projected ? positive_part(h) : h;
+    h.block<3, 3>(6, 6) += g * j2.transpose() * k.c22 * j2;
+    h.block<3, 3>(6, 3) += (g * j1.transpose() * k.c12 * j2).transpose();
+}
+
+// A positive semi-definite bound of it from above. With N = e1 x e2, d2c = 2 dN^T dN + 4 N . (de1 x de2): the first part as it is, but for
+// what m b along n and c along N have in common through b' m'; the second, small as N is, by |de1| and |de2|; the rest each for itself.
+void add_positive_mollified_hessian(const ContactPair& pair, const Arms& arms, const Mollified& q, PairMatrix& h) {
+    const ScalarDerivatives &m = q.m, &b = q.b;
+    const EdgeCross& k = q.k;
+    const double d = std::sqrt(pair.closest.distance_squared);
+    const Vector3 n = pair.closest.difference / d;
+    const Vector3 cross = k.e1.cross(k.e2), along1 = k.e1.normalized(), along2 = k.e2.normalized();
+    const double sine = cross.norm();
+    const Vector3 t1 = sine > 0 ? Vector3(cross / sine) : k.e1.unitOrthogonal();
+    // What t . N changes by.
+    const auto turned = [&k](const Vector3& t) {
+        PairVector w = PairVector::Zero();
+        w.segment<3>(3) = k.e1.cross(k.e2.cross(t));
+        w.segment<3>(6) = k.e2.cross(t.cross(k.e1));
+        return w;
+    };
+    const double normal = std::max(0.0, q.f * m.value * (4 * b.second * d * d + 2 * b.first));
+    const double coupling = 4 * q.f * b.first * m.first * d * sine;
+    const double turning = 2 * q.f * b.value * m.first;
+    add_positive_pair(normal, coupling, turning + 4 * q.f * b.value * m.second * sine * sine, pull_back(n, arms.first, arms.second),
+                      turned(t1), h);
+    add_outer_product(h, turning, turned(along1.cross(t1)));
+    add_outer_product(h, turning, turned(along1));
+    const double second = turning * sine * std::sqrt(k.e1.squaredNorm() * k.e2.squaredNorm());
+    h.block<3, 3>(3, 3) += second * (Matrix3::Identity() - along1 * along1.transpose());
+    h.block<3, 3>(6, 6) += second * (Matrix3::Identity() - along2 * along2.transpose());
+    if (m.value > 0) add_positive_sliding(pair, arms, -2 * q.f * m.value * b.first, d, n, h);
+}
+
+void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParameters& p, HessianKind kind, BodyPairSum& sum) {
+    const Mollified q{mollifier_of(pair), barrier_of(pair, p), edge_cross(pair.x), p.factor * pair.weight};
+    const Vector3 force = 2 * q.f * q.m.value * q.b.first * pair.closest.difference;
+    sum.first.add_force(force, arms.first);
+    sum.second.add_force(-force, arms.second);
+    const double turning = q.f * q.b.value * q.m.first;
+    sum.first.arm += turning * q.k.c1 * q.k.e1.transpose();
+    sum.second.arm += turning * q.k.c2 * q.k.e2.transpose();
+    if (kind == HessianKind::exact)
+        add_exact_mollified_hessian(pair, arms, q, sum.hessian);
+    else
+        add_positive_mollified_hessian(pair, arms, q, sum.hessian);
 }
 
 }  // namespace
 
-Matrix12 positive_part(const Matrix12& lower) {
-    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(lower);
+void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) {
+    const PairVector x = v;  // cannot be part of the Hessian: stays in registers
+    add_columns(hessian, factor, x, std::make_index_sequence<9>{});
+}
+
+PairMatrix positive_part(const PairMatrix& lower) {
+    const Eigen::SelfAdjointEigenSolver<PairMatrix> eigen(lower);
     if (eigen.eigenvalues()[0] >= 0) return lower;
-    const Vector12 positive = eigen.eigenvalues().cwiseMax(0.0);
+    const PairVector positive = eigen.eigenvalues().cwiseMax(0.0);
     return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+Matrix12 in_both_bodies(const PairMatrix& hessian) {
+    const PairMatrix h = hessian.selfadjointView<Eigen::Lower>();
+    const auto shift = h.topLeftCorner<3, 3>();
+    const auto shift_first = h.block<3, 3>(0, 3), shift_second = h.block<3, 3>(0, 6);
+    Matrix12 full;
+    full << shift, shift_first, -shift, shift_second,                                                 //
+        shift_first.transpose(), h.block<3, 3>(3, 3), -shift_first.transpose(), h.block<3, 3>(3, 6),  //
+        -shift, -shift_first, shift, -shift_second,                                                   //
+        shift_second.transpose(), h.block<3, 3>(6, 3), -shift_second.transpose(), h.block<3, 3>(6, 6);
+    return full;
 }
 
 double pair_potential(const ContactPair& pair, const BarrierParameters& p) {
@@ -192,9 +305,9 @@ double normal_force(const ContactPair& pair, const BarrierParameters& p) {
     return -2 * p.factor * pair.weight * mollifier_of(pair).value * barrier_of(pair, p).first * std::sqrt(pair.closest.distance_squared);
 }
 
-void add_rigid_stiffness(Matrix12& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
+void add_rigid_stiffness(PairMatrix& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
                          const Vector3& arm_second) {
-    rank_one(hessian, stiffness, pull_back(direction, arm_first, arm_second));
+    add_outer_product(hessian, stiffness, pull_back(direction, arm_first, arm_second));
 }
 
 std::array<Vector3, 4> pair_forces(const ContactPair& pair, const BarrierParameters& p) {

@@ -4,8 +4,10 @@
 /// Everything follows from the closest points' weights (geometry/distance.hpp). With r = sum w_i x_i, D = r.r, and interior
 /// parameters beta_a with r_a = dr/dbeta_a, the envelope theorem gives
 ///   dD = 2 w (x) r,   d2D = 2 w w^T (x) I - 2 sum_ab A_a (K^-1)_ab A_b^T,   A_a = w (x) r_a + w'_a (x) r,   K_ab = r_a . r_b.
-/// Each of these vectors is a rigid pattern on each body, so its pull-back to (dq, phi) is a cross product: no 12x12 products,
-/// and the definite part has a closed form instead of an eigen-decomposition.
+/// Each of these vectors is a rigid pattern on each body, so its pull-back to (dq, phi) is a cross product. A pair does not feel where
+/// the two bodies are together: of (dq, phi) of both only (dq_first - dq_second, phi_first, phi_second) matters, nine coordinates in which
+/// every part is a few outer products. The definite part has a closed form instead of an eigen-decomposition, also where the mollifier
+/// acts.
 #pragma once
 
 #include <array>
@@ -28,11 +30,11 @@ struct ContactPair {
     PairType type = PairType::point_triangle;
     PairVertices x;               ///< world [m]; the first primitive's vertices are on body `first`
     std::array<int, 4> vertex{};  ///< indices into the bodies' meshes
-    std::array<int, 2> edge{};    ///< edge_edge: indices of the two edges
+    int face = -1;                ///< point_triangle: index into BodyHierarchy::faces; -1: an edge or a vertex, corners coincide
     geometry::ClosestPoints closest;
     double mollifier_eps = 0;  ///< edge_edge: eps [m^4]
     double weight = 1;         ///< on the potential; if the barrier is area-weighted [m^2], half the vertex's area, or half the lesser of
-                               ///< the edges' (they cannot share more)
+                        ///< the edges' (they cannot share more). Times how often it counts (face_contacts.hpp), which can be negative
 };
 
 /// How many of the four vertices lie on the first body.
@@ -58,14 +60,24 @@ std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const Barri
 /// Magnitude of the force between the closest points, times the potentials' weight (a mollifier's torque is left out).
 double normal_force(const ContactPair& pair, const BarrierParameters& parameters);
 
-/// The nearest positive semi-definite matrix. Both by their lower triangles.
-Matrix12 positive_part(const Matrix12& lower);
+/// Coordinates of two bodies that a contact between them feels: (dq_first - dq_second, phi_first, phi_second).
+using PairVector = Eigen::Matrix<double, 9, 1>;
+using PairMatrix = Eigen::Matrix<double, 9, 9>;
+
+/// hessian += factor v v^T, its lower triangle.
+void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v);
+
+/// The nearest positive semi-definite matrix; reads the lower triangle.
+PairMatrix positive_part(const PairMatrix& lower);
 
 /// Sums over the contacts of one pair of bodies.
 struct BodyPairSum {
     kinematics::PoseGradient first, second;
-    Matrix12 hessian = Matrix12::Zero();  ///< Gauss-Newton part, (q, phi) of first, then of second; lower triangle only
+    PairMatrix hessian = PairMatrix::Zero();  ///< Gauss-Newton part, lower triangle only
 };
+
+/// The Hessian in (q, phi) of the first body, then of the second.
+Matrix12 in_both_bodies(const PairMatrix& hessian);
 
 /// Adds one pair's gradient and Hessian. `first_position`, `second_position`: the bodies' q.
 void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& parameters, HessianKind kind, const Vector3& first_position,
@@ -73,7 +85,7 @@ void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& para
 
 /// Adds stiffness * v v^T, v the pull-back of a unit displacement `direction` between two material points: the Hessian of
 /// stiffness / 2 (direction . (x_first - x_second))^2 less the curvature of the rotations. `arm_*`: the points relative to the bodies' q.
-void add_rigid_stiffness(Matrix12& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
+void add_rigid_stiffness(PairMatrix& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
                          const Vector3& arm_second);
 
 }  // namespace fettle::core::contact

@@ -24,12 +24,12 @@ struct ContactSet {
     double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
 
-/// Contacts among the candidates at `poses`. Contract: candidates cover `poses`; no pair at or below dmin.
+/// Contacts among the candidates at `poses`, plane faces counted once (face_contacts.hpp). Pairs at or below dmin are contacts too, of no
+/// finite potential. Contract: candidates cover `poses`.
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
-/// Sum of the barrier potential over the candidates; infinity where a pair is at or below dmin, or its distance is not finite.
-double barrier_potential(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses,
-                         const BarrierParameters& parameters);
+/// Sum of the barrier potential over the contacts; infinity where a pair is at or below dmin, or its distance is not finite.
+double barrier_potential(const ContactSet& set, const BarrierParameters& parameters);
 
 /// Adds first and second derivatives (Gauss-Newton part of the Hessian) to per-body sums.
 /// hessian.diagonal and gradients must have one entry per body; off-diagonal blocks are inserted as needed and end up sorted.

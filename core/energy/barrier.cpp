@@ -8,7 +8,7 @@ namespace fettle::core::energy {
 namespace {
 
 void add_barrier_value(const ValueAt& at, TermValues& values) {
-    values.couplings.push_back(contact::barrier_potential(*at.problem.model, at.candidates, at.poses, at.problem.barrier));
+    values.couplings.push_back(contact::barrier_potential(at.contacts, at.problem.barrier));
 }
 
 void add_barrier_derivatives(const DerivativesAt& at, TermDerivatives& d) {

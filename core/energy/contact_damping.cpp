@@ -6,9 +6,7 @@ namespace {
 
 void add_contact_damping_value(const ValueAt& at, TermValues& values) {
     if (!(at.problem.contact_damping.factor > 0)) return;
-    const model::Model& model = *at.problem.model;
-    const contact::ContactSet contacts = contact::find_contacts(model, at.candidates, at.poses);
-    values.couplings.push_back(contact::contact_damping_potential({model, contacts, at.problem.contact_damping}));
+    values.couplings.push_back(contact::contact_damping_potential({*at.problem.model, at.contacts, at.problem.contact_damping}));
 }
 
 void add_contact_damping_derivatives_here(const DerivativesAt& at, TermDerivatives& d) {

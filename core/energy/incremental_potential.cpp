@@ -57,9 +57,9 @@ std::span<const Term* const> terms() {
 }
 
 double incremental_potential(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
-                             const contact::Candidates& candidates) {
+                             const contact::ContactSet& contacts) {
     TermValues values{std::vector<double>(poses.size(), 0.0), {}};
-    for (const Term* term : terms()) term->add_value({problem, points, poses, candidates}, values);
+    for (const Term* term : terms()) term->add_value({problem, points, poses, contacts}, values);
     double sum = 0;
     for (const double value : values.bodies) sum += value;
     for (const double value : values.couplings) sum += value;

@@ -16,9 +16,9 @@ namespace fettle::core::energy {
 /// Inertia, loads, damping, barrier, contact damping, friction: in the order of their sums.
 std::span<const Term* const> terms();
 
-/// The value; infinity where a pair is at or below dmin. `poses` are those of `points` (poses_of).
+/// The value; infinity where a pair is at or below dmin. `poses` are those of `points` (poses_of), `contacts` those there.
 double incremental_potential(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,
-                             const std::vector<kinematics::Pose>& poses, const contact::Candidates& candidates);
+                             const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts);
 
 /// Gradient and Hessian in the step's chart coordinates.
 struct ChartDerivatives {

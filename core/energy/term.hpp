@@ -16,12 +16,12 @@
 
 namespace fettle::core::energy {
 
-/// Where a value is wanted. `poses` are those of `points`; `candidates` cover them.
+/// Where a value is wanted. `poses` are those of `points`.
 struct ValueAt {
     const StepProblem& problem;
     const std::vector<kinematics::ChartPoint>& points;
     const std::vector<kinematics::Pose>& poses;
-    const contact::Candidates& candidates;
+    const contact::ContactSet& contacts;  ///< at `poses`
 };
 
 /// Potentials times the problem's weight [kg m^2].

@@ -143,6 +143,8 @@ void complete_geometry(Body& body) {
     }
     add_areas(body);
     body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh);
+    constexpr double flatness = 1e-7;  // of the body: what single precision makes of a plane
+    body.flat = std::make_shared<const geometry::FlatFeatures>(geometry::flat_features(body.mesh, flatness * body.radius));
 }
 
 void complete_geometry(std::vector<Body>& bodies) {
@@ -160,6 +162,7 @@ void complete_geometry(std::vector<Body>& bodies) {
         body.vertex_area = twin.vertex_area;
         body.edge_area = twin.edge_area;
         body.hierarchy = twin.hierarchy;
+        body.flat = twin.flat;
     }
 }
 

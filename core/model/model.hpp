@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fettle/core/geometry/body_hierarchy.hpp"
+#include "fettle/core/geometry/flat_features.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/scene/scene.hpp"
@@ -38,6 +39,7 @@ struct Body {
     std::vector<double> vertex_area;          ///< a third of each adjacent triangle's, per vertex [m^2]
     std::vector<double> edge_area;            ///< the same per edge
     std::shared_ptr<const geometry::BodyHierarchy> hierarchy;
+    std::shared_ptr<const geometry::FlatFeatures> flat;
 };
 
 inline bool is_free(const Body& body, int dof) { return !body.prescribed[dof].has_value(); }

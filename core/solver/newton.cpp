@@ -52,11 +52,11 @@ public:
         const std::vector<PathSegment> here = segments_to(at_.points);
         cover(here);
         settle(at_.poses, workspace_.candidates);
-        find_contacts();
+        find_contacts(at_);
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
             if (frictional_) lag_friction();
-            value_ = potential(at_.points, at_.poses);
+            value_ = potential(at_);
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
@@ -81,14 +81,14 @@ private:
         return false;
     }
 
-    void find_contacts() {
+    void find_contacts(Iterate& at) {
         const auto span = workspace_.clock.charge(SolvePhase::contacts);
-        at_.contacts = contact::find_contacts(model_, workspace_.candidates, at_.poses);
+        at.contacts = contact::find_contacts(model_, workspace_.candidates, at.poses);
     }
 
-    double potential(const std::vector<ChartPoint>& points, const std::vector<Pose>& poses) {
+    double potential(const Iterate& at) {
         const auto span = workspace_.clock.charge(SolvePhase::potential);
-        return energy::incremental_potential(problem_, points, poses, workspace_.candidates);
+        return energy::incremental_potential(problem_, at.points, at.poses, at.contacts);
     }
 
     void cover(const std::vector<PathSegment>& segments) {
@@ -106,10 +106,9 @@ private:
     // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
     // they are there. They are held from where caution ends.
     void follow_friction() {
-        find_contacts();
         lag_friction();
         --result_.friction_rounds;
-        value_ = potential(at_.points, at_.poses);
+        value_ = potential(at_);
     }
 
     // A round that needed no step has met its own normal forces: the fixed point.
@@ -134,7 +133,6 @@ private:
     bool iterate() {
         if (options_.should_stop && options_.should_stop())
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
-        if (result_.iterations > 0) find_contacts();
         const std::optional<Direction> direction = find_direction();
         if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
         result_.residual = direction->residual;
@@ -198,7 +196,6 @@ private:
         const bool exact =
             fraction == 1 && has_arrived(direction) && direction.kind == HessianKind::exact && direction.shift <= negligible_shift;
         if (!options_.to_rounding || !exact || direction.motion > rounding_motion) return true;
-        find_contacts();  // the residual that is reported belongs to the final point
         result_.residual = residual_at(problem_, at_, workspace_);
         return is_accurate_enough(result_.residual) ? stop(NewtonStatus::converged) : true;
     }
@@ -277,14 +274,14 @@ private:
         const double slope = direction.slope - drive_.penalty() * remaining;
         double fraction = 2 * limiting_.fraction;
         while ((fraction *= 0.5) > smallest_step) {
-            std::vector<ChartPoint> trial = moved_by(direction, fraction);
-            std::vector<Pose> poses = poses_of(problem_, trial);
-            const double value = potential(trial, poses);
+            Iterate trial{moved_by(direction, fraction), {}, {}};
+            trial.poses = poses_of(problem_, trial.points);
+            find_contacts(trial);
+            const double value = potential(trial);
             const double change = value - value_ - drive_.penalty() * fraction * remaining;
             if (!(change <= sufficient_decrease * fraction * slope + direction.rounding)) continue;
-            settle(poses, workspace_.candidates);
-            at_.points = std::move(trial);
-            at_.poses = std::move(poses);
+            settle(trial.poses, workspace_.candidates);
+            at_ = std::move(trial);
             value_change_ = value - value_;
             value_ = value;
             result_.path.push_back(at_.points);

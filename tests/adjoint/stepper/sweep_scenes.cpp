@@ -53,7 +53,7 @@ SweepScene stack() {
     bodies.push_back(support::ground_plate());
     bodies.push_back(make_body("lower", box_mesh({-0.05, -0.04, -0.03}, {0.05, 0.04, 0.05}), make_pose({0.02, 0.01, 0.1}, {0, 0, 0.035})));
     bodies.push_back(
-        make_body("upper", box_mesh({-0.03, -0.05, -0.02}, {0.04, 0.03, 0.03}), make_pose({0.3, 0.5, 0.4}, {0.015, 0.01, 0.135})));
+        make_body("upper", box_mesh({-0.03, -0.05, -0.02}, {0.04, 0.03, 0.03}), make_pose({0.3, 0.5, 0.4}, {0.015, 0.01, 0.137})));
     bodies.push_back(
         make_body("side", box_mesh({-0.02, -0.03, -0.03}, {0.03, 0.03, 0.03}), make_pose({0.01, -0.02, 0.11}, {0.0885, 0.01, 0.034})));
     support::set_velocity(bodies[2], {0.2, 0.1, -0.4}, {1, -2, 0.5});

@@ -79,7 +79,7 @@ Vector12 gradient_of(const BodyPairSum& sum) {
 }
 
 Matrix12 full_hessian(const BodyPairSum& sum) {
-    Matrix12 h = sum.hessian.selfadjointView<Eigen::Lower>();
+    Matrix12 h = in_both_bodies(sum.hessian);
     h.block<3, 3>(3, 3) += core::kinematics::tangent_curvature(sum.first.arm);
     h.block<3, 3>(9, 9) += core::kinematics::tangent_curvature(sum.second.arm);
     return h;
@@ -160,11 +160,11 @@ TEST_CASE("vertex forces and Hessian products agree with differences", "[contact
 TEST_CASE("the projected Hessian is positive semi-definite and close to the exact one along the normal", "[contact_pair]") {
     for (const Case& c : cases()) {
         INFO(c.name);
-        const Matrix12 projected = derivatives(c.pair, HessianKind::projected).hessian.selfadjointView<Eigen::Lower>();
+        const Matrix12 projected = in_both_bodies(derivatives(c.pair, HessianKind::projected).hessian);
         const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(projected);
         CHECK(eigen.eigenvalues()[0] >= -1e-12 * eigen.eigenvalues()[11]);
         // At least the exact one everywhere: exact <= projected.
-        const Matrix12 exact = derivatives(c.pair, HessianKind::exact).hessian.selfadjointView<Eigen::Lower>();
+        const Matrix12 exact = in_both_bodies(derivatives(c.pair, HessianKind::exact).hessian);
         const Eigen::SelfAdjointEigenSolver<Matrix12> gap(projected - exact);
         CHECK(gap.eigenvalues()[0] >= -1e-10 * eigen.eigenvalues()[11]);
     }

@@ -94,7 +94,7 @@ TEST_CASE("damping's and gravity's derivatives agree with differences", "[dampin
         const contact::Candidates none = contact::find_candidates(model, problem.poses_t0, 0);
         const auto value = [&](const VectorX& y) {
             const auto points = points_at(y);
-            return energy::incremental_potential(problem, points, poses_of(problem, points), none);
+            return energy::incremental_potential(problem, points, poses_of(problem, points), {});
         };
         const auto derivatives = [&](const VectorX& y) {
             const auto points = points_at(y);

@@ -68,6 +68,10 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
         const auto at = poses_of(s.problem, points);
         return chart_derivatives(s.problem, points, at, contact::find_contacts(s.model, candidates, at), kind);
     };
+    const auto value_at = [&](const std::vector<kinematics::ChartPoint>& points) {
+        const auto at = poses_of(s.problem, points);
+        return incremental_potential(s.problem, points, at, contact::find_contacts(s.model, candidates, at));
+    };
     const contact::ContactSet contacts = contact::find_contacts(s.model, candidates, poses);
     REQUIRE(contacts.count > 10);
     const ChartDerivatives d = derivatives_at(s.points, contact::HessianKind::exact);
@@ -79,9 +83,7 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
     const double h = 1e-6;
     for (int k = 0; k < 12; ++k) {
         const auto plus = moved(s.points, k, h), minus = moved(s.points, k, -h);
-        difference[k] = (incremental_potential(s.problem, plus, poses_of(s.problem, plus), candidates) -
-                         incremental_potential(s.problem, minus, poses_of(s.problem, minus), candidates)) /
-                        (2 * h);
+        difference[k] = (value_at(plus) - value_at(minus)) / (2 * h);
         const auto gp = derivatives_at(plus, contact::HessianKind::exact).gradient,
                    gm = derivatives_at(minus, contact::HessianKind::exact).gradient;
         difference_hessian.col(k) << (gp[0] - gm[0]) / (2 * h), (gp[1] - gm[1]) / (2 * h);
@@ -99,9 +101,11 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
 TEST_CASE("the potential does not depend on where the candidates were found", "[incremental_potential]") {
     const Setup s = setup();
     const auto poses = poses_of(s.problem, s.points);
-    const double here = incremental_potential(s.problem, s.points, poses, all_candidates(s, poses));
-    const double there = incremental_potential(s.problem, s.points, poses, contact::find_candidates(s.model, s.problem.poses_t0, 3));
-    CHECK(here == there);  // to the last bit: sums are ordered by primitives
+    const auto potential = [&](const contact::Candidates& candidates) {
+        return incremental_potential(s.problem, s.points, poses, contact::find_contacts(s.model, candidates, poses));
+    };
+    CHECK(potential(all_candidates(s, poses)) ==
+          potential(contact::find_candidates(s.model, s.problem.poses_t0, 3)));  // to the last bit: sums are ordered by primitives
 }
 
 }  // namespace fettle::core::energy::incremental_potential_test

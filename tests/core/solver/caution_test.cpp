@@ -23,7 +23,9 @@ TEST_CASE("caution falls as steps do what they promise, to nothing", "[caution]"
     CHECK(caution.shift() == Approx(500));
     caution.adapt({0.5, 500, 0, 0.5, true});  // cut a little: as much as before
     CHECK(caution.shift() == Approx(500));
-    for (int k = 0; k < 3; ++k) caution.adapt({1, caution.shift(), 0, 0.5, true});
+    caution.adapt({1, 500, 0, 0.9, true});  // far from the least along its way
+    CHECK(caution.shift() == Approx(5));
+    for (int k = 0; k < 2; ++k) caution.adapt({1, caution.shift(), 0, 0.5, true});
     CHECK(caution.shift() == 0);
 }
 

@@ -97,7 +97,8 @@ double least_on_the_vertical(const model::Model& model, const energy::StepProble
         std::vector<kinematics::ChartPoint> points;
         for (const kinematics::Pose& pose : problem.poses_t0) points.push_back({pose.position, Vector3(Vector3::Zero())});
         points[0].position.z() += rise;
-        return energy::incremental_potential(problem, points, poses_of(problem, points), candidates);
+        const auto poses = poses_of(problem, points);
+        return energy::incremental_potential(problem, points, poses, contact::find_contacts(model, candidates, poses));
     };
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
     double low = -gap, high = 2 * model.dhat;  // lower the tips have passed each other
@@ -133,7 +134,8 @@ Solve solve(const Meeting& meeting, const Case& c, bool to_rounding) {
 
 double potential(const Solve& s, const std::vector<kinematics::ChartPoint>& points) {
     const auto poses = poses_of(s.problem, points);
-    return energy::incremental_potential(s.problem, points, poses, contact::find_candidates(s.model, poses, s.model.dhat));
+    const contact::Candidates candidates = contact::find_candidates(s.model, poses, s.model.dhat);
+    return energy::incremental_potential(s.problem, points, poses, contact::find_contacts(s.model, candidates, poses));
 }
 
 bool is_apart(const Solve& s) {

@@ -93,7 +93,8 @@ TEST_CASE("a solve to rounding balances the forces", "[newton]") {
         auto points = result.path.back();
         points[0].position += d.head<3>();
         points[0].rotation_vector += d.tail<3>();
-        return energy::incremental_potential(problem, points, poses_of(problem, points), candidates);
+        const auto poses = poses_of(problem, points);
+        return energy::incremental_potential(problem, points, poses, contact::find_contacts(model, candidates, poses));
     };
     const double weight = model.bodies[0].moments(3, 3) * 10 * problem.weight, step = 1e-8;
     for (int k = 0; k < 6; ++k) {

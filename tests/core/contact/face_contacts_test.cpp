@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
+#include "fettle/core/contact/face_contacts.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "fettle/core/contact/contact_set.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+namespace fettle::core::contact::face_contacts_test {
+
+using kinematics::Pose;
+using namespace fettle::tests::support;
+
+namespace {
+
+using Corners = std::vector<std::array<double, 2>>;
+
+geometry::Mesh sheet(const Corners& corners, const std::vector<geometry::Triangle>& triangles) {
+    Matrix3X x = Matrix3X::Zero(3, static_cast<Eigen::Index>(corners.size()));
+    for (std::size_t k = 0; k < corners.size(); ++k) x.col(static_cast<Eigen::Index>(k)).head<2>() << corners[k][0], corners[k][1];
+    return geometry::make_mesh("sheet", x, triangles);
+}
+
+// The unit square in n x n cells, every other diagonal the other way.
+geometry::Mesh square(int n) {
+    Corners corners;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) corners.push_back({double(i) / n, double(j) / n});
+    std::vector<geometry::Triangle> triangles;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int a = i * (n + 1) + j, b = a + n + 1;
+            if ((i + j) % 2 == 0) {
+                triangles.push_back({a, b, b + 1});
+                triangles.push_back({a, b + 1, a + 1});
+            } else {
+                triangles.push_back({a, b, a + 1});
+                triangles.push_back({b, b + 1, a + 1});
+            }
+        }
+    return sheet(corners, triangles);
+}
+
+geometry::Mesh fan() { return sheet({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.3, 0.6}}, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}); }
+
+// A square with a notch of a quarter, cut so that three triangles meet in the inner corner.
+geometry::Mesh notched() {
+    return sheet({{0, 0}, {1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}});
+}
+
+geometry::Mesh point() {
+    geometry::Mesh mesh;
+    mesh.name = "point";
+    mesh.vertices = Matrix3X::Zero(3, 1);
+    geometry::build_connectivity(mesh);
+    return mesh;
+}
+
+model::Model over(const geometry::Mesh& mesh) {
+    model::Model model;
+    model.dhat = 0.2;
+    model.bodies = {make_body("sheet", mesh, make_pose(Vector3(0.3, -0.2, 0.5), Vector3(2, -1, 3)), scene::BodyType::static_body),
+                    make_body("point", point(), {})};
+    return model;
+}
+
+struct Measured {
+    double potential = 0;
+    Vector3 force = Vector3::Zero();  // dE/dx of the point
+    int count = 0;
+};
+
+// @param x  of the point, in the sheet's frame
+Measured measure(const model::Model& model, const Vector3& x) {
+    const Pose& sheet = model.bodies[0].pose_start;
+    const std::vector<Pose> poses{sheet, {Matrix3::Identity(), world_position(sheet, x)}};
+    const BarrierParameters barrier = barrier_parameters(model.dhat, 0, 3, 1);
+    const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+    Measured out;
+    out.potential = barrier_potential(set, barrier);
+    out.count = set.count;
+    for (const BodyPairContacts& list : set.pairs)
+        for (const ContactPair& pair : list.contacts) out.force += sheet.rotation.transpose() * pair_forces(pair, barrier)[0];
+    return out;
+}
+
+Vector3 random_point(std::mt19937& random) {
+    std::uniform_real_distribution<double> along(-0.15, 1.15), height(0.01, 0.19);
+    const double u = along(random), v = along(random), h = height(random);
+    return {u, v, h};
+}
+
+}  // namespace
+
+TEST_CASE("a square face counts once, however it is cut", "[face_contacts]") {
+    const std::vector<model::Model> cuts{over(square(1)), over(square(2)), over(square(7)), over(fan())};
+    std::mt19937 random(5);
+    for (int k = 0; k < 2000; ++k) {
+        Vector3 x = random_point(random);
+        if (k % 5 == 0) x.y() = x.x();  // over the diagonal
+        if (k % 7 == 0) x.x() = 0.5;    // over an edge, or a vertex
+        const Vector3 nearest(std::clamp(x.x(), 0.0, 1.0), std::clamp(x.y(), 0.0, 1.0), 0);
+        const double distance = (x - nearest).norm();
+        const ScalarDerivatives b = barrier(std::min(distance * distance, 0.04), 0.04);
+        const double factor = 3 / (4 * 0.04);
+        for (const model::Model& model : cuts) {
+            const Measured m = measure(model, x);
+            CAPTURE(k, x.transpose(), model.bodies[0].mesh.triangles.size());
+            CHECK(m.potential == Approx(factor * b.value).epsilon(1e-10).margin(1e-18));
+            CHECK((m.force - 2 * factor * b.first * (x - nearest)).norm() <= 1e-10 * factor * std::abs(b.first) * distance + 1e-18);
+            if (x.x() > 0.2 && x.x() < 0.8 && x.y() > 0.2 && x.y() < 0.8) CHECK(m.count == 1);
+        }
+    }
+}
+
+TEST_CASE("round a notch the potential is smooth, and never less than that of the nearest place", "[face_contacts]") {
+    const model::Model model = over(notched());
+    std::mt19937 random(6);
+    int negative = 0;
+    for (int k = 0; k < 3000; ++k) {
+        const Vector3 x = random_point(random);
+        const Measured m = measure(model, x);
+        Vector3 difference;
+        const double h = 1e-6;
+        for (int i = 0; i < 3; ++i)
+            difference[i] =
+                (measure(model, x + h * Vector3::Unit(i)).potential - measure(model, x - h * Vector3::Unit(i)).potential) / (2 * h);
+        CAPTURE(k, x.transpose());
+        CHECK((difference - m.force).norm() <= 1e-6 * (m.force.norm() + 1e-3));
+        if (m.count == 3) ++negative;  // both sides of the notch, less its corner
+        const bool inside = x.x() >= 0 && x.y() >= 0 && x.x() <= 1 && x.y() <= 1 && !(x.x() > 0.5 && x.y() > 0.5);
+        const double above = 3 / (4 * 0.04) * barrier(std::min(x.z() * x.z(), 0.04), 0.04).value;
+        if (inside) CHECK(m.potential >= above * (1 - 1e-10));
+    }
+    CHECK(negative > 20);
+}
+
+TEST_CASE("the projected Hessian stays semi-definite where a corner counts against", "[face_contacts]") {
+    const model::Model model = over(notched());
+    const Pose& sheet = model.bodies[0].pose_start;
+    const BarrierParameters parameters = barrier_parameters(model.dhat, 0, 3, 1);
+    const std::vector<Pose> poses{sheet, {Matrix3::Identity(), world_position(sheet, Vector3(0.56, 0.57, 0.05))}};
+    const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+    int against = 0;
+    for (const BodyPairContacts& list : set.pairs)
+        for (const ContactPair& pair : list.contacts) {
+            BodyPairSum projected, exact;
+            add_pair_derivatives(pair, parameters, HessianKind::projected, poses[list.first].position, poses[list.second].position,
+                                 projected);
+            add_pair_derivatives(pair, parameters, HessianKind::exact, poses[list.first].position, poses[list.second].position, exact);
+            const Matrix12 above = in_both_bodies(projected.hessian), gap = above - in_both_bodies(exact.hessian);
+            const double size = above.norm();
+            CHECK(Eigen::SelfAdjointEigenSolver<Matrix12>(above).eigenvalues()[0] >= -1e-12 * size);
+            CHECK(Eigen::SelfAdjointEigenSolver<Matrix12>(gap).eigenvalues()[0] >= -1e-10 * size);
+            against += pair.weight < 0;
+        }
+    CHECK(against == 1);
+}
+
+TEST_CASE("two boxes face to face: their diagonals do not matter", "[face_contacts]") {
+    const auto potential = [](bool other_cut) {
+        geometry::Mesh box = box_mesh(Vector3::Constant(-0.5), Vector3::Constant(0.5));
+        if (other_cut) {
+            // The other diagonal of each face: its two triangles are neighbours in the list.
+            for (std::size_t t = 0; t < box.triangles.size(); t += 2) {
+                std::vector<int> ring;
+                const geometry::Triangle p = box.triangles[t], q = box.triangles[t + 1];
+                for (int k = 0; k < 3; ++k) {
+                    ring.push_back(p[static_cast<std::size_t>(k)]);
+                    const int a = p[static_cast<std::size_t>(k)], b = p[static_cast<std::size_t>((k + 1) % 3)];
+                    const bool shared = std::find(q.begin(), q.end(), a) != q.end() && std::find(q.begin(), q.end(), b) != q.end();
+                    for (const int v : q)
+                        if (shared && v != a && v != b) ring.push_back(v);
+                }
+                REQUIRE(ring.size() == 4);
+                const bool first = ring[0] == p[0];
+                REQUIRE(first);
+                const bool has_0_2 = std::find(q.begin(), q.end(), ring[0]) != q.end() && std::find(q.begin(), q.end(), ring[2]) != q.end();
+                box.triangles[t] = has_0_2 ? geometry::Triangle{ring[0], ring[1], ring[3]} : geometry::Triangle{ring[0], ring[1], ring[2]};
+                box.triangles[t + 1] =
+                    has_0_2 ? geometry::Triangle{ring[1], ring[2], ring[3]} : geometry::Triangle{ring[0], ring[2], ring[3]};
+            }
+            box = geometry::make_mesh("other", box.vertices, box.triangles);
+        }
+        model::Model model;
+        model.dhat = 0.05;
+        const std::vector<Pose> poses{{}, make_pose(Vector3(0.01, -0.02, 0.3), Vector3(0.2, 0.1, 1.03))};
+        model.bodies = {make_body("low", box, poses[0]), make_body("high", box, poses[1])};
+        const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+        CHECK(set.count > 4);
+        return barrier_potential(set, barrier_parameters(model.dhat, 0, 1, 1));
+    };
+    CHECK(potential(true) == Approx(potential(false)).epsilon(1e-12));
+}
+
+}  // namespace fettle::core::contact::face_contacts_test

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/geometry/flat_features.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "fettle/tests/support/test_models.hpp"
+
+namespace fettle::core::geometry::flat_features_test {
+
+namespace {
+
+int flat_edges(const FlatFeatures& flat) { return static_cast<int>(std::count(flat.edge.begin(), flat.edge.end(), 1)); }
+
+// The unit square, n x n cells of two triangles, its middle line raised.
+Mesh sheet(int n, double ridge = 0) {
+    Matrix3X x(3, (n + 1) * (n + 1));
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) x.col(i * (n + 1) + j) = Vector3(double(i) / n, double(j) / n, 2 * i == n ? ridge : 0.0);
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int a = i * (n + 1) + j, b = a + n + 1;
+            triangles.push_back({a, b, b + 1});
+            triangles.push_back({a, b + 1, a + 1});
+        }
+    return make_mesh("sheet", x, triangles);
+}
+
+}  // namespace
+
+TEST_CASE("the diagonals of a box are flat, turned and rounded to single precision too", "[flat_features]") {
+    Mesh box = tests::support::box_mesh(Vector3(0, 0, 0), Vector3(3, 1, 2));
+    CHECK(flat_edges(flat_features(box, 0)) == 6);
+    CHECK(flat_features(box, 0).height == 0);
+    box.vertices = tests::support::make_pose(Vector3(0.3, -1.1, 0.7), Vector3::Zero()).rotation * box.vertices;
+    box.vertices = box.vertices.cast<float>().cast<double>();
+    CHECK(flat_edges(flat_features(box, 1e-6)) == 6);
+    CHECK(flat_edges(flat_features(box, 1e-12)) < 6);
+    const FlatFeatures flat = flat_features(box, 1e-6);
+    for (std::size_t t = 0; t < box.triangles.size(); ++t) {
+        const unsigned bits = flat.of_face(static_cast<int>(t));
+        CHECK((bits == 1 || bits == 2 || bits == 4));  // its diagonal, no corner
+    }
+    CHECK(flat.of_face(12) == 0);
+}
+
+TEST_CASE("a sheet's border is not flat, its ridge neither", "[flat_features]") {
+    const int n = 4;
+    const FlatFeatures even = flat_features(sheet(n), 1e-12);
+    CHECK(flat_edges(even) == n * n + 2 * n * (n - 1));
+    int corners = 0;
+    for (const std::uint8_t bits : even.face) corners += (bits >> 3 & 1) + (bits >> 4 & 1) + (bits >> 5 & 1);
+    CHECK(corners == 6 * (n - 1) * (n - 1));  // six triangles round each inner vertex
+    const double ridge = 1e-3;
+    // Across each edge of the middle line, and of the strips beside it none: they are plane.
+    CHECK(flat_edges(flat_features(sheet(n, ridge), 1e-6)) == n * n + 2 * n * (n - 1) - n - 2 * n);
+    const FlatFeatures all = flat_features(sheet(n, ridge), 10 * ridge);
+    CHECK(flat_edges(all) == n * n + 2 * n * (n - 1));
+    CHECK(all.height == Approx(2 * ridge).epsilon(1e-3));
+}
+
+TEST_CASE("a fold is not flat, nor an edge of three triangles", "[flat_features]") {
+    Matrix3X x(3, 5);
+    x << 0, 1, 0, 0.2, 0.1, 0, 0, 1, 0.7, -1, 0, 0, 0, 0, 0;
+    CHECK_FALSE(flat_features(make_mesh("fold", x.leftCols(4), {{0, 1, 2}, {1, 0, 3}}), 1e-9).any());
+    CHECK(flat_features(make_mesh("two", x, {{0, 1, 2}, {1, 0, 4}}), 1e-9).any());
+    CHECK_FALSE(flat_features(make_mesh("three", x, {{0, 1, 2}, {1, 0, 4}, {0, 1, 3}}), 1e-9).any());
+}
+
+}  // namespace fettle::core::geometry::flat_features_test
