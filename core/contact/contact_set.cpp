@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/face_contacts.hpp"
@@ -117,6 +118,19 @@ struct ListContacts {
     double least = std::numeric_limits<double>::infinity();  // squared distance
 };
 
+// By way of their places: contacts are large.
+void sort_by_key(std::vector<ContactPair>& contacts) {
+    std::vector<std::pair<Key, int>> order;
+    order.reserve(contacts.size());
+    for (std::size_t k = 0; k < contacts.size(); ++k) order.emplace_back(key_of(contacts[k]), static_cast<int>(k));
+    if (std::is_sorted(order.begin(), order.end())) return;
+    std::sort(order.begin(), order.end());
+    std::vector<ContactPair> sorted;
+    sorted.reserve(contacts.size());
+    for (const auto& [key, k] : order) sorted.push_back(contacts[static_cast<std::size_t>(k)]);
+    contacts = std::move(sorted);
+}
+
 // Sorted: those of a vertex with faces become what counts of them.
 void count_faces(const FaceSide& side, std::vector<ContactPair>& contacts) {
     std::vector<ContactPair> counted;
@@ -142,8 +156,7 @@ ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& li
         (first == list.a ? out.forward : out.backward).contacts.push_back(pair);
     });
     for (BodyPairContacts* of : {&out.forward, &out.backward}) {
-        std::sort(of->contacts.begin(), of->contacts.end(),
-                  [](const ContactPair& x, const ContactPair& y) { return key_of(x) < key_of(y); });
+        sort_by_key(of->contacts);
         const model::Body& faces = model.bodies[of->second];
         count_faces({faces, poses[of->second], flat_features_of(model, faces), activation, model.contact_damping_time > 0}, of->contacts);
     }

@@ -21,7 +21,7 @@ Slide slide_of(const FrictionContact& c, const Pose& first, const Pose& second) 
     const Vector3 moved = (first.position - second.position) + (s.arm_first - s.arm_second) - c.separation_reference;
     s.u1 = c.tangent_1.dot(moved);
     s.u2 = c.tangent_2.dot(moved);
-    s.distance = std::hypot(s.u1, s.u2);
+    s.distance = std::sqrt(s.u1 * s.u1 + s.u2 * s.u2);
     return s;
 }
 

@@ -160,6 +160,12 @@ private:
         return fraction > 0 ? go_on_from_step(*direction, fraction) : go_on_without_step(*direction);
     }
 
+    // A whole step of Newton's that is short enough to end with is followed by one of its square: no need to look at it.
+    bool was_the_last(const Direction& direction, double fraction) const {
+        const bool newton = direction.kind == HessianKind::exact && direction.shift == 0 && !caution_.is_on();
+        return !options_.to_rounding && newton && fraction == 1 && has_arrived(direction) && is_slow(direction);
+    }
+
     // The exact Hessian, but for a few iterations after it has failed.
     std::optional<Direction> find_direction() {
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
@@ -186,6 +192,7 @@ private:
 
     bool go_on_from_step(const Direction& direction, double fraction) {
         if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
+        if (was_the_last(direction, fraction)) return stop(NewtonStatus::converged);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
         if (!has_arrived(direction) && drive_.is_stalled()) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));

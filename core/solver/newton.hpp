@@ -47,7 +47,8 @@ struct NewtonResult {
     contact::ContactSet contacts;   ///< at the end of the path
     contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
     double shift = 0;     ///< largest that made a Hessian definite, in units of the bodies' inertia (newton_direction.hpp); 0: none needed
-    double residual = 0;  ///< |gradient over free DOFs| (rotations divided by the body's radius) / sum of the forces' magnitudes
+    double residual = 0;  ///< where derivatives were taken last: |gradient over free DOFs| (rotations divided by the body's radius) / sum
+                          ///< of the forces' magnitudes
 };
 
 /// How far bodies may leave a search's segments before they need another: what lets later, shorter steps do

@@ -50,9 +50,10 @@ struct StepReport {
     int friction_rounds = 0;
     int contacts = 0;             ///< active pairs at the end of the step
     double minimum_distance = 0;  ///< of the active pairs at the end of the step [m]; infinity if there are none
-    double residual = 0;          ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp)
-    double proximal_share = 0;    ///< quasi-static: the largest that the proximal term carries of a body's load (energy/proximal_share.hpp)
-    double shift = 0;             ///< largest that made a Hessian of the step definite (solver/newton_direction.hpp); 0: none was needed
+    double residual = 0;  ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp): not of the
+                          ///< last point where a short exact step ended the solve
+    double proximal_share = 0;  ///< quasi-static: the largest that the proximal term carries of a body's load (energy/proximal_share.hpp)
+    double shift = 0;           ///< largest that made a Hessian of the step definite (solver/newton_direction.hpp); 0: none was needed
 };
 
 struct SimulationReport {
