@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Of mesh.hpp: edges, points and shells from triangles, and vertices that are one.
+// And of mesh.hpp: edges, points and shells from triangles.
+#include "fettle/core/geometry/connectivity.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/mixed_bits.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -80,6 +82,32 @@ std::vector<Edge> fresh_edges(const std::vector<Edge>& known, const std::vector<
     return fresh;
 }
 
+/// @param shell_names  Kept while the number of shells is the same.
+Mesh welded(std::string name, std::vector<std::string> shell_names, const Matrix3X& vertices, const std::vector<Triangle>& triangles,
+            const std::vector<Edge>& edges) {
+    const Welding welding = exact_welding(vertices);
+    const auto merged = [&](int vertex) {
+        FETTLE_ASSERT(vertex >= 0 && vertex < vertices.cols(), "welding needs vertex indices in range");
+        return welding.new_index[static_cast<std::size_t>(vertex)];
+    };
+    Mesh result;
+    result.name = std::move(name);
+    result.shell_names = std::move(shell_names);
+    result.vertices.resize(3, static_cast<Eigen::Index>(welding.first_occurrence.size()));
+    for (std::size_t i = 0; i < welding.first_occurrence.size(); ++i)
+        result.vertices.col(static_cast<Eigen::Index>(i)) = vertices.col(welding.first_occurrence[i]);
+    result.triangles.reserve(triangles.size());
+    for (const Triangle& triangle : triangles) {
+        const Triangle t{merged(triangle[0]), merged(triangle[1]), merged(triangle[2])};
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.triangles.push_back(t);
+    }
+    std::vector<Edge> extra_edges;
+    extra_edges.reserve(edges.size());
+    for (const Edge& edge : edges) extra_edges.push_back({merged(edge[0]), merged(edge[1])});
+    build_connectivity(result, extra_edges);
+    return result;
+}
+
 }  // namespace
 
 void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges) {
@@ -140,30 +168,13 @@ Mesh make_mesh(std::string name, Matrix3X vertices, std::vector<Triangle> triang
 }
 
 Mesh weld_exactly(const Mesh& mesh) {
-    const Welding welding = exact_welding(mesh.vertices);
-    const auto welded = [&](int vertex) {
-        FETTLE_ASSERT(vertex >= 0 && vertex < mesh.vertices.cols(), "weld_exactly needs vertex indices in range");
-        return welding.new_index[static_cast<std::size_t>(vertex)];
-    };
+    const auto of_triangles = std::min(triangle_edges(mesh.triangles).edges.size(), mesh.edges.size());
+    const std::vector<Edge> others(mesh.edges.begin() + static_cast<std::ptrdiff_t>(of_triangles), mesh.edges.end());
+    return welded(mesh.name, mesh.shell_names, mesh.vertices, mesh.triangles, others);  // welding only joins shells
+}
 
-    Mesh result;
-    result.name = mesh.name;
-    result.vertices.resize(3, static_cast<Eigen::Index>(welding.first_occurrence.size()));
-    for (std::size_t i = 0; i < welding.first_occurrence.size(); ++i) {
-        result.vertices.col(static_cast<Eigen::Index>(i)) = mesh.vertices.col(welding.first_occurrence[i]);
-    }
-    for (const Triangle& triangle : mesh.triangles) {
-        const Triangle t{welded(triangle[0]), welded(triangle[1]), welded(triangle[2])};
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.triangles.push_back(t);
-    }
-    std::vector<Edge> extra_edges;
-    const std::size_t of_triangles = triangle_edges(mesh.triangles).edges.size();
-    for (std::size_t e = std::min(of_triangles, mesh.edges.size()); e < mesh.edges.size(); ++e) {
-        extra_edges.push_back({welded(mesh.edges[e][0]), welded(mesh.edges[e][1])});
-    }
-    result.shell_names = mesh.shell_names;  // kept while the number of shells is the same: welding only joins shells
-    build_connectivity(result, extra_edges);
-    return result;
+Mesh welded_mesh(std::string name, const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Edge>& edges) {
+    return welded(std::move(name), {}, vertices, triangles, edges);
 }
 
 }  // namespace fettle::core::geometry

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/model/body_mass.hpp"
@@ -160,13 +161,16 @@ void complete_geometry(Body& body) {
 
 void complete_geometry(std::vector<Body>& bodies) {
     geometry::ShapeIndex shapes;
+    std::vector<std::size_t> first_of_shape;
+    for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
+    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (first_of_shape[at] == at) complete_geometry(bodies[at]);
+    });
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         Body& body = bodies[i];
-        const std::size_t first = shapes.add(body.mesh);
-        if (first == i) {
-            complete_geometry(body);
-            continue;
-        }
+        const std::size_t first = first_of_shape[i];
+        if (first == i) continue;
         const Body& twin = bodies[first];
         body.radius = twin.radius;
         body.edge_length_squared = twin.edge_length_squared;

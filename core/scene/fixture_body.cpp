@@ -21,28 +21,28 @@ namespace {
 
 using base::ErrorCode;
 
-const std::vector<std::string_view> body_keys{"mesh",
-                                              "vertices",
-                                              "edges",
-                                              "faces",
-                                              "density",
-                                              "enabled",
-                                              "type",
-                                              "is_dof_fixed",
-                                              "position",
-                                              "rotation",
-                                              "scale",
-                                              "dimensions",
-                                              "linear_velocity",
-                                              "angular_velocity",
-                                              "force",
-                                              "torque",
-                                              "group_id",
-                                              "oriented",
-                                              "split_components",
-                                              "kinematic_max_time",
-                                              "kinematic_poses",
-                                              "ipc_comparison_enabled"};
+const std::vector<std::string_view> fixture_body_keys{"mesh",
+                                                      "vertices",
+                                                      "edges",
+                                                      "faces",
+                                                      "density",
+                                                      "enabled",
+                                                      "type",
+                                                      "is_dof_fixed",
+                                                      "position",
+                                                      "rotation",
+                                                      "scale",
+                                                      "dimensions",
+                                                      "linear_velocity",
+                                                      "angular_velocity",
+                                                      "force",
+                                                      "torque",
+                                                      "group_id",
+                                                      "oriented",
+                                                      "split_components",
+                                                      "kinematic_max_time",
+                                                      "kinematic_poses",
+                                                      "ipc_comparison_enabled"};
 
 constexpr const char* no_2d = "2D scenes are not supported";
 
@@ -227,7 +227,7 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
 }
 
 std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timestep) {
-    node.warn_of_other_keys(body_keys);
+    node.warn_of_other_keys(fixture_body_keys);
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
     Placed found = placed(node);
     Body& body = found.body;
