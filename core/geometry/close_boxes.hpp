@@ -60,8 +60,8 @@ private:
     std::vector<GroupPair> tasks_;
 };
 
-/// handle(level, a, b) for overlapping boxes (at level -1: of the caller, by their places in `order_`) that stand below this pair at level
-/// `lowest`; false once it has returned false.
+/// handle(pair) for the overlapping pairs of level `lowest` that stand below this one (level -1: of the caller's boxes, by their places in
+/// `order_`); false once it has returned false.
 template <class Handle>
 bool CloseBoxes::descend(const GroupPair& pair, int lowest, const Handle& handle) const {
     if (pair.level == lowest) return handle(pair);
@@ -72,7 +72,8 @@ bool CloseBoxes::descend(const GroupPair& pair, int lowest, const Handle& handle
     if (pair.a == pair.b) found &= pair.level == 0 ? 0x08ceU : 0x8cefU;
     for (; found != 0; found &= found - 1) {
         const int bit = std::countr_zero(found);
-        if (!descend({pair.level - 1, 4 * pair.a + bit / 4, 4 * pair.b + bit % 4}, lowest, handle)) return false;
+        const GroupPair below{pair.level - 1, 4 * pair.a + bit / 4, 4 * pair.b + bit % 4};
+        if (!(below.level == lowest ? handle(below) : descend(below, lowest, handle))) return false;
     }
     return true;
 }

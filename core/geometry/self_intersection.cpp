@@ -103,8 +103,12 @@ bool are_seen_apart(const Corners& t, const Corners& u) {
     return has_parting_edge(a, b) || has_parting_edge(b, a);
 }
 
+/// Nine comparisons without a branch: most pairs whose boxes overlap are neighbours, by one vertex or another.
 bool share_a_vertex(const Triangle& t, const Triangle& u) {
-    return std::any_of(t.begin(), t.end(), [&](int v) { return v == u[0] || v == u[1] || v == u[2]; });
+    unsigned shared = 0;
+    for (const int v : t)
+        for (const int w : u) shared |= static_cast<unsigned>(v == w);
+    return shared != 0;
 }
 
 /// Those of one mesh, unless there are too many.

@@ -33,6 +33,7 @@ struct CenteredBox {
 /// What is asked of one mesh again and again, and found out when it is wanted first. Bodies that share a hierarchy have one mesh.
 struct MeshFacts {
     std::optional<bool> bounds_a_solid, nearly_closed;
+    std::optional<std::vector<int>> samples;
 };
 
 struct PlacedBody {
@@ -83,6 +84,29 @@ bool is_nearly_closed(const PlacedBody& placed) {
     std::optional<bool>& known = placed.facts->nearly_closed;
     const geometry::Mesh& mesh = placed.body->mesh;
     if (!known) known = geometry::is_nearly_closed(mesh.vertices, mesh.triangles);
+    return *known;
+}
+
+/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
+std::vector<int> samples_of(const geometry::Mesh& mesh) {
+    std::vector<int> out = mesh.codimensional_points;
+    std::vector<bool> seen(mesh.shell_names.size(), false);
+    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
+        const int shell = mesh.triangle_shell[t];
+        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
+        seen[shell] = true;
+    }
+    for (const auto& edge : mesh.edges) {
+        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
+    }
+    return out;
+}
+
+const std::vector<int>& samples(const PlacedBody& placed) {
+    std::optional<std::vector<int>>& known = placed.facts->samples;
+    if (!known) known = samples_of(placed.body->mesh);
     return *known;
 }
 
@@ -183,26 +207,9 @@ private:
     std::optional<Fault> fault_;
 };
 
-/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
-std::vector<int> samples(const geometry::Mesh& mesh) {
-    std::vector<int> out = mesh.codimensional_points;
-    std::vector<bool> seen(mesh.shell_names.size(), false);
-    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
-        const int shell = mesh.triangle_shell[t];
-        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
-        seen[shell] = true;
-    }
-    for (const auto& edge : mesh.edges) {
-        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
-    }
-    return out;
-}
-
 /// A point of `inner` in the material of `outer`, if there is one. Contract: their surfaces do not cross; `outer` bounds a solid.
 std::optional<Vector3> point_inside(const PlacedBody& inner, const PlacedBody& outer) {
-    for (const int v : samples(inner.body->mesh)) {
+    for (const int v : samples(inner)) {
         const Vector3 point = inner.vertices.col(v);
         if (((point - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() > 0) continue;
         if (geometry::point_in_solid(point, outer.vertices, outer.body->mesh.triangles)) return point;
@@ -264,7 +271,7 @@ std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBo
         const geometry::Mesh& mesh = outer.body->mesh;
         if (mesh.triangles.empty()) continue;
         const auto within = [&](int v) { return ((inner.vertices.col(v) - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() <= 0; };
-        const std::vector<int> tried = samples(inner.body->mesh);
+        const std::vector<int>& tried = samples(inner);
         if (std::none_of(tried.begin(), tried.end(), within)) continue;
         if (bounds_a_solid(outer) || !is_nearly_closed(outer)) continue;
         return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +
