@@ -95,20 +95,24 @@ std::vector<CloseBoxes::Group> CloseBoxes::sorted_groups(const std::vector<Box>&
     return out;
 }
 
+CloseBoxes::Group CloseBoxes::joined(const std::vector<Group>& below, int g) {
+    Group group;
+    for (int i = 0; i < 4; ++i) {
+        const auto at = static_cast<std::size_t>(4 * g + i);
+        for (std::size_t k = 0; k < 3; ++k) {
+            group.low[k][i] = at < below.size() ? below[at].low[k].minCoeff() : far_away;
+            group.high[k][i] = at < below.size() ? below[at].high[k].maxCoeff() : -far_away;
+        }
+    }
+    return group;
+}
+
 void CloseBoxes::add_levels() {
     while (levels_.back().size() > 1) {
         const std::vector<Group>& below = levels_.back();
         std::vector<Group> level((below.size() + 3) / 4);
-        base::parallel_for(static_cast<int>(level.size()), boxes_per_piece / 4, [&](int g) {
-            Group& group = level[static_cast<std::size_t>(g)];
-            for (int i = 0; i < 4; ++i) {
-                const auto at = static_cast<std::size_t>(4 * g + i);
-                for (std::size_t k = 0; k < 3; ++k) {
-                    group.low[k][i] = at < below.size() ? below[at].low[k].minCoeff() : far_away;
-                    group.high[k][i] = at < below.size() ? below[at].high[k].maxCoeff() : -far_away;
-                }
-            }
-        });
+        base::parallel_for(static_cast<int>(level.size()), boxes_per_piece / 4,
+                           [&](int g) { level[static_cast<std::size_t>(g)] = joined(below, g); });
         levels_.push_back(std::move(level));
     }
 }
