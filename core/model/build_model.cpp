@@ -162,6 +162,7 @@ void complete_geometry(Body& body) {
 void complete_geometry(std::vector<Body>& bodies) {
     geometry::ShapeIndex shapes;
     std::vector<std::size_t> first_of_shape;
+    first_of_shape.reserve(bodies.size());
     for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
     base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const auto at = static_cast<std::size_t>(i);

@@ -36,6 +36,7 @@ std::optional<double> volume_of(const core::geometry::Mesh& mesh) {
 std::vector<std::optional<double>> volumes_of(const core::model::Model& model) {
     std::map<const core::geometry::BodyHierarchy*, std::optional<double>> known;
     std::vector<std::optional<double>> volumes;
+    volumes.reserve(model.bodies.size());
     for (const Body& body : model.bodies) {
         const auto [entry, fresh] = known.try_emplace(body.hierarchy.get());
         if (fresh || body.hierarchy == nullptr) entry->second = volume_of(body.mesh);
