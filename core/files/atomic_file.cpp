@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <system_error>
+#include <vector>
 
 namespace fettle::core::files {
 
@@ -71,7 +71,12 @@ Result<std::string> read_file(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path, code)) return Error{ErrorCode::file_not_found, path.string(), "no such file"};
     if (std::filesystem::is_directory(path, code)) return Error{ErrorCode::file_unreadable, path.string(), "is a folder, a file is wanted"};
     std::ifstream stream(path, std::ios::binary);
-    std::string contents{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    std::string contents;
+    std::vector<char> block(1 << 16);
+    do {
+        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+        contents.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    } while (stream);
     if (!stream.is_open() || stream.bad()) return Error{ErrorCode::file_unreadable, path.string(), "the file cannot be read"};
     return contents;
 }

@@ -9,15 +9,15 @@
 namespace fettle::core::files {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\v\f";
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 void split(std::string_view line, std::vector<std::string_view>& words) {
-    while (true) {
-        const std::size_t first = line.find_first_not_of(blanks);
-        if (first == std::string_view::npos) return;
-        const std::size_t last = std::min(line.find_first_of(blanks, first), line.size());
-        words.push_back(line.substr(first, last - first));
-        line.remove_prefix(last);
+    for (std::size_t first = 0; first < line.size();) {
+        while (first < line.size() && is_blank(line[first])) ++first;
+        std::size_t last = first;
+        while (last < line.size() && !is_blank(line[last])) ++last;
+        if (last > first) words.push_back(line.substr(first, last - first));
+        first = last;
     }
 }
 
@@ -38,7 +38,7 @@ bool TextLines::next(std::vector<std::string_view>& words) {
         ++lines_read_;
         if (!continued) line_number_ = lines_read_;
         line = line.substr(0, line.find('#'));
-        while (!line.empty() && blanks.find(line.back()) != std::string_view::npos) line.remove_suffix(1);
+        while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
         continued = !line.empty() && line.back() == '\\';
         if (continued) line.remove_suffix(1);
         split(line, words);

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numeric>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -31,8 +31,8 @@ void name_corners(const geometry::Mesh& mesh, HierarchyElement& element) {
 std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
     std::vector<HierarchyElement> elements;
     std::vector<bool> vertex_owned(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    std::map<std::pair<int, int>, int> edge_index;
-    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e) edge_index[std::minmax(mesh.edges[e][0], mesh.edges[e][1])] = e;
+    elements.reserve(mesh.triangles.size());
+    const EdgeIndex edge_index(mesh.edges);
     std::vector<bool> edge_owned(mesh.edges.size(), false);
     const auto own_vertex = [&](HierarchyElement& element, int v) {
         if (vertex_owned[v]) return;
@@ -51,9 +51,9 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         element.vertices = mesh.triangles[t];
         for (int k = 0; k < 3; ++k) {
             own_vertex(element, mesh.triangles[t][k]);
-            const auto edge = edge_index.find(std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]));
-            FETTLE_ASSERT(edge != edge_index.end(), "mesh " + mesh.name + " has a triangle whose edge is not listed");
-            own_edge(element, edge->second);
+            const int edge = edge_index.find(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+            FETTLE_ASSERT(edge >= 0, "mesh " + mesh.name + " has a triangle whose edge is not listed");
+            own_edge(element, edge);
         }
         elements.push_back(element);
     }
@@ -84,6 +84,7 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
 
 std::vector<geometry::Triangle> faces_of(const std::vector<HierarchyElement>& elements) {
     std::vector<geometry::Triangle> faces;
+    faces.reserve(elements.size());
     for (const HierarchyElement& e : elements) {
         const auto& v = e.vertices;
         faces.push_back({v[0], e.vertex_count > 1 ? v[1] : v[0], e.vertex_count > 2 ? v[2] : e.vertex_count > 1 ? v[1] : v[0]});
@@ -91,83 +92,139 @@ std::vector<geometry::Triangle> faces_of(const std::vector<HierarchyElement>& el
     return faces;
 }
 
-struct Box {
+struct Bounds {
     Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
     Vector3 high = -low;
     double radius_squared = 0;
+
     void add(const Vector3& x) {
         low = low.cwiseMin(x);
         high = high.cwiseMax(x);
         radius_squared = std::max(radius_squared, x.squaredNorm());
     }
+    void add(const Bounds& other) {
+        low = low.cwiseMin(other.low);
+        high = high.cwiseMax(other.high);
+        radius_squared = std::max(radius_squared, other.radius_squared);
+    }
 };
 
+/// Halves a list of elements again and again. Where a part stands in the list, and its nodes among all, follows from the numbers of
+/// elements alone: parts that are large enough are built side by side, with the same result.
 class Builder {
 public:
     Builder(const geometry::Mesh& mesh, std::vector<HierarchyElement>& elements, std::vector<HierarchyNode>& nodes)
-        : mesh_(mesh), elements_(elements), nodes_(nodes) {
-        for (const HierarchyElement& element : elements_) centroids_.push_back(centroid(element));
-        order_.resize(elements_.size());
-        std::iota(order_.begin(), order_.end(), 0);
-    }
+        : mesh_(mesh), elements_(elements), nodes_(nodes) {}
 
     void build() {
-        nodes_.reserve(2 * elements_.size());
-        split(0, static_cast<int>(order_.size()));
-        std::vector<HierarchyElement> sorted;
-        sorted.reserve(elements_.size());
-        for (int i : order_) sorted.push_back(elements_[i]);
+        items_.resize(elements_.size());
+        base::parallel_for(count(), grain, [&](int i) {
+            const auto at = static_cast<std::size_t>(i);
+            items_[at] = {centroid(elements_[at]), i};
+        });
+        count_nodes();
+        nodes_.resize(static_cast<std::size_t>(nodes_of(0, count())));
+        split({0, 0, 0, count()});
+        std::vector<HierarchyElement> sorted(elements_.size());
+        base::parallel_for(count(), grain, [&](int i) {
+            const auto at = static_cast<std::size_t>(i);
+            sorted[at] = elements_[static_cast<std::size_t>(items_[at].element)];
+        });
         elements_ = std::move(sorted);
     }
 
 private:
+    struct Item {
+        Vector3 centroid;
+        int element;
+    };
+    struct Part {
+        int node, depth, first, count;
+    };
+    static constexpr int grain = 4096;  ///< elements that one thread takes at least
+
+    int count() const { return static_cast<int>(elements_.size()); }
+
+    /// At each depth parts have the number of all elements divided by 2^depth, rounded down, or one more.
+    void count_nodes() {
+        int depth = 0;
+        while ((count() >> depth) > leaf_size) ++depth;
+        node_counts_.resize(static_cast<std::size_t>(depth) + 1);
+        for (; depth >= 0; --depth) {
+            for (int more = 0; more < 2; ++more) {
+                const int size = (count() >> depth) + more, half = size / 2;
+                node_counts_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(more)] =
+                    size <= leaf_size ? 1 : 1 + nodes_of(depth + 1, half) + nodes_of(depth + 1, size - half);
+            }
+        }
+    }
+    int nodes_of(int depth, int size) const {
+        if (size <= leaf_size) return 1;
+        return node_counts_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(size - (count() >> depth))];
+    }
+
     Vector3 centroid(const HierarchyElement& element) const {
-        Box box;
-        for (int k = 0; k < element.vertex_count; ++k) box.add(mesh_.vertices.col(element.vertices[k]));
+        Bounds box;
+        for (int k = 0; k < element.vertex_count; ++k) box.add(Vector3(mesh_.vertices.col(element.vertices[k])));
         return 0.5 * (box.low + box.high);
     }
 
-    Box bounds(int first, int count) const {
-        Box box;
-        for (int i = first; i < first + count; ++i) {
-            const HierarchyElement& element = elements_[order_[i]];
-            for (int k = 0; k < element.vertex_count; ++k) box.add(mesh_.vertices.col(element.vertices[k]));
+    Bounds leaf_bounds(const Part& part) const {
+        Bounds box;
+        for (int i = part.first; i < part.first + part.count; ++i) {
+            const HierarchyElement& element = elements_[items_[i].element];
+            for (int k = 0; k < element.vertex_count; ++k) box.add(Vector3(mesh_.vertices.col(element.vertices[k])));
         }
         return box;
     }
 
-    int split(int first, int count) {
-        const int index = static_cast<int>(nodes_.size());
-        nodes_.emplace_back();
-        const Box box = bounds(first, count);
-        HierarchyNode node;
+    Bounds split(const Part& part) {
+        HierarchyNode& node = nodes_[static_cast<std::size_t>(part.node)];
+        node.first = part.first;
+        node.count = part.count;
+        Bounds box;
+        if (part.count <= leaf_size) {
+            box = leaf_bounds(part);
+        } else {
+            const int half = partition(part), depth = part.depth + 1;
+            node.left = part.node + 1;
+            node.right = node.left + nodes_of(depth, half);
+            const std::array<Part, 2> halves{Part{node.left, depth, part.first, half},
+                                             Part{node.right, depth, part.first + half, part.count - half}};
+            std::array<Bounds, 2> boxes;
+            const auto split_half = [&](int k) { boxes[static_cast<std::size_t>(k)] = split(halves[static_cast<std::size_t>(k)]); };
+            if (part.count > grain) {
+                base::parallel_for(2, 1, split_half);
+            } else {
+                split_half(0);
+                split_half(1);
+            }
+            box = boxes[0];
+            box.add(boxes[1]);
+        }
         node.center = 0.5 * (box.low + box.high);
         for (int k = 0; k < 3; ++k) {
             const double half = std::max(box.high[k] - node.center[k], node.center[k] - box.low[k]);
             node.half_extent[k] = half > 0 ? rounded_up(half) : 0;
         }
         node.radius = rounded_up(std::sqrt(box.radius_squared) * (1 + 4 * std::numeric_limits<double>::epsilon()));
-        node.first = first;
-        node.count = count;
-        if (count > leaf_size) {
-            const int half = partition(first, count);
-            node.left = split(first, half);
-            node.right = split(first + half, count - half);
-        }
-        nodes_[index] = node;
-        return index;
+        return box;
     }
 
     // Median of the centroids along their longest extent; ties by index, so the tree is a pure function of the mesh.
-    int partition(int first, int count) {
-        Box box;
-        for (int i = first; i < first + count; ++i) box.add(centroids_[order_[i]]);
+    int partition(const Part& part) {
+        Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+        const auto first = items_.begin() + part.first, last = first + part.count;
+        for (auto item = first; item != last; ++item) {
+            low = low.cwiseMin(item->centroid);
+            high = high.cwiseMax(item->centroid);
+        }
         int axis = 0;
-        (box.high - box.low).maxCoeff(&axis);
-        const int half = count / 2;
-        std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count, [&](int a, int b) {
-            const double ca = centroids_[a][axis], cb = centroids_[b][axis];
-            return ca != cb ? ca < cb : a < b;
+        (high - low).maxCoeff(&axis);
+        const int half = part.count / 2;
+        std::nth_element(first, first + half, last, [axis](const Item& a, const Item& b) {
+            const double ca = a.centroid[axis], cb = b.centroid[axis];
+            return ca != cb ? ca < cb : a.element < b.element;
         });
         return half;
     }
@@ -175,8 +232,8 @@ private:
     const geometry::Mesh& mesh_;
     std::vector<HierarchyElement>& elements_;
     std::vector<HierarchyNode>& nodes_;
-    std::vector<Vector3> centroids_;
-    std::vector<int> order_;
+    std::vector<Item> items_;
+    std::vector<std::array<int, 2>> node_counts_;  ///< per depth, of a part of the smaller and of the larger number of elements
 };
 
 }  // namespace

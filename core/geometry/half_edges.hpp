@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The sides of a mesh's triangles, sorted so that those of one edge stand together: what checks and repairs of meshes walk over.
+/// The sides of a mesh's triangles, sorted so that those of one edge stand together: what checks and repairs of meshes walk over; and edges
+/// by number. All in linear time (counting by the smaller index) where indices are as dense as a mesh has them; right for any integers.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +19,9 @@ struct HalfEdge {
     bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
 };
 
-/// By edge, then by triangle.
-std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh);
+/// By edge, then by triangle, then by corner.
+std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles);
+inline std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) { return sorted_half_edges(mesh.triangles); }
 
 /// Calls visit(first, last) with the range of half edges of each edge.
 template <class Visit>
@@ -30,9 +32,40 @@ void visit_edges(const std::vector<HalfEdge>& halves, const Visit& visit) {
     }
 }
 
+/// How many edges there are between two vertices.
+inline std::size_t count_edges(const std::vector<HalfEdge>& halves) {
+    std::size_t count = 0;
+    visit_edges(halves, [&](std::size_t first, std::size_t) { count += halves[first].low != halves[first].high ? 1 : 0; });
+    return count;
+}
+
 /// In exactly two triangles, once in each direction, between two vertices.
 inline bool is_sound_edge(const std::vector<HalfEdge>& halves, std::size_t first, std::size_t last) {
     return last - first == 2 && halves[first].forward != halves[first + 1].forward && halves[first].low != halves[first].high;
 }
+
+/// Edges of triangles, numbered as they first appear, triangle by triangle and corner by corner.
+struct TriangleEdges {
+    std::vector<Edge> edges;   ///< each as its first triangle runs along it
+    std::vector<int> of_side;  ///< 3 per triangle: of the side from corner k to the next; -1 where both are the same vertex
+};
+TriangleEdges triangle_edges(const std::vector<Triangle>& triangles);
+
+/// Finds edges by their ends.
+class EdgeIndex {
+public:
+    explicit EdgeIndex(const std::vector<Edge>& edges);
+
+    /// Position of the edge between a and b, in either direction, the last one if it is listed more than once; -1: none.
+    int find(int a, int b) const;
+
+private:
+    struct Entry {
+        int low, high, edge;
+    };
+    int lowest_ = 0;
+    std::vector<int> first_;      ///< per smaller index, from lowest_: its first entry; empty: entries are sorted, and searched by halves
+    std::vector<Entry> entries_;  ///< by smaller index, then by the larger, then by position
+};
 
 }  // namespace fettle::core::geometry

@@ -16,8 +16,12 @@ struct CornerSums {
 };
 
 CornerSums corner_sums(const Vector3& a, const Vector3& b, const Vector3& c) {
-    const Vector3 sum = a + b + c;
-    return {a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose(), sum};
+    CornerSums sums;
+    sums.first = a + b + c;
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            sums.second(i, j) = sums.second(j, i) = a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + sums.first[i] * sums.first[j];
+    return sums;
 }
 
 /// Of the tetrahedron (0, a, b, c), V = det(a, b, c) / 6: int x = V/4 S, int x x^T = V/20 (a a^T + b b^T + c c^T + S S^T).
@@ -42,27 +46,16 @@ TetrahedronSums tetrahedron_sums(const Matrix3X& vertices, const std::vector<Tri
 }
 
 /// Edges of triangles that have fewer reverses than copies, in order, each as often as a reverse is missing.
-std::vector<Edge> boundary_chain(const std::vector<Triangle>& triangles) {
-    struct DirectedEdge {
-        Edge ends;      ///< the smaller index first
-        int direction;  ///< 1, or -1 where the triangle has it the other way round
-    };
-    std::vector<DirectedEdge> all;
-    all.reserve(3 * triangles.size());
-    for (const Triangle& t : triangles) {
-        for (int k = 0; k < 3; ++k) {
-            const int a = t[k], b = t[(k + 1) % 3];
-            if (a != b) all.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
-        }
-    }
-    std::sort(all.begin(), all.end(), [](const DirectedEdge& a, const DirectedEdge& b) { return a.ends < b.ends; });
+std::vector<Edge> boundary_chain(const std::vector<HalfEdge>& halves) {
     std::vector<Edge> chain;
-    for (std::size_t i = 0; i < all.size();) {
-        const Edge ends = all[i].ends;
+    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        const int low = halves[first].low, high = halves[first].high;
+        if (low == high) return;
         int balance = 0;
-        for (; i < all.size() && all[i].ends == ends; ++i) balance += all[i].direction;
-        chain.insert(chain.end(), static_cast<std::size_t>(std::abs(balance)), balance > 0 ? ends : Edge{ends[1], ends[0]});
-    }
+        for (std::size_t i = first; i < last; ++i) balance += halves[i].forward ? 1 : -1;
+        if (balance != 0)
+            chain.insert(chain.end(), static_cast<std::size_t>(std::abs(balance)), balance > 0 ? Edge{low, high} : Edge{high, low});
+    });
     return chain;
 }
 
@@ -115,7 +108,11 @@ Matrix4 point_moments(const Matrix3X& vertices) {
 }
 
 std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
-    const std::vector<Edge> chain = boundary_chain(triangles);
+    return openings(vertices, sorted_half_edges(triangles));
+}
+
+std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<HalfEdge>& halves) {
+    const std::vector<Edge> chain = boundary_chain(halves);
     if (chain.empty()) return {};
     std::vector<int> parent(static_cast<std::size_t>(vertices.cols()));
     std::iota(parent.begin(), parent.end(), 0);
@@ -142,7 +139,10 @@ std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triang
 }
 
 bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
-    const std::vector<Opening> found = openings(vertices, triangles);
+    return is_nearly_closed(vertices, triangles, openings(vertices, triangles));
+}
+
+bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& found) {
     if (found.empty() || triangles.empty()) return !triangles.empty();
     double open = 0;
     for (const Opening& opening : found) open += opening.area.norm();
@@ -150,8 +150,12 @@ bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& tri
 }
 
 Matrix4 capped_solid_moments(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
+    return capped_solid_moments(vertices, triangles, openings(vertices, triangles));
+}
+
+Matrix4 capped_solid_moments(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& found) {
     TetrahedronSums sums = tetrahedron_sums(vertices, triangles);
-    for (const Opening& opening : openings(vertices, triangles)) {
+    for (const Opening& opening : found) {
         for (const Edge& edge : opening.edges) sums.add(vertices.col(edge[1]), vertices.col(edge[0]), opening.centre);
     }
     return assembled(sums.second / 120, sums.first / 24, sums.zeroth / 6);

@@ -3,6 +3,9 @@
 /// Derivative of the solid's: adjoint/geometry/mass_moments_adjoint.hpp.
 #pragma once
 
+#include <vector>
+
+#include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
@@ -29,13 +32,18 @@ struct Opening {
 };
 std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triangle>& triangles);
 
+/// The same of triangles whose half edges are known. Here and below: what one mesh is asked several times is worked out once.
+std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<HalfEdge>& halves);
+
 /// Openings enclose at most a tenth of the surface: the solid that is meant is that with the openings capped. Closed meshes are; an open
 /// box is not (a fifth), nor is a sheet. False without triangles.
 bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& triangles);
+bool is_nearly_closed(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& openings);
 
 /// solid_moments with every opening capped by the fan to its centre, so that they do not depend on the origin (up to rounding, bit for bit
 /// solid_moments if there is no opening).
 Matrix4 capped_solid_moments(const Matrix3X& vertices, const std::vector<Triangle>& triangles);
+Matrix4 capped_solid_moments(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& openings);
 
 /// M about another origin: moments of X - shift.
 Matrix4 shifted_moments(const Matrix4& moments, const Vector3& shift);

@@ -27,11 +27,7 @@ public:
     Judge(const Mesh& mesh, bool as_solid) : mesh_(mesh), as_solid_(as_solid) {}
 
     MeshFindings run() {
-        MeshRequirements nothing;
-        nothing.closed = nothing.no_self_intersection = false;
-        for (const Error& error : validate_mesh(mesh_, nothing)) {
-            if (error.code != ErrorCode::mesh_invalid) findings_.errors.push_back(error);  // triangles without area are told below
-        }
+        findings_.errors = faults_of_numbers(mesh_);
         if (!findings_.errors.empty()) return findings_;
         look_at_areas();
         look_at_edges();
@@ -51,9 +47,9 @@ private:
 
     void look_at_areas() {
         std::size_t count = 0, first = 0;
+        const std::vector<char> without_area = triangles_without_area(mesh_);
         for (std::size_t t = mesh_.triangles.size(); t-- > 0;) {
-            const Triangle& v = mesh_.triangles[t];
-            if (!is_degenerate({mesh_.vertices.col(v[0]), mesh_.vertices.col(v[1]), mesh_.vertices.col(v[2])})) continue;
+            if (without_area[t] == 0) continue;
             ++count;
             first = t;
         }
@@ -66,7 +62,8 @@ private:
         if (!as_solid_) return;
         std::size_t several = 0, turned = 0;
         HalfEdge first_several{}, first_turned{};
-        const std::vector<HalfEdge> halves = sorted_half_edges(mesh_);
+        halves_ = sorted_half_edges(mesh_);
+        const std::vector<HalfEdge>& halves = halves_;
         visit_edges(halves, [&](std::size_t first, std::size_t last) {
             if (last - first > 2 && several++ == 0) first_several = halves[first];
             const bool same =
@@ -85,26 +82,20 @@ private:
             warn(std::to_string(several) + (several == 1 ? " edge belongs" : " edges belong") + " to more than two triangles, first at " +
                  place(mesh_.vertices.col(first_several.low)) + "; no effect on the mass where both directions stand equally often");
         }
-        std::size_t loose = mesh_.codimensional_points.size();
-        for (const Edge& edge : mesh_.edges) {
-            const HalfEdge wanted{std::min(edge[0], edge[1]), std::max(edge[0], edge[1]), true, 0};
-            const auto found = std::lower_bound(halves.begin(), halves.end(), wanted, [](const HalfEdge& a, const HalfEdge& b) {
-                return a.low != b.low ? a.low < b.low : a.high < b.high;
-            });
-            if (found == halves.end() || !found->same_edge(wanted)) ++loose;
-        }
+        const std::size_t loose =
+            mesh_.codimensional_points.size() + mesh_.edges.size() - std::min(mesh_.edges.size(), count_edges(halves));
         if (loose > 0) warn(std::to_string(loose) + " edges or points belong to no triangle: they touch others, and have no mass");
     }
 
     /// Its volume, openings capped.
     void measure() {
-        if (!is_nearly_closed(mesh_.vertices, mesh_.triangles)) return refuse_open();
-        volume_ = capped_solid_moments(mesh_.vertices, mesh_.triangles)(3, 3);
+        const std::vector<Opening> holes = openings(mesh_.vertices, halves_);
+        if (!is_nearly_closed(mesh_.vertices, mesh_.triangles, holes)) return refuse_open();
+        volume_ = capped_solid_moments(mesh_.vertices, mesh_.triangles, holes)(3, 3);
         if (!(volume_ > 0)) {
             return refuse("mesh",
                           "its volume is not positive: it is inside out, or empty; triangles are counter-clockwise seen from outside");
         }
-        const std::vector<Opening> holes = openings(mesh_.vertices, mesh_.triangles);
         if (holes.empty()) return;
         double bound = 0;  // whatever closes an opening within its hull: two of these differ by no more than its box
         const Opening* largest = &holes.front();
@@ -149,7 +140,7 @@ private:
                            std::to_string(pairs.front().second) + " near " + place(corner(static_cast<std::size_t>(pairs.front().first))) +
                            "; a rigid body never touches itself";
         if (as_solid_) {
-            const auto bound = all && bounds_a_solid(mesh_) ? overlap_volume_bound(mesh_, pairs) : std::nullopt;
+            const auto bound = all && bounds_a_solid(halves_) ? overlap_volume_bound(mesh_, pairs) : std::nullopt;
             text += bound && *bound <= volume_ ? ", " + share(*bound) : ", what it does to the mass could not be bounded: check the volume";
         }
         warn(text);
@@ -158,9 +149,9 @@ private:
     void look_at_nesting() {
         for (const Shell& shell : shells_of(mesh_)) {
             const std::string name = "shell \"" + mesh_.shell_names[static_cast<std::size_t>(shell.index)] + "\"";
-            const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
             if (shell.volume_sign == 0) warn(name + " encloses no volume; no effect on the mass");
             if (shell.volume_sign == 0 || shell.is_oriented()) continue;
+            const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
             warn(name +
                  (shell.depth % 2 == 0
                       ? " is inside out, so that it counts as a hole"
@@ -172,6 +163,7 @@ private:
     const Mesh& mesh_;
     bool as_solid_;
     bool closed_ = true;
+    std::vector<HalfEdge> halves_;  ///< of a solid
     double volume_ = 0;
     MeshFindings findings_;
 };

@@ -2,6 +2,7 @@
 #include "fettle/core/geometry/mesh_repair.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <set>
 
@@ -30,35 +31,61 @@ Triangle from_smallest(Triangle t) {
     return t;
 }
 
-void drop_copies(Mesh& mesh, std::vector<std::string>& done) {
+/// For every triangle: may it be a copy, or have one? Then it runs along a side that another runs along too, in the same direction.
+std::vector<bool> possible_copies(const Mesh& mesh, const std::vector<HalfEdge>& halves) {
+    std::vector<bool> out(mesh.triangles.size(), false);
+    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        std::array<int, 2> count{};
+        for (std::size_t i = first; i < last; ++i) ++count[halves[i].forward ? 1 : 0];
+        for (std::size_t i = first; i < last; ++i)
+            if (count[halves[i].forward ? 1 : 0] > 1) out[static_cast<std::size_t>(halves[i].triangle)] = true;
+    });
+    return out;
+}
+
+/// False if there were none.
+bool drop_copies(Mesh& mesh, const std::vector<HalfEdge>& halves, std::vector<std::string>& done) {
+    const std::vector<bool> possible = possible_copies(mesh, halves);
+    if (std::find(possible.begin(), possible.end(), true) == possible.end()) return false;
     std::set<Triangle> seen;
     std::vector<Triangle> kept;
     std::size_t first = mesh.triangles.size();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (seen.insert(from_smallest(mesh.triangles[t])).second) {
+        if (!possible[t] || seen.insert(from_smallest(mesh.triangles[t])).second) {
             kept.push_back(mesh.triangles[t]);
         } else {
             first = std::min(first, t);
         }
     }
     const std::size_t count = mesh.triangles.size() - kept.size();
-    if (count == 0) return;
+    if (count == 0) return false;
     done.push_back(counted(count, "copy of a triangle is", "copies of triangles are") + " left out, first " + place_of(mesh, first) +
                    ": no effect on the mass");
     mesh.triangles = std::move(kept);
     const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
     build_connectivity(mesh, edges);
+    return true;
+}
+
+/// Is there an edge of two triangles that both run along it the same way?
+bool some_are_turned_over(const std::vector<HalfEdge>& halves) {
+    bool found = false;
+    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        found =
+            found || (last - first == 2 && halves[first].low != halves[first].high && halves[first].forward == halves[first + 1].forward);
+    });
+    return found;
 }
 
 /// For every triangle whether it is to be turned, so that each shell is oriented within itself; shells that cannot be are left as they are.
-std::vector<bool> turns_within_shells(const Mesh& mesh) {
+std::vector<bool> turns_within_shells(const Mesh& mesh, const std::vector<HalfEdge>& halves) {
+    if (!some_are_turned_over(halves)) return std::vector<bool>(mesh.triangles.size(), false);
     struct Link {
         int other;
         bool same_way;  ///< both run the edge in one direction: one of them is turned over
     };
     std::vector<std::vector<Link>> links(mesh.triangles.size());
     std::vector<bool> orientable(mesh.shell_names.size(), true);
-    const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
     visit_edges(halves, [&](std::size_t first, std::size_t last) {
         const HalfEdge &a = halves[first], &b = halves[last - 1];
         if (last - first != 2 || a.low == a.high) {
@@ -94,9 +121,10 @@ std::vector<bool> turns_within_shells(const Mesh& mesh) {
     return out;
 }
 
-void turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& what, std::vector<std::string>& done) {
+/// False if there were none.
+bool turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& what, std::vector<std::string>& done) {
     const auto count = static_cast<std::size_t>(std::count(turns.begin(), turns.end(), true));
-    if (count == 0) return;
+    if (count == 0) return false;
     const auto first = static_cast<std::size_t>(std::find(turns.begin(), turns.end(), true) - turns.begin());
     done.push_back(what + ": " + counted(count, "triangle is", "triangles are") + " turned, first " + place_of(mesh, first));
     for (std::size_t t = 0; t < turns.size(); ++t) {
@@ -104,6 +132,7 @@ void turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& wh
     }
     const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
     build_connectivity(mesh, edges);
+    return true;
 }
 
 /// Which triangles of a closed mesh belong to shells that are inside out.
@@ -129,9 +158,11 @@ std::vector<bool> turns_of_shells(const Mesh& mesh) {
 std::vector<std::string> repair_mesh(Mesh& mesh) {
     std::vector<std::string> done;
     if (mesh.triangles.empty()) return done;
-    drop_copies(mesh, done);
-    turn_over(mesh, turns_within_shells(mesh), "triangles of one surface were turned over", done);
-    if (bounds_a_solid(mesh)) turn_over(mesh, turns_of_shells(mesh), "the solid was inside out", done);
+    std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+    if (drop_copies(mesh, halves, done)) halves = sorted_half_edges(mesh);
+    if (turn_over(mesh, turns_within_shells(mesh, halves), "triangles of one surface were turned over", done))
+        halves = sorted_half_edges(mesh);
+    if (bounds_a_solid(halves)) turn_over(mesh, turns_of_shells(mesh), "the solid was inside out", done);
     return done;
 }
 

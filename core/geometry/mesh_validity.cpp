@@ -72,18 +72,15 @@ void visit_faulty_edges(const std::vector<HalfEdge>& halves, const Visit& visit)
     });
 }
 
-bool check_numbers(const Mesh& mesh, Faults& faults) {
-    bool sound = true;
+void check_numbers(const Mesh& mesh, Faults& faults) {
     for (int i = 0; i < mesh.vertices.cols(); ++i) {
         if (mesh.vertices.col(i).allFinite()) continue;
-        sound = false;
         faults.add(ErrorCode::not_finite, "vertex " + std::to_string(i),
                    "coordinates " + coordinates(mesh.vertices.col(i)) + " are not finite; export the mesh again");
     }
     faults.finish(ErrorCode::not_finite, "vertices that are not finite");
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (in_range(mesh, mesh.triangles[t])) continue;
-        sound = false;
         const Triangle& v = mesh.triangles[t];
         faults.add(ErrorCode::out_of_range, "triangle " + std::to_string(t),
                    "vertex indices " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) +
@@ -92,17 +89,16 @@ bool check_numbers(const Mesh& mesh, Faults& faults) {
     faults.finish(ErrorCode::out_of_range, "triangles with vertex indices out of range");
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         if (in_range(mesh, {mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]})) continue;
-        sound = false;
         faults.add(ErrorCode::out_of_range, "edge " + std::to_string(e), "vertex indices are out of range");
     }
     faults.finish(ErrorCode::out_of_range, "edges with vertex indices out of range");
-    return sound;
 }
 
 void check_areas(const Mesh& mesh, Faults& faults) {
+    const std::vector<char> without_area = triangles_without_area(mesh);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (without_area[t] == 0) continue;
         const Corners x = corners_of(mesh.vertices, mesh.triangles[t]);
-        if (!is_degenerate(x)) continue;
         faults.add(ErrorCode::mesh_invalid, "triangle " + std::to_string(t),
                    "has no area: its corners " + coordinates(x[0]) + ", " + coordinates(x[1]) + ", " + coordinates(x[2]) +
                        " are on one line; remove it and join its neighbours");
@@ -144,8 +140,7 @@ bool check_closed(const Mesh& mesh, Faults& faults) {
     });
     faults.finish(ErrorCode::mesh_invalid, "edges that are not in exactly two triangles, once in each direction");
 
-    const std::size_t triangle_edges = std::min(mesh.edges.size(), make_mesh("", mesh.vertices, mesh.triangles).edges.size());
-    for (std::size_t e = triangle_edges; e < mesh.edges.size(); ++e) {
+    for (std::size_t e = std::min(mesh.edges.size(), count_edges(halves)); e < mesh.edges.size(); ++e) {
         faults.add(ErrorCode::mesh_invalid, "edge " + std::to_string(e),
                    edge_text(mesh, mesh.edges[e][0], mesh.edges[e][1]) + " belongs to no triangle, so not to a solid; remove it");
     }
@@ -198,51 +193,12 @@ void check_orientation(const Mesh& mesh, Faults& faults) {
     faults.finish(ErrorCode::mesh_invalid, "shells that are inside out or empty");
 }
 
-bool all_on_one_side(const Corners& triangle, const Corners& points) {
-    const int side = orient3d(triangle[0], triangle[1], triangle[2], points[0]);
-    return side != 0 && orient3d(triangle[0], triangle[1], triangle[2], points[1]) == side &&
-           orient3d(triangle[0], triangle[1], triangle[2], points[2]) == side;
-}
-
-/// Corners of t in cyclic order such that the ones shared with u come first. Returns how many are shared.
-int rotate_shared_first(Triangle& t, const Triangle& u) {
-    const auto is_shared = [&](int vertex) { return std::find(u.begin(), u.end(), vertex) != u.end(); };
-    const int count = static_cast<int>(std::count_if(t.begin(), t.end(), is_shared));
-    if (count == 1) {
-        while (!is_shared(t[0])) std::rotate(t.begin(), t.begin() + 1, t.end());
-    } else if (count == 2) {
-        while (is_shared(t[2])) std::rotate(t.begin(), t.begin() + 1, t.end());
-    }
-    return count;
-}
-
-/// Two triangles with an area: do they meet anywhere but in the vertices and the edge that they share by index?
-bool intersect_improperly(const Matrix3X& vertices, Triangle t, Triangle u) {
-    const int shared = rotate_shared_first(t, u);
-    rotate_shared_first(u, t);
-    const Corners a = corners_of(vertices, t), b = corners_of(vertices, u);
-    if (shared == 0) return triangles_intersect(a, b);
-    if (shared == 1) {
-        // From a common point x other than the shared vertex v one can go on, away from v, until one of the triangles ends: on its edge
-        // opposite to v, still within the other.
-        return segment_intersects_triangle(a[1], a[2], b) || segment_intersects_triangle(b[1], b[2], a);
-    }
-    if (shared == 2) {
-        // Two half planes bounded by one line meet elsewhere only if they are the same half plane.
-        if (orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
-        const int axis = projection_axis(a[0], a[1], a[2]);
-        const auto side = [&](const Vector3& x) { return orient2d(projected(a[0], axis), projected(a[1], axis), projected(x, axis)); };
-        return side(a[2]) == side(b[2]);
-    }
-    return true;
-}
-
 }  // namespace
 
 Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int max_per_kind) {
-    Errors errors;
+    Errors errors = faults_of_numbers(mesh, max_per_kind);
+    if (!errors.empty()) return errors;  // nothing else has a meaning
     Faults faults(mesh, max_per_kind, errors);
-    if (!check_numbers(mesh, faults)) return errors;  // nothing else has a meaning
     check_areas(mesh, faults);
     const bool closed = requirements.closed && check_closed(mesh, faults);
     const bool simple = requirements.no_self_intersection && check_self_intersections(mesh, max_per_kind, errors);
@@ -256,41 +212,19 @@ Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int
     return errors;
 }
 
-bool is_closed(const Mesh& mesh) {
-    if (mesh.triangles.empty() || !all_in_range(mesh)) return false;
-    bool closed = true;
-    visit_faulty_edges(sorted_half_edges(mesh), [&](std::size_t, std::size_t) { closed = false; });
+Errors faults_of_numbers(const Mesh& mesh, int max_per_kind) {
+    Errors errors;
+    Faults faults(mesh, max_per_kind, errors);
+    check_numbers(mesh, faults);
+    return errors;
+}
+
+bool is_closed(const Mesh& mesh) { return all_in_range(mesh) && is_closed(sorted_half_edges(mesh)); }
+
+bool is_closed(const std::vector<HalfEdge>& halves) {
+    bool closed = !halves.empty();
+    visit_faulty_edges(halves, [&](std::size_t, std::size_t) { closed = false; });
     return closed;
-}
-
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, int max_count) {
-    FETTLE_ASSERT(all_in_range(mesh), "self_intersections needs vertex indices in range");
-    std::vector<Box> boxes;
-    std::vector<int> triangles;  // those with an area; the others are faults of their own
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-        const Corners x = corners_of(mesh.vertices, mesh.triangles[t]);
-        if (is_degenerate(x)) continue;
-        boxes.push_back(box_of(x));
-        triangles.push_back(t);
-    }
-    std::vector<std::pair<int, int>> pairs;
-    if (max_count <= 0) return pairs;
-    visit_overlapping_pairs(boxes, [&](int i, int j) {
-        const int t = triangles[i], u = triangles[j];
-        if (intersect_improperly(mesh.vertices, mesh.triangles[t], mesh.triangles[u])) pairs.emplace_back(t, u);
-        return static_cast<int>(pairs.size()) < max_count;
-    });
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
-
-bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b) {
-    if (!box_of(a).overlaps(box_of(b)) || all_on_one_side(a, b) || all_on_one_side(b, a)) return false;
-    // If they meet, then an edge of one meets the other: the ends of their common segment, or a corner within, are on an edge.
-    for (int k = 0; k < 3; ++k) {
-        if (segment_intersects_triangle(a[k], a[(k + 1) % 3], b) || segment_intersects_triangle(b[k], b[(k + 1) % 3], a)) return true;
-    }
-    return false;
 }
 
 }  // namespace fettle::core::geometry

@@ -2,14 +2,13 @@
 /// Is a mesh the boundary of a solid that can be made? Exact predicates decide; nothing depends on a tolerance.
 #pragma once
 
-#include <array>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
+#include "fettle/core/geometry/self_intersection.hpp"
 
 namespace fettle::core::geometry {
 
@@ -24,11 +23,9 @@ struct MeshRequirements {
 Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int max_per_kind = 5);
 
 bool is_closed(const Mesh& mesh);
+bool is_closed(const std::vector<HalfEdge>& halves);  ///< the same of triangles whose indices are in range
 
-/// Pairs of triangles of one mesh that intersect other than in a shared vertex or edge. Exact.
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, int max_count);
-
-/// Exact test of two triangles in space (touching counts as intersecting).
-bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b);
+/// Of the numbers alone, before anything else has a meaning: coordinates that are not finite, indices out of range.
+Errors faults_of_numbers(const Mesh& mesh, int max_per_kind = 5);
 
 }  // namespace fettle::core::geometry

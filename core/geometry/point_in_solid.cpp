@@ -47,9 +47,10 @@ bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::v
     return winding_number(point, vertices, triangles).value_or(0) != 0;
 }
 
-bool bounds_a_solid(const Mesh& mesh) {
-    bool balanced = !mesh.triangles.empty();
-    const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+bool bounds_a_solid(const Mesh& mesh) { return bounds_a_solid(sorted_half_edges(mesh)); }
+
+bool bounds_a_solid(const std::vector<HalfEdge>& halves) {
+    bool balanced = !halves.empty();
     visit_edges(halves, [&](std::size_t first, std::size_t last) {
         int balance = 0;
         for (std::size_t i = first; i < last; ++i) balance += halves[i].forward ? 1 : -1;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
@@ -21,5 +22,6 @@ bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::v
 /// Has every directed edge of the triangles its reverse, as often? Then inside and outside have a meaning, even where more than two
 /// triangles meet in an edge. False without triangles.
 bool bounds_a_solid(const Mesh& mesh);
+bool bounds_a_solid(const std::vector<HalfEdge>& halves);
 
 }  // namespace fettle::core::geometry

@@ -2,6 +2,7 @@
 #include "fettle/core/geometry/shells.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
@@ -20,22 +21,43 @@ bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertice
     return false;
 }
 
+/// Of the triangles of a shell, in order. @param last_shell  per vertex the last shell that it was found in.
+std::vector<int> distinct_vertices(const std::vector<Triangle>& triangles, std::vector<int>& last_shell, int shell) {
+    std::vector<int> out;
+    for (const Triangle& t : triangles) {
+        for (const int v : t) {
+            if (std::exchange(last_shell[static_cast<std::size_t>(v)], shell) != shell) out.push_back(v);
+        }
+    }
+    if (16 * out.size() < last_shell.size()) {
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+    out.clear();
+    for (std::size_t v = 0; v < last_shell.size(); ++v) {
+        if (last_shell[v] == shell) out.push_back(static_cast<int>(v));
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<Shell> shells_of(const Mesh& mesh) {
     FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "shells need a mesh with connectivity (build_connectivity)");
     std::vector<Shell> shells(mesh.shell_names.size());
+    std::vector<int> last_shell(static_cast<std::size_t>(mesh.vertices.cols()), -1);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         shells.at(static_cast<std::size_t>(mesh.triangle_shell[t])).triangles.push_back(mesh.triangles[t]);
     for (std::size_t s = 0; s < shells.size(); ++s) {
         Shell& shell = shells[s];
         shell.index = static_cast<int>(s);
         shell.volume_sign = volume_sign(mesh.vertices, shell.triangles);
-        for (const Triangle& t : shell.triangles) shell.vertices.insert(shell.vertices.end(), t.begin(), t.end());
-        std::sort(shell.vertices.begin(), shell.vertices.end());
-        shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
-        const Matrix3X places = mesh.vertices(Eigen::all, shell.vertices);
-        shell.box = {places.rowwise().minCoeff(), places.rowwise().maxCoeff()};
+        shell.vertices = distinct_vertices(shell.triangles, last_shell, shell.index);
+        shell.box = {mesh.vertices.col(shell.vertices[0]), mesh.vertices.col(shell.vertices[0])};
+        for (const int v : shell.vertices) {
+            shell.box.low = shell.box.low.cwiseMin(mesh.vertices.col(v));
+            shell.box.high = shell.box.high.cwiseMax(mesh.vertices.col(v));
+        }
     }
     for (Shell& shell : shells) {
         for (const Shell& other : shells) {

@@ -2,8 +2,11 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <assimp/Importer.hpp>
+#include <memory>
 #include <string>
+
+#include "fettle/core/base/shared_library.hpp"
+#include "fettle/core/mesh_files/assimp_library.hpp"
 
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 
@@ -46,17 +49,25 @@ void append_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& pa
     for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(scene, *node.mChildren[i], to_world, mesh);
 }
 
+RawMesh mesh_by(const AssimpLibrary& assimp, const aiScene* scene) {
+    const std::unique_ptr<const aiScene, void (*)(const aiScene*)> owner(scene, assimp.release_import);
+    RawMesh mesh;
+    append_node(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
+    return mesh;
+}
+
 }  // namespace
 
 Result<RawMesh> read_by_assimp(const std::string& path) {
-    RawMesh mesh;
-    Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-        return Error{ErrorCode::parse, path, std::string("cannot be read as a mesh: ") + importer.GetErrorString()};
+    try {
+        const AssimpLibrary& assimp = assimp_library();
+        const aiScene* scene = assimp.import_file(path.c_str(), aiProcess_Triangulate);
+        if (scene == nullptr || scene->mRootNode == nullptr)
+            return Error{ErrorCode::parse, path, std::string("cannot be read as a mesh: ") + assimp.error_string()};
+        return mesh_by(assimp, scene);
+    } catch (const base::MissingLibrary& missing) {
+        return Error{ErrorCode::unsupported, path, std::string(missing.what()) + "; .obj, .off and .3mf are read without it"};
     }
-    append_node(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
-    return mesh;
 }
 
 }  // namespace fettle::core::mesh_files

@@ -11,6 +11,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/geometry/connectivity.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
@@ -79,23 +80,32 @@ struct GroupedTriangles {
 /// Polygons cut into triangles; with `weld` without those that have two equal corners.
 Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const std::string& path) {
     GroupedTriangles result;
+    result.triangles.reserve(raw.polygon_ends.size());
+    result.group.reserve(raw.polygon_ends.size());
+    const auto add = [&](const Triangle& t, int group) {
+        const Vector3 &a = raw.vertices[t[0]], &b = raw.vertices[t[1]], &c = raw.vertices[t[2]];
+        if (weld && (a == b || b == c || c == a)) return;
+        result.triangles.push_back(t);
+        result.group.push_back(group);
+    };
     int first = 0;
     for (std::size_t p = 0; p < raw.polygon_ends.size(); ++p) {
-        const std::vector<Triangle> pieces = triangulated(raw.vertices, raw.corners.data() + first, raw.polygon_ends[p] - first);
+        const int* corners = raw.corners.data() + first;
+        const int count = raw.polygon_ends[p] - first;
+        first = raw.polygon_ends[p];
+        if (count == 3) {
+            add({corners[0], corners[1], corners[2]}, raw.polygon_group[p]);
+            continue;
+        }
+        const std::vector<Triangle> pieces = triangulated(raw.vertices, corners, count);
         if (pieces.empty()) {
             std::ostringstream text;
-            text << "face " << p << " (counted from 0), a polygon of " << raw.polygon_ends[p] - first << " vertices near ("
-                 << raw.vertices[static_cast<std::size_t>(raw.corners[static_cast<std::size_t>(first)])].transpose()
+            text << "face " << p << " (counted from 0), a polygon of " << count << " vertices near ("
+                 << raw.vertices[static_cast<std::size_t>(corners[0])].transpose()
                  << "), has no area or an outline that crosses itself; export the mesh as triangles";
             return Error{ErrorCode::mesh_invalid, path, text.str()};
         }
-        for (const Triangle& t : pieces) {
-            const Vector3 &a = raw.vertices[t[0]], &b = raw.vertices[t[1]], &c = raw.vertices[t[2]];
-            if (weld && (a == b || b == c || c == a)) continue;
-            result.triangles.push_back(t);
-            result.group.push_back(raw.polygon_group[p]);
-        }
-        first = raw.polygon_ends[p];
+        for (const Triangle& t : pieces) add(t, raw.polygon_group[p]);
     }
     return result;
 }
@@ -131,15 +141,17 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
     auto faces = grouped_triangles(raw, options.weld, path);
     if (!faces) return faces.errors();
 
+    const std::string name = std::filesystem::path(path).filename().string();
+    Matrix3X vertices(3, static_cast<Eigen::Index>(raw.vertices.size()));
+    for (std::size_t i = 0; i < raw.vertices.size(); ++i) vertices.col(static_cast<Eigen::Index>(i)) = raw.vertices[i];
     Mesh mesh;
-    mesh.name = std::filesystem::path(path).filename().string();
-    mesh.vertices.resize(3, static_cast<Eigen::Index>(raw.vertices.size()));
-    for (std::size_t i = 0; i < raw.vertices.size(); ++i) mesh.vertices.col(static_cast<Eigen::Index>(i)) = raw.vertices[i];
-    mesh.triangles = std::move(faces->triangles);
-    geometry::build_connectivity(mesh, raw.edges);
     if (options.weld) {
-        mesh.shell_names.clear();  // of the unwelded shells
-        mesh = geometry::weld_exactly(mesh);
+        mesh = geometry::welded_mesh(name, vertices, faces->triangles, raw.edges);
+    } else {
+        mesh.name = name;
+        mesh.vertices = std::move(vertices);
+        mesh.triangles = std::move(faces->triangles);
+        geometry::build_connectivity(mesh, raw.edges);
     }
     name_shells(mesh, faces->group, raw.groups);
     return mesh;

@@ -67,13 +67,12 @@ private:
 
     void parse_face(const Words& words) {
         if (words.size() < 3) return fail(ErrorCode::parse, "a face needs at least two vertices");
-        std::vector<int> corners;
-        for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(vertex_index(words[i]));
-        if (corners.size() == 2) {
-            mesh_.edges.push_back({corners[0], corners[1]});
+        if (words.size() == 3) {
+            const int from = vertex_index(words[1]), to = vertex_index(words[2]);
+            mesh_.edges.push_back({from, to});
             return;
         }
-        mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());
+        for (std::size_t i = 1; i < words.size(); ++i) mesh_.corners.push_back(vertex_index(words[i]));
         mesh_.polygon_ends.push_back(static_cast<int>(mesh_.corners.size()));
         mesh_.polygon_group.push_back(group_);
     }

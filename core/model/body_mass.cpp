@@ -22,8 +22,10 @@ std::optional<Vector3> BodyMeasure::centre() const {
 }
 
 BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind) {
-    const bool closed = kind != scene::MassKind::volume || geometry::is_nearly_closed(mesh.vertices, mesh.triangles);
-    return {scene::unit_moments(mesh, kind), closed};
+    if (kind != scene::MassKind::volume) return {scene::unit_moments(mesh, kind), true};
+    const std::vector<geometry::Opening> openings = geometry::openings(mesh.vertices, mesh.triangles);
+    return {geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings),
+            geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)};
 }
 
 Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure) {
@@ -33,7 +35,11 @@ Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& meas
 }
 
 Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat) {
-    Matrix4 moments = body.density * scene::unit_moments(body.mesh, kind);
+    return mass_moments(body, kind, dhat, scene::unit_moments(body.mesh, kind));
+}
+
+Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat, const Matrix4& unit_moments) {
+    Matrix4 moments = body.density * unit_moments;
     if (kind != scene::MassKind::length && kind != scene::MassKind::vertex) return moments;
     const double mass = moments(3, 3);
     const Vector3 first = moments.col(3).head<3>();

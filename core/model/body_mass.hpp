@@ -29,4 +29,7 @@ Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& meas
 /// itself, nor a point about anything, so that the Newton matrix would be singular: see build_model.hpp. @param dhat  [m]
 Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat);
 
+/// The same from what its mesh has with a density of 1, which bodies of one mesh have in common.
+Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat, const Matrix4& unit_moments);
+
 }  // namespace fettle::core::model

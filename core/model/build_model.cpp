@@ -7,7 +7,9 @@
 #include <map>
 #include <utility>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
+#include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/model/body_mass.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/model/start_check.hpp"
@@ -58,16 +60,27 @@ void add_areas(Body& body) {
     const geometry::Mesh& mesh = body.mesh;
     body.vertex_area.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
     body.edge_area.assign(mesh.edges.size(), 0);
-    std::map<std::pair<int, int>, std::size_t> edge_index;
-    for (std::size_t e = 0; e < mesh.edges.size(); ++e) edge_index[std::minmax(mesh.edges[e][0], mesh.edges[e][1])] = e;
+    const geometry::EdgeIndex edge_index(mesh.edges);
     for (const geometry::Triangle& t : mesh.triangles) {
         const Vector3 u = mesh.vertices.col(t[1]) - mesh.vertices.col(t[0]), v = mesh.vertices.col(t[2]) - mesh.vertices.col(t[0]);
         const double third = u.cross(v).norm() / 6;
         for (int k = 0; k < 3; ++k) {
             body.vertex_area[t[k]] += third;
-            if (const auto e = edge_index.find(std::minmax(t[k], t[(k + 1) % 3])); e != edge_index.end())
-                body.edge_area[e->second] += third;
+            if (const int e = edge_index.find(t[k], t[(k + 1) % 3]); e >= 0) body.edge_area[static_cast<std::size_t>(e)] += third;
         }
+    }
+}
+
+/// Bodies that share a hierarchy have one mesh, which is integrated once.
+void add_masses(const scene::Scene& scene, Model& model) {
+    std::map<std::pair<const geometry::BodyHierarchy*, scene::MassKind>, Matrix4> unit_moments;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        if (scene.bodies[i].type != BodyType::dynamic_body) continue;
+        Body& body = model.bodies[i];
+        const scene::MassKind kind = scene.bodies[i].mass_kind;
+        const auto [entry, fresh] = unit_moments.try_emplace({body.hierarchy.get(), kind});
+        if (fresh) entry->second = scene::unit_moments(body.mesh, kind);
+        body.moments = mass_moments(body, kind, model.dhat, entry->second);
     }
 }
 
@@ -138,6 +151,7 @@ void warn_of_unused_rates(Model& model) {
 void complete_geometry(Body& body) {
     body.radius = rounded_up_radius(body.mesh.vertices);
     body.edge_length_squared.clear();
+    body.edge_length_squared.reserve(body.mesh.edges.size());
     for (const auto& edge : body.mesh.edges) {
         body.edge_length_squared.push_back((body.mesh.vertices.col(edge[1]) - body.mesh.vertices.col(edge[0])).squaredNorm());
     }
@@ -149,13 +163,17 @@ void complete_geometry(Body& body) {
 
 void complete_geometry(std::vector<Body>& bodies) {
     geometry::ShapeIndex shapes;
+    std::vector<std::size_t> first_of_shape;
+    first_of_shape.reserve(bodies.size());
+    for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
+    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (first_of_shape[at] == at) complete_geometry(bodies[at]);
+    });
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         Body& body = bodies[i];
-        const std::size_t first = shapes.add(body.mesh);
-        if (first == i) {
-            complete_geometry(body);
-            continue;
-        }
+        const std::size_t first = first_of_shape[i];
+        if (first == i) continue;
         const Body& twin = bodies[first];
         body.radius = twin.radius;
         body.edge_length_squared = twin.edge_length_squared;
@@ -193,10 +211,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
         model.bodies.push_back(build_body(scene.bodies[i], point));
     }
     complete_geometry(model.bodies);
-    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        if (scene.bodies[i].type == BodyType::dynamic_body)
-            model.bodies[i].moments = mass_moments(model.bodies[i], scene.bodies[i].mass_kind, model.dhat);
-    }
+    add_masses(scene, model);
     model.friction = build_friction(scene, model.bodies);
     model.integrator = scene.integrator;
     model.area_weighted = scene.area_weighted;

@@ -63,7 +63,8 @@ Errors check_strictly(const scene::Body& body, const std::string& where) {
     return errors;
 }
 
-Errors check_mass(const scene::Body& body, const BodyMeasure& measure, const std::string& where) {
+/// @param closed  Of a volume: is the mesh as closed as its policy wants?
+Errors check_mass(const scene::Body& body, const BodyMeasure& measure, bool closed, const std::string& where) {
     if (body.type != BodyType::dynamic_body) return {};
     const std::string name = "body `" + body.name + "`: ", unit = scene::density_unit(body.mass_kind);
     if (!std::isfinite(body.density)) return {{ErrorCode::not_finite, where + "/density", name + "the density is not finite"}};
@@ -71,8 +72,7 @@ Errors check_mass(const scene::Body& body, const BodyMeasure& measure, const std
         return {{ErrorCode::out_of_range, where + "/density",
                  name + "the density is " + std::to_string(body.density) + " " + unit + ", it must be greater than 0"}};
     }
-    const bool strict = body.mesh_policy == MeshPolicy::strict;
-    if (body.mass_kind == MassKind::volume && !(strict ? geometry::is_closed(body.mesh) : measure.closed_enough)) {
+    if (body.mass_kind == MassKind::volume && !closed) {
         return {
             {ErrorCode::mesh_invalid, where + "/mesh",
              name +
@@ -183,8 +183,10 @@ public:
     explicit BodyChecks(bool check_meshes) : check_meshes_(check_meshes) {}
 
     void add(const scene::Body& body, const std::string& where, SceneCheck& check) {
-        Errors found = check_usable(body, where);
         const std::size_t shape = shapes_.add(body.mesh);
+        Errors found;
+        if (usable_.count(shape) == 0) found = check_usable(body, where);
+        if (found.empty()) usable_.insert(shape);
         BodyMeasure measure;
         // A mesh that cannot be indexed has nothing more to tell, and a mesh that is known to be bad has no mass worth judging.
         if (found.empty() && check_meshes_ && sound_.count({shape, must_be_closed(body), body.mesh_policy}) == 0) {
@@ -195,15 +197,24 @@ public:
             const auto [entry, fresh] = measures_.try_emplace({shape, body.mass_kind});
             if (fresh) entry->second = measure_body(body.mesh, body.mass_kind);
             measure = entry->second;
-            found = check_mass(body, measure, where);
+            found = check_mass(body, measure, is_closed(body, shape, measure), where);
         }
         for (const Errors& more : {found, check_motion(body, where)}) check.errors.insert(check.errors.end(), more.begin(), more.end());
         check.measures.push_back(measure);
     }
 
 private:
+    bool is_closed(const scene::Body& body, std::size_t shape, const BodyMeasure& measure) {
+        if (body.mass_kind != MassKind::volume || body.mesh_policy != MeshPolicy::strict) return measure.closed_enough;
+        const auto [entry, fresh] = closed_.try_emplace(shape, false);
+        if (fresh) entry->second = geometry::is_closed(body.mesh);
+        return entry->second;
+    }
+
     bool check_meshes_;
     geometry::ShapeIndex shapes_;
+    std::set<std::size_t> usable_;
+    std::map<std::size_t, bool> closed_;
     std::set<std::tuple<std::size_t, bool, MeshPolicy>> sound_;
     std::map<std::pair<std::size_t, MassKind>, BodyMeasure> measures_;
 };

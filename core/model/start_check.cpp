@@ -2,16 +2,21 @@
 #include "fettle/core/model/start_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "fettle/core/geometry/point_in_solid.hpp"
 #include "fettle/core/geometry/predicates.hpp"
 
 namespace fettle::core::model {
@@ -21,17 +26,24 @@ using geometry::HierarchyElement;
 using geometry::HierarchyNode;
 using Corners = std::array<Vector3, 3>;  ///< of an element; an edge or a point repeats its last vertex
 
-struct Box {
+struct CenteredBox {
     Vector3 center, half;
+};
+
+/// What is asked of one mesh again and again, and found out when it is wanted first. Bodies that share a hierarchy have one mesh.
+struct MeshFacts {
+    std::optional<bool> bounds_a_solid, nearly_closed;
+    std::optional<std::vector<int>> samples;
 };
 
 struct PlacedBody {
     const Body* body = nullptr;
+    MeshFacts* facts = nullptr;
     Matrix3X vertices;  ///< world, rounded: the positions that the verdict is about
-    Box box;            ///< of all of them, with some room
+    CenteredBox box;    ///< of all of them, with some room
     double slack = 0;   ///< far above the rounding error of a position
 
-    Box placed(const HierarchyNode& node) const {
+    CenteredBox placed(const HierarchyNode& node) const {
         const Matrix3& rotation = body->pose_start.rotation;
         return {rotation * node.center + body->pose_start.position, rotation.cwiseAbs() * node.half_extent + Vector3::Constant(slack)};
     }
@@ -42,21 +54,60 @@ struct PlacedBody {
     }
 };
 
-PlacedBody place(const Body& body) {
+PlacedBody place(const Body& body, MeshFacts& facts) {
     PlacedBody out;
     out.body = &body;
+    out.facts = &facts;
     out.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
     out.slack = 1e-14 * (body.radius + body.pose_start.position.cwiseAbs().maxCoeff());
     out.box = out.placed(body.hierarchy->nodes().front());
     return out;
 }
 
-double gap_squared(const Box& a, const Box& b) { return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0).squaredNorm(); }
+double gap_squared(const CenteredBox& a, const CenteredBox& b) {
+    return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0).squaredNorm();
+}
 
 bool elements_intersect(const Corners& a, int a_count, const Corners& b, int b_count) {
     if (a_count == 3 && b_count == 3) return geometry::triangles_intersect(a, b);
     if (a_count == 3) return geometry::segment_intersects_triangle(b[0], b[1], a);
     return geometry::segment_intersects_triangle(a[0], a[1], b);
+}
+
+bool bounds_a_solid(const PlacedBody& placed) {
+    std::optional<bool>& known = placed.facts->bounds_a_solid;
+    if (!known) known = geometry::bounds_a_solid(placed.body->mesh);
+    return *known;
+}
+
+bool is_nearly_closed(const PlacedBody& placed) {
+    std::optional<bool>& known = placed.facts->nearly_closed;
+    const geometry::Mesh& mesh = placed.body->mesh;
+    if (!known) known = geometry::is_nearly_closed(mesh.vertices, mesh.triangles);
+    return *known;
+}
+
+/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
+std::vector<int> samples_of(const geometry::Mesh& mesh) {
+    std::vector<int> out = mesh.codimensional_points;
+    std::vector<bool> seen(mesh.shell_names.size(), false);
+    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
+        const int shell = mesh.triangle_shell[t];
+        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
+        seen[shell] = true;
+    }
+    for (const auto& edge : mesh.edges) {
+        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
+    }
+    return out;
+}
+
+const std::vector<int>& samples(const PlacedBody& placed) {
+    std::optional<std::vector<int>>& known = placed.facts->samples;
+    if (!known) known = samples_of(placed.body->mesh);
+    return *known;
 }
 
 struct Approach {
@@ -156,26 +207,9 @@ private:
     std::optional<Fault> fault_;
 };
 
-/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
-std::vector<int> samples(const geometry::Mesh& mesh) {
-    std::vector<int> out = mesh.codimensional_points;
-    std::vector<bool> seen(mesh.shell_names.size(), false);
-    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
-        const int shell = mesh.triangle_shell[t];
-        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
-        seen[shell] = true;
-    }
-    for (const auto& edge : mesh.edges) {
-        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
-    }
-    return out;
-}
-
 /// A point of `inner` in the material of `outer`, if there is one. Contract: their surfaces do not cross; `outer` bounds a solid.
 std::optional<Vector3> point_inside(const PlacedBody& inner, const PlacedBody& outer) {
-    for (const int v : samples(inner.body->mesh)) {
+    for (const int v : samples(inner)) {
         const Vector3 point = inner.vertices.col(v);
         if (((point - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() > 0) continue;
         if (geometry::point_in_solid(point, outer.vertices, outer.body->mesh.triangles)) return point;
@@ -221,7 +255,7 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
     }
     for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
         // Whether a mesh is closed is worth finding out only when something lies within its box.
-        if (outer->body->mesh.triangles.empty() || !geometry::bounds_a_solid(outer->body->mesh)) continue;
+        if (outer->body->mesh.triangles.empty() || !bounds_a_solid(*outer)) continue;
         if (const auto point = point_inside(*inner, *outer)) {
             return messages.error(*inner->body, *outer->body, "overlap at the start: the first lies inside the second's material", *point);
         }
@@ -237,43 +271,71 @@ std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBo
         const geometry::Mesh& mesh = outer.body->mesh;
         if (mesh.triangles.empty()) continue;
         const auto within = [&](int v) { return ((inner.vertices.col(v) - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() <= 0; };
-        const std::vector<int> tried = samples(inner.body->mesh);
+        const std::vector<int>& tried = samples(inner);
         if (std::none_of(tried.begin(), tried.end(), within)) continue;
-        if (geometry::bounds_a_solid(mesh) || !geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) continue;
+        if (bounds_a_solid(outer) || !is_nearly_closed(outer)) continue;
         return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +
                outer.body->name + "` is not closed";
     }
     return std::nullopt;
 }
 
+/// Pairs of bodies whose boxes come as close as the minimum separation, in order: all others are at peace.
+std::vector<std::pair<int, int>> close_bodies(const std::vector<PlacedBody>& bodies, double dmin) {
+    std::vector<geometry::Box> boxes;
+    for (const PlacedBody& placed : bodies) {
+        // Half of it on each side, and room for the rounding of these sums.
+        const Vector3 half = (placed.box.half.array() + 0.5 * dmin).matrix() * (1 + 1e-12);
+        const Vector3 room = 1e-12 * (placed.box.center.cwiseAbs() + half);
+        FETTLE_ASSERT(half.allFinite() && room.allFinite(), "body " + placed.body->name + " has no finite place");
+        boxes.push_back({placed.box.center - half - room, placed.box.center + half + room});
+    }
+    std::vector<std::pair<int, int>> pairs;
+    geometry::visit_overlapping_pairs(boxes, [&](int i, int j) {
+        pairs.emplace_back(i, j);
+        return true;
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+/// Adds to the report what there is to say of two bodies.
+void report_pair(const Model& model, std::pair<int, int> pair, const std::vector<PlacedBody>& bodies, const Messages& messages,
+                 StartReport& report) {
+    const auto [i, j] = pair;
+    const PlacedBody &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
+    const bool grouped = a.body->group >= 0 && a.body->group == b.body->group, collide = may_collide(model, i, j);
+    if (!collide && grouped) return;
+    auto error = check_pair(a, b, collide ? model.dmin : 0, messages);
+    if (collide) {
+        const auto doubt = error ? std::nullopt : containment_doubt(a, b);
+        if (doubt) report.warnings.push_back(*doubt);
+        if (error) report.errors.push_back(std::move(*error));
+    } else if (error) {
+        report.warnings.push_back(error->message + " (contact never acts between them: neither is dynamic)");
+    }
+}
+
 }  // namespace
 
 std::optional<base::Error> check_start_pair(const Model& model, int a, int b) {
-    return check_pair(place(model.bodies[static_cast<std::size_t>(a)]), place(model.bodies[static_cast<std::size_t>(b)]), model.dmin,
-                      Messages(model));
+    std::array<MeshFacts, 2> facts;
+    return check_pair(place(model.bodies[static_cast<std::size_t>(a)], facts[0]),
+                      place(model.bodies[static_cast<std::size_t>(b)], facts[1]), model.dmin, Messages(model));
 }
 
 StartReport report_start(const Model& model) {
-    std::vector<PlacedBody> bodies;
-    for (const Body& body : model.bodies) bodies.push_back(place(body));
+    std::map<const geometry::BodyHierarchy*, MeshFacts> facts;
+    for (const Body& body : model.bodies) facts[body.hierarchy.get()];
+    const int count = static_cast<int>(model.bodies.size());
+    std::vector<PlacedBody> bodies(model.bodies.size());
+    base::parallel_for(count, 1, [&](int i) {
+        const Body& body = model.bodies[static_cast<std::size_t>(i)];
+        bodies[static_cast<std::size_t>(i)] = place(body, facts.at(body.hierarchy.get()));
+    });
     const Messages messages(model);
     StartReport report;
-    const int count = static_cast<int>(bodies.size());
-    for (int i = 0; i < count; ++i) {
-        for (int j = i + 1; j < count; ++j) {
-            const PlacedBody &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
-            const bool grouped = a.body->group >= 0 && a.body->group == b.body->group;
-            if (!may_collide(model, i, j) && grouped) continue;
-            auto error = check_pair(a, b, may_collide(model, i, j) ? model.dmin : 0, messages);
-            if (may_collide(model, i, j)) {
-                const auto doubt = error ? std::nullopt : containment_doubt(a, b);
-                if (doubt) report.warnings.push_back(*doubt);
-                if (error) report.errors.push_back(std::move(*error));
-            } else if (error) {
-                report.warnings.push_back(error->message + " (contact never acts between them: neither is dynamic)");
-            }
-        }
-    }
+    for (const auto& pair : close_bodies(bodies, model.dmin)) report_pair(model, pair, bodies, messages, report);
     constexpr std::size_t most = 20;
     if (const std::size_t all = report.warnings.size(); all > most) {
         report.warnings.resize(most);

@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "fettle/core/files/index_rows.hpp"
+#include "fettle/core/geometry/half_edges.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
@@ -80,24 +82,25 @@ BodyType body_type(const files::JsonNode& node, const std::array<bool, 6>& fixed
     return type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
 }
 
-/// What the density is per. A solid that is inside out is turned: which side is out is not what its file meant to say.
-void decide_mass(const files::JsonNode& node, Body& body) {
-    geometry::Mesh& mesh = body.mesh;
-    const bool dynamic = body.type == BodyType::dynamic_body;
-    if (mesh.triangles.empty()) {
-        body.mass_kind = mesh.edges.empty() ? MassKind::vertex : MassKind::length;
-        return;
-    }
-    body.mass_kind = centre_of_mass(mesh, MassKind::volume) ? MassKind::volume : MassKind::area;
-    if (!dynamic) return;
-    if (body.mass_kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
-    if (body.mass_kind == MassKind::area || unit_moments(mesh, MassKind::volume)(3, 3) > 0) {
-        if (body.mass_kind == MassKind::volume && !geometry::is_closed(mesh))
-            node.warn("the mesh has gaps: it is a solid with these capped");
-        return;
-    }
+MeshMass look_at_mass(const geometry::Mesh& mesh) {
+    if (mesh.triangles.empty()) return {mesh.edges.empty() ? MassKind::vertex : MassKind::length};
+    const std::vector<geometry::HalfEdge> halves = geometry::sorted_half_edges(mesh);
+    const std::vector<geometry::Opening> openings = geometry::openings(mesh.vertices, halves);
+    if (!geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return {MassKind::area};
+    const Matrix4 moments = geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings);
+    if (!centre_of_mass(moments)) return {MassKind::area};
+    return {MassKind::volume, !(moments(3, 3) > 0), !geometry::is_closed(halves)};
+}
+
+/// A solid that is inside out is turned: which side is out is not what its file meant to say.
+void decide_mass(const files::JsonNode& node, const MeshMass& mass, Body& body) {
+    body.mass_kind = mass.kind;
+    if (body.type != BodyType::dynamic_body || body.mesh.triangles.empty()) return;
+    if (mass.kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
+    if (mass.has_gaps && !mass.inside_out) node.warn("the mesh has gaps: it is a solid with these capped");
+    if (!mass.inside_out) return;
     node.warn("the mesh is inside out: its triangles are turned");
-    geometry::turn_triangles(mesh);
+    geometry::turn_triangles(body.mesh);
 }
 
 void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
@@ -197,15 +200,18 @@ std::optional<geometry::Mesh> FixtureBodies::mesh(const files::JsonNode& node) {
 }
 
 /// Everything but mass and motion, which a component of a split body has for itself.
-Body FixtureBodies::placed(const files::JsonNode& node) {
-    Body body;
+FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
+    Placed out;
+    Body& body = out.body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
     const auto mesh = this->mesh(node);
-    if (!mesh) return body;
+    if (!mesh) return out;
     body.mesh = *mesh;
-    geometry::scale_mesh(body.mesh, scale_factors(node, body.mesh));
+    out.factors = scale_factors(node, body.mesh);
+    geometry::scale_mesh(body.mesh, out.factors);
     const files::JsonNode file = node["mesh"];
+    out.file = file.is_string() ? file.string().value() : "";
     body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
     if (body.name.empty()) body.name = "body";
     std::replace_if(
@@ -217,13 +223,14 @@ Body FixtureBodies::placed(const files::JsonNode& node) {
     }
     body.pose.position = fixture_vector(node["position"].unless_null()).value_or(Vector3::Zero());
     body.group = std::max(-1, node["group_id"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(-1));
-    return body;
+    return out;
 }
 
 std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timestep) {
     node.warn_of_other_keys(fixture_body_keys);
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
-    Body body = placed(node);
+    Placed found = placed(node);
+    Body& body = found.body;
     if (body.mesh.vertices.cols() == 0) return {};
     const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
     body.type = body_type(node["type"].unless_null(), fixed);
@@ -231,14 +238,22 @@ std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timest
     body.density = (body.type == BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
     body.density_given = density.exists() || body.type == BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
     std::vector<Body> bodies;
+    std::size_t part = 0;
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
     for (geometry::Mesh& mesh : split ? geometry::split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {
         bodies.push_back(body);
         bodies.back().mesh = std::move(mesh);
-        decide_mass(node, bodies.back());
+        decide_mass(node, mass_of(bodies.back().mesh, found, part++), bodies.back());
         read_motion(node, fixed, timestep, bodies.back());
     }
     return bodies;
+}
+
+MeshMass FixtureBodies::mass_of(const geometry::Mesh& mesh, const Placed& from, std::size_t part) {
+    if (from.file.empty()) return look_at_mass(mesh);
+    const auto [entry, fresh] = masses_.try_emplace({from.file, {from.factors[0], from.factors[1], from.factors[2]}, part});
+    if (fresh) entry->second = look_at_mass(mesh);
+    return entry->second;
 }
 
 }  // namespace fettle::core::scene

@@ -22,8 +22,13 @@ Matrix4 unit_moments(const geometry::Mesh& mesh, MassKind kind) {
 }
 
 std::optional<Vector3> centre_of_mass(const geometry::Mesh& mesh, MassKind kind) {
-    if (kind == MassKind::volume && !geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) return std::nullopt;
-    const Matrix4 moments = unit_moments(mesh, kind);
+    if (kind != MassKind::volume) return centre_of_mass(unit_moments(mesh, kind));
+    const std::vector<geometry::Opening> openings = geometry::openings(mesh.vertices, mesh.triangles);
+    if (!geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return std::nullopt;
+    return centre_of_mass(geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings));
+}
+
+std::optional<Vector3> centre_of_mass(const Matrix4& moments) {
     const Vector3 centre = moments.col(3).head<3>() / moments(3, 3);
     if (!(std::abs(moments(3, 3)) > 0) || !centre.allFinite()) return std::nullopt;
     return centre;

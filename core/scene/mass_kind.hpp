@@ -14,6 +14,9 @@ Matrix4 unit_moments(const geometry::Mesh& mesh, MassKind kind);
 /// [m], in the mesh's frame. nullopt if the mesh has no such mass: for a volume, if it is not nearly closed or the volume is 0.
 std::optional<Vector3> centre_of_mass(const geometry::Mesh& mesh, MassKind kind);
 
+/// The same from the moments; nullopt if there is no mass.
+std::optional<Vector3> centre_of_mass(const Matrix4& moments);
+
 /// "kg/m^3", "kg/m^2", "kg/m", "kg".
 const char* density_unit(MassKind kind);
 

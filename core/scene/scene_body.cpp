@@ -62,8 +62,8 @@ std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
     node.allow_keys(body_keys);
     if (!node.is_object()) return {body};
     read_name(node.require("name"), body);
-    read_geometry(node, body);
-    settle_mesh(node, body);
+    const MeshSource source = read_geometry(node, body);
+    settle_mesh(node, source, body);
     body.pose = read_pose(node, unit_, {});
     body.reference_point = node["reference_point"].length3(unit_);
     const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
@@ -84,24 +84,25 @@ void SceneBodies::read_name(const files::JsonNode& node, Body& body) {
     }
 }
 
-void SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
+SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
+    MeshSource source;
     const files::JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
     const int sources = static_cast<int>(mesh.exists()) + static_cast<int>(shape.exists()) + static_cast<int>(vertices.exists());
     if (sources != 1) {
         node.fail(sources > 1 ? ErrorCode::inconsistent : ErrorCode::missing_key,
                   "a body has either a `mesh` (a file), or a `shape`, or `vertices` with their `edges` and `triangles`");
-        return;
+        return source;
     }
     for (const char* key : {"edges", "triangles"}) {
         if (node[key].exists() && !vertices.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` join `vertices`");
     }
     if (node["mesh_unit"].exists() && !mesh.exists())
         node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
-    if (mesh.exists()) read_mesh_file(node, body);
+    if (mesh.exists()) source = read_mesh_file(node, body);
     if (shape.exists()) make_shape(shape, body);
     if (vertices.exists()) read_inline(node, body);
     const files::JsonNode scale = node["scale"];
-    if (!scale.exists()) return;
+    if (!scale.exists()) return source;
     Vector3 factors = Vector3::Ones();
     if (scale.is_array()) {
         factors = scale.vector3().value_or(factors);
@@ -110,17 +111,22 @@ void SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
         factors *= scale.number(files::positive).value_or(1);
     }
     geometry::scale_mesh(body.mesh, factors);
+    std::get<2>(source) = {factors[0], factors[1], factors[2]};
+    return source;
 }
 
 /// Files from elsewhere have small faults: what has one answer is mended, and told.
-void SceneBodies::settle_mesh(const files::JsonNode& node, Body& body) {
+void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& source, Body& body) {
     if (body.shape || options_.strict_meshes) return;
     body.mesh_policy = MeshPolicy::tolerant;
     if (body.mesh.vertices.cols() == 0 || !body.mesh.vertices.allFinite()) return;
-    for (const std::string& done : geometry::repair_mesh(body.mesh)) node.warn("body `" + body.name + "`: " + done);
+    if (sound_.count(source) != 0) return;
+    const std::vector<std::string> repairs = geometry::repair_mesh(body.mesh);
+    for (const std::string& done : repairs) node.warn("body `" + body.name + "`: " + done);
+    if (repairs.empty() && !std::get<0>(source).empty()) sound_.insert(source);
 }
 
-void SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
+SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
     const files::JsonNode mesh = node["mesh"];
     mesh_files::MeshReadOptions options;
     options.unit = unit_;
@@ -128,12 +134,24 @@ void SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
     if (const auto name = node["mesh_unit"].choice({"um", "mm", "cm", "m", "in", "ft"}))
         options.unit = base::metres_per_unit(*name).value();
     const auto name = mesh.string();
-    if (!name) return;
+    if (!name) return {};
     const auto file = mesh_files::find_mesh_file(*name, document_.path(), options_.mesh_dirs, mesh.where());
-    if (!file) return report(file.errors(), mesh);
-    const auto found = mesh_files::read_mesh(*file, options);
-    if (!found) return report(found.errors(), mesh);
-    body.mesh = *found;
+    if (!file) {
+        report(file.errors(), mesh);
+        return {};
+    }
+    const MeshSource source{*file, options.unit, {1, 1, 1}};
+    auto known = files_.find({*file, options.unit});
+    if (known == files_.end()) {
+        auto found = mesh_files::read_mesh(*file, options);
+        if (!found) {
+            report(found.errors(), mesh);
+            return {};
+        }
+        known = files_.emplace(std::pair(*file, options.unit), std::move(found).value()).first;
+    }
+    body.mesh = known->second;
+    return source;
 }
 
 void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {

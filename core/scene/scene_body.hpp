@@ -2,10 +2,13 @@
 /// One body of our own scene files (`bodies[i]`). The rest of the file: scene_reader.hpp. Keys: scene.schema.json.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/files/json_document.hpp"
@@ -32,9 +35,12 @@ public:
 
 private:
     void read_name(const files::JsonNode& node, Body& body);
-    void read_geometry(const files::JsonNode& node, Body& body);
-    void settle_mesh(const files::JsonNode& node, Body& body);
-    void read_mesh_file(const files::JsonNode& node, Body& body);
+    /// File, metres of its unit, scale factors: what is the same in all is the same mesh.
+    using MeshSource = std::tuple<std::string, double, std::array<double, 3>>;
+
+    MeshSource read_geometry(const files::JsonNode& node, Body& body);
+    void settle_mesh(const files::JsonNode& node, const MeshSource& source, Body& body);
+    MeshSource read_mesh_file(const files::JsonNode& node, Body& body);
     void make_shape(const files::JsonNode& node, Body& body);
     void read_inline(const files::JsonNode& node, Body& body);
     void read_mass(const files::JsonNode& node, Body& body);
@@ -46,6 +52,8 @@ private:
     const ReadOptions& options_;
     double unit_;
     const MaterialDensities& densities_;
+    std::map<std::pair<std::string, double>, geometry::Mesh> files_;  ///< already read, by file and unit
+    std::set<MeshSource> sound_;                                      ///< nothing of them had to be mended
     std::set<std::string> names_;
     std::vector<std::string> group_names_;  ///< of group -2, -3, ... until number_groups
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/solver/linear_solver.hpp"
 
-#include <cholmod.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
@@ -10,6 +8,7 @@
 #include <functional>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/solver/cholmod_library.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -42,28 +41,24 @@ MatrixX dense_matrix(const kinematics::BlockHessian& hessian, const FreeDofs& do
 // CHOLMOD's handles, freed together.
 class SparseCholesky {
 public:
-    SparseCholesky() {
-        cholmod_start(&common_);
-        common_.supernodal = CHOLMOD_SIMPLICIAL;
-        common_.final_ll = 1;
-        common_.quick_return_if_not_posdef = 1;
-        common_.print = 0;
-    }
+    SparseCholesky() = default;
     ~SparseCholesky() {
+        if (cholmod_ == nullptr) return;
         release();
-        cholmod_finish(&common_);
+        cholmod_->finish(&common_);
     }
     SparseCholesky(const SparseCholesky&) = delete;
     SparseCholesky& operator=(const SparseCholesky&) = delete;
 
     bool factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+        start();
         update_pattern(hessian, dofs);
         double* values = static_cast<double*>(matrix_->x);
         std::fill(values, values + position_count_, 0.0);
         std::size_t k = 0;
         for_each_lower_entry(hessian, dofs, [&](int, int, double value) { values[position_[k++]] += value; });
         common_.status = CHOLMOD_OK;
-        cholmod_factorize(matrix_, factor_, &common_);
+        cholmod_->factorize(matrix_, factor_, &common_);
         return common_.status == CHOLMOD_OK && factor_->minor == factor_->n;
     }
 
@@ -76,17 +71,29 @@ public:
         b.x = const_cast<double*>(rhs.data());
         b.xtype = CHOLMOD_REAL;
         b.dtype = CHOLMOD_DOUBLE;
-        cholmod_dense* x = cholmod_solve(CHOLMOD_A, factor_, &b, &common_);
+        cholmod_dense* x = cholmod_->solve(CHOLMOD_A, factor_, &b, &common_);
         FETTLE_ASSERT(x != nullptr, "CHOLMOD could not solve");
         std::copy_n(static_cast<const double*>(x->x), out.size(), out.data());
-        cholmod_free_dense(&x, &common_);
+        cholmod_->free_dense(&x, &common_);
         return out;
     }
 
 private:
+    // CHOLMOD is loaded for the first matrix: small systems do without.
+    void start() {
+        if (cholmod_ != nullptr) return;
+        const CholmodLibrary& library = cholmod_library();
+        library.start(&common_);
+        cholmod_ = &library;
+        common_.supernodal = CHOLMOD_SIMPLICIAL;
+        common_.final_ll = 1;
+        common_.quick_return_if_not_posdef = 1;
+        common_.print = 0;
+    }
+
     void release() {
-        if (factor_) cholmod_free_factor(&factor_, &common_);
-        if (matrix_) cholmod_free_sparse(&matrix_, &common_);
+        if (factor_) cholmod_->free_factor(&factor_, &common_);
+        if (matrix_) cholmod_->free_sparse(&matrix_, &common_);
     }
 
     // The symbolic factor depends on which bodies touch; it is kept while that does not change.
@@ -106,7 +113,7 @@ private:
             ++next[static_cast<std::size_t>(column) + 1];
             ++position_count_;
         });
-        matrix_ = cholmod_allocate_sparse(n, n, std::max<std::size_t>(1, position_count_), 1, 1, -1, CHOLMOD_REAL, &common_);
+        matrix_ = cholmod_->allocate_sparse(n, n, std::max<std::size_t>(1, position_count_), 1, 1, -1, CHOLMOD_REAL, &common_);
         FETTLE_ASSERT(matrix_ != nullptr, "CHOLMOD is out of memory");
         for (std::size_t j = 0; j < n; ++j) next[j + 1] += next[j];
         std::copy(next.begin(), next.end(), static_cast<int*>(matrix_->p));
@@ -117,10 +124,11 @@ private:
             rows[at] = row;
             position_.push_back(static_cast<std::size_t>(at++));
         });
-        factor_ = cholmod_analyze(matrix_, &common_);
+        factor_ = cholmod_->analyze(matrix_, &common_);
         FETTLE_ASSERT(factor_ != nullptr, "CHOLMOD could not analyse the Hessian");
     }
 
+    const CholmodLibrary* cholmod_ = nullptr;  // once it is started
     cholmod_common common_{};
     cholmod_sparse* matrix_ = nullptr;
     cholmod_factor* factor_ = nullptr;

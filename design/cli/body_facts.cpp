@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -24,10 +26,23 @@ const char* type_name(BodyType type) {
 
 Vector3 size_of(const Body& body) { return body.mesh.vertices.rowwise().maxCoeff() - body.mesh.vertices.rowwise().minCoeff(); }
 
-std::optional<double> volume_of(const Body& body) {
-    const core::geometry::Mesh& mesh = body.mesh;
-    if (!core::geometry::is_nearly_closed(mesh.vertices, mesh.triangles)) return std::nullopt;
-    return core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3);
+std::optional<double> volume_of(const core::geometry::Mesh& mesh) {
+    const auto openings = core::geometry::openings(mesh.vertices, mesh.triangles);
+    if (!core::geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return std::nullopt;
+    return core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings)(3, 3);
+}
+
+/// Bodies that share a hierarchy have one mesh, which is measured once.
+std::vector<std::optional<double>> volumes_of(const core::model::Model& model) {
+    std::map<const core::geometry::BodyHierarchy*, std::optional<double>> known;
+    std::vector<std::optional<double>> volumes;
+    volumes.reserve(model.bodies.size());
+    for (const Body& body : model.bodies) {
+        const auto [entry, fresh] = known.try_emplace(body.hierarchy.get());
+        if (fresh || body.hierarchy == nullptr) entry->second = volume_of(body.mesh);
+        volumes.push_back(entry->second);
+    }
+    return volumes;
 }
 
 std::optional<double> mass_of(const Body& body) {
@@ -49,12 +64,14 @@ std::string mass_text(const std::optional<double>& mass) {
 
 Json parts_json(const core::model::Model& model) {
     Json list = Json::array();
-    for (const Body& body : model.bodies) {
+    const std::vector<std::optional<double>> volumes = volumes_of(model);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const Body& body = model.bodies[i];
         const Vector3 size = size_of(body);
         list.push_back({{"name", body.name},
                         {"type", type_name(body.type)},
                         {"size", {size.x(), size.y(), size.z()}},
-                        {"volume", or_null(volume_of(body))},
+                        {"volume", or_null(volumes[i])},
                         {"mass", or_null(mass_of(body))}});
     }
     return list;
@@ -67,9 +84,11 @@ std::string parts_text(const core::model::Model& model) {
     for (const Body& body : model.bodies) widest = std::max(widest, std::min<std::size_t>(body.name.size(), 32));
     std::string text = formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), "body", "type",
                                  ("size [" + unit + "]").c_str(), ("volume [" + unit + "^3]").c_str(), "mass");
-    for (const Body& body : model.bodies) {
+    const std::vector<std::optional<double>> volumes = volumes_of(model);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const Body& body = model.bodies[i];
         const Vector3 size = per_metre * size_of(body);
-        const auto volume = volume_of(body);
+        const std::optional<double>& volume = volumes[i];
         const std::string shown = volume ? formatted("%.5g", *volume * per_metre * per_metre * per_metre) : std::string("open");
         text += formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
                           formatted("%.5g x %.5g x %.5g", size.x(), size.y(), size.z()).c_str(), shown.c_str(),
@@ -81,8 +100,10 @@ std::string parts_text(const core::model::Model& model) {
 std::vector<std::string> doubts_of(const core::model::Model& model) {
     constexpr double lightest = 10, heaviest = 30'000, largest = 10, smallest = 10e-6;
     std::vector<std::string> doubts;
-    for (const Body& body : model.bodies) {
-        const auto volume = volume_of(body), mass = mass_of(body);
+    const std::vector<std::optional<double>> volumes = volumes_of(model);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const Body& body = model.bodies[i];
+        const std::optional<double>&volume = volumes[i], mass = mass_of(body);
         const double density = volume && mass && *volume > 0 ? *mass / *volume : 0;
         // A shell, a wire or points have another mass than density times volume.
         const bool solid = density > 0 && std::abs(density - body.density) <= 1e-9 * density;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/shared_library.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/session.hpp"
@@ -70,6 +71,8 @@ int run(int argc, char** argv) {
         for (const Command& command : commands) {
             if (command.line.is_chosen()) return command.run(console);
         }
+    } catch (const core::base::MissingLibrary& missing) {
+        return console.input_errors({{ErrorCode::file_not_found, "libraries", missing.what()}});
     } catch (const std::exception& error) {
         return console.internal_error(error.what());
     }

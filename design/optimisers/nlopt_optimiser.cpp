@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/optimisers/nlopt_optimiser.hpp"
 
-#include <nlopt.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+
+#include "fettle/design/optimisers/nlopt_library.hpp"
 
 namespace fettle::design::optimisers {
 
@@ -42,10 +42,10 @@ struct Run {
             if (e.usable) return &e;
             failed = true;
             failed_point = Eigen::Map<const VectorX>(x, n);
-            if (stop_at_failure) nlopt_force_stop(opt);
+            if (stop_at_failure) nlopt_library().force_stop(opt);
         } catch (const StopOptimisation&) {  // must not pass through C code
             over = true;
-            nlopt_force_stop(opt);
+            nlopt_library().force_stop(opt);
         }
         return nullptr;
     }
@@ -113,30 +113,31 @@ struct NativeRun {
 NativeRun run_native(NloptAlgorithm algorithm, Evaluator& evaluator, const OptimiserOptions& options, const VectorX& start,
                      const VectorX& lower, const VectorX& upper) {
     const auto n = static_cast<unsigned>(evaluator.variables());
-    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(native(algorithm), n), nlopt_destroy);
+    const NloptLibrary& nlopt = nlopt_library();
+    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt.create(native(algorithm), n), nlopt.destroy);
     const bool recovers = algorithm == NloptAlgorithm::mma || algorithm == NloptAlgorithm::ccsaq;
     Run run{evaluator, opt.get(), !recovers, algorithm == NloptAlgorithm::cobyla, {}, {}, false, false, {}};
     list_sides(run, algorithm == NloptAlgorithm::slsqp);
-    nlopt_set_min_objective(opt.get(), objective, &run);
+    nlopt.set_min_objective(opt.get(), objective, &run);
     const std::vector<double> tolerances(std::max(run.inequalities.size(), run.equalities.size()) + 1, constraint_tolerance);
     if (!run.inequalities.empty()) {
-        nlopt_add_inequality_mconstraint(opt.get(), static_cast<unsigned>(run.inequalities.size()), inequality_sides, &run,
+        nlopt.add_inequality_mconstraint(opt.get(), static_cast<unsigned>(run.inequalities.size()), inequality_sides, &run,
                                          tolerances.data());
     }
     if (!run.equalities.empty()) {
-        nlopt_add_equality_mconstraint(opt.get(), static_cast<unsigned>(run.equalities.size()), equality_sides, &run, tolerances.data());
+        nlopt.add_equality_mconstraint(opt.get(), static_cast<unsigned>(run.equalities.size()), equality_sides, &run, tolerances.data());
     }
-    nlopt_set_lower_bounds(opt.get(), lower.data());
-    nlopt_set_upper_bounds(opt.get(), upper.data());
+    nlopt.set_lower_bounds(opt.get(), lower.data());
+    nlopt.set_upper_bounds(opt.get(), upper.data());
     // One step's small change is not convergence (MMA's inner steps can be tiny): two orders below the tolerance asked for.
-    nlopt_set_ftol_rel(opt.get(), 1e-2 * options.tolerance);
-    nlopt_set_xtol_rel(opt.get(), 1e-2 * options.tolerance);
-    nlopt_set_xtol_abs1(opt.get(), 1e-2 * options.tolerance);
-    nlopt_set_initial_step1(opt.get(), 0.1);
-    nlopt_set_maxeval(opt.get(), 20 * options.max_evaluations);  // the evaluator counts; this only ends a loop over cached points
+    nlopt.set_ftol_rel(opt.get(), 1e-2 * options.tolerance);
+    nlopt.set_xtol_rel(opt.get(), 1e-2 * options.tolerance);
+    nlopt.set_xtol_abs1(opt.get(), 1e-2 * options.tolerance);
+    nlopt.set_initial_step1(opt.get(), 0.1);
+    nlopt.set_maxeval(opt.get(), 20 * options.max_evaluations);  // the evaluator counts; this only ends a loop over cached points
     VectorX x = start;
     double value = 0;
-    const nlopt_result result = nlopt_optimize(opt.get(), x.data(), &value);
+    const nlopt_result result = nlopt.optimize(opt.get(), x.data(), &value);
     return {result, run.over, run.failed, run.failed_point};
 }
 

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/optimisers/quadratic_program.hpp"
 
-#include <IpIpoptApplication.hpp>
-#include <IpTNLP.hpp>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/optimisers/ipopt_library.hpp"
 
 namespace fettle::design::optimisers {
 
 namespace {
-
-using Ipopt::Index;
-using Ipopt::Number;
 
 constexpr double no_bound = 1e20;  // beyond 1e19 Ipopt takes a bound as none
 
@@ -24,7 +22,8 @@ double bounded(double value) { return std::clamp(value, -no_bound, no_bound); }
 
 // Unknowns: d, then one slack for each side of a row that is finite, and one for each kink, all >= 0:
 //   lower <= A d + below - above <= upper,   cut_lower <= C d + (below of its row, or its kink).
-class ElasticProgram : public Ipopt::TNLP {
+// Ipopt's C interface asks for each of these by a function of its own (below).
+class ElasticProgram {
 public:
     explicit ElasticProgram(const QuadraticProgram& program) : program_(program) {
         for (int i = 0; i < m(); ++i) {
@@ -34,63 +33,62 @@ public:
         for (int j = 0; j < cuts(); ++j) share_slack(j);
     }
 
-    bool get_nlp_info(Index& n_out, Index& m_out, Index& jacobian, Index& hessian, IndexStyleEnum& index_style) override {
-        n_out = n() + static_cast<Index>(slacks_.size());
-        m_out = m() + cuts();
-        jacobian = n() * m_out + static_cast<Index>(places_.size());
-        hessian = n() * (n() + 1) / 2;
-        index_style = C_STYLE;
-        return true;
+    int unknowns() const { return n() + static_cast<int>(slacks_.size()); }
+    int rows() const { return m() + cuts(); }
+    int jacobian_entries() const { return n() * rows() + static_cast<int>(places_.size()); }
+    int hessian_entries() const { return n() * (n() + 1) / 2; }
+
+    VectorX lower() const {
+        VectorX out = VectorX::Zero(unknowns());
+        out.head(n()) = program_.box_lower;
+        return out;
+    }
+    VectorX upper() const {
+        VectorX out = VectorX::Constant(unknowns(), no_bound);
+        out.head(n()) = program_.box_upper;
+        return out;
+    }
+    VectorX row_lower() const {
+        VectorX out(rows());
+        for (int i = 0; i < m(); ++i) out[i] = bounded(program_.lower[i]);
+        for (int j = 0; j < cuts(); ++j) out[m() + j] = bounded(program_.cuts.lower[j]);
+        return out;
+    }
+    VectorX row_upper() const {
+        VectorX out = VectorX::Constant(rows(), no_bound);
+        for (int i = 0; i < m(); ++i) out[i] = bounded(program_.upper[i]);
+        return out;
+    }
+    VectorX start() const {
+        VectorX out = VectorX::Zero(unknowns());
+        for (size_t k = 0; k < slacks_.size(); ++k) out[n() + static_cast<Eigen::Index>(k)] = slacks_[k].start;
+        return out;
     }
 
-    bool get_bounds_info(Index size, Number* x_l, Number* x_u, Index, Number* g_l, Number* g_u) override {
-        for (Index i = 0; i < size; ++i) {
-            x_l[i] = i < n() ? program_.box_lower[i] : 0;
-            x_u[i] = i < n() ? program_.box_upper[i] : no_bound;
-        }
-        for (Index i = 0; i < m(); ++i) {
-            g_l[i] = bounded(program_.lower[i]);
-            g_u[i] = bounded(program_.upper[i]);
-        }
-        for (Index j = 0; j < cuts(); ++j) {
-            g_l[m() + j] = bounded(program_.cuts.lower[j]);
-            g_u[m() + j] = no_bound;
-        }
-        return true;
-    }
-
-    // NOLINTBEGIN(readability-function-size): Ipopt's parameters
-    bool get_starting_point(Index size, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
-        std::fill(x, x + size, 0.0);
-        for (size_t k = 0; k < slacks_.size(); ++k) x[n() + static_cast<Index>(k)] = slacks_[k].start;
-        return true;
-    }
-
-    bool eval_f(Index, const Number* x, bool, Number& f) override {
+    double value(const double* x) const {
         const auto d = step(x);
-        f = program_.gradient.dot(d) + 0.5 * d.dot(program_.hessian * d);
-        for (size_t k = 0; k < slacks_.size(); ++k) f += slacks_[k].price * x[n() + static_cast<Index>(k)];
-        return true;
+        double f = program_.gradient.dot(d) + 0.5 * d.dot(program_.hessian * d);
+        for (size_t k = 0; k < slacks_.size(); ++k) f += slacks_[k].price * x[static_cast<size_t>(n()) + k];
+        return f;
     }
 
-    bool eval_grad_f(Index size, const Number* x, bool, Number* gradient) override {
-        for (Index k = n(); k < size; ++k) gradient[k] = slacks_[static_cast<size_t>(k - n())].price;
-        Eigen::Map<VectorX>(gradient, n()) = program_.gradient + program_.hessian * step(x);
-        return true;
+    void gradient(const double* x, double* out) const {
+        for (int k = n(); k < unknowns(); ++k) out[k] = slacks_[static_cast<size_t>(k - n())].price;
+        Eigen::Map<VectorX>(out, n()) = program_.gradient + program_.hessian * step(x);
     }
 
-    bool eval_g(Index, const Number* x, bool, Index, Number* g) override {
-        Eigen::Map<VectorX> values(g, m() + cuts());
+    void row_values(const double* x, double* out) const {
+        Eigen::Map<VectorX> values(out, rows());
         values.head(m()) = program_.rows * step(x);
         if (cuts() > 0) values.tail(cuts()) = program_.cuts.rows * step(x);
         for (const SlackPlace& place : places_) values[place.row] += place.sign * x[n() + place.slack];
-        return true;
     }
 
-    bool eval_jac_g(Index, const Number*, bool, Index, Index, Index* row, Index* column, Number* values) override {
-        const Index dense = n() * (m() + cuts());
-        for (Index k = 0; k < dense; ++k) {
-            const Index i = k / n(), j = k % n();
+    // The places if there are no values to fill, else the values.
+    void jacobian(int* row, int* column, double* values) const {
+        const int dense = n() * rows();
+        for (int k = 0; k < dense; ++k) {
+            const int i = k / n(), j = k % n();
             if (values == nullptr) {
                 row[k] = i;
                 column[k] = j;
@@ -98,7 +96,7 @@ public:
                 values[k] = i < m() ? program_.rows(i, j) : program_.cuts.rows(i - m(), j);
             }
         }
-        for (Index k = 0; k < static_cast<Index>(places_.size()); ++k) {
+        for (int k = 0; k < static_cast<int>(places_.size()); ++k) {
             const SlackPlace& place = places_[static_cast<size_t>(k)];
             if (values == nullptr) {
                 row[dense + k] = place.row;
@@ -107,14 +105,12 @@ public:
                 values[dense + k] = place.sign;
             }
         }
-        return true;
     }
 
-    bool eval_h(Index, const Number*, bool, Number factor, Index, const Number*, bool, Index, Index* row, Index* column,
-                Number* values) override {
-        Index k = 0;
-        for (Index i = 0; i < n(); ++i) {
-            for (Index j = 0; j <= i; ++j, ++k) {
+    void hessian(double factor, int* row, int* column, double* values) const {
+        int k = 0;
+        for (int i = 0; i < n(); ++i) {
+            for (int j = 0; j <= i; ++j, ++k) {
                 if (values == nullptr) {
                     row[k] = i;
                     column[k] = j;
@@ -123,18 +119,15 @@ public:
                 }
             }
         }
-        return true;
     }
 
-    void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number*, const Number*, Index, const Number*,
-                           const Number* lambda, Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
-        solution_.step = step(x).cwiseMax(program_.box_lower).cwiseMin(program_.box_upper);
-        solution_.multipliers = -Eigen::Map<const VectorX>(lambda, m());
-        solution_.cut_multipliers = -Eigen::Map<const VectorX>(lambda + m(), cuts());
+    QuadraticSolution solution(const VectorX& x, const VectorX& lambda) const {
+        QuadraticSolution out;
+        out.step = x.head(n()).cwiseMax(program_.box_lower).cwiseMin(program_.box_upper);
+        out.multipliers = -lambda.head(m());
+        out.cut_multipliers = -lambda.tail(cuts());
+        return out;
     }
-    // NOLINTEND(readability-function-size)
-
-    QuadraticSolution solution_;
 
 private:
     struct Slack {
@@ -168,7 +161,7 @@ private:
     int n() const { return static_cast<int>(program_.gradient.size()); }
     int m() const { return static_cast<int>(program_.rows.rows()); }
     int cuts() const { return static_cast<int>(program_.cuts.of.size()); }
-    Eigen::Map<const VectorX> step(const Number* x) const { return {x, n()}; }
+    Eigen::Map<const VectorX> step(const double* x) const { return {x, n()}; }
 
     const QuadraticProgram& program_;
     std::vector<Slack> slacks_;
@@ -180,33 +173,77 @@ bool is_finite(const QuadraticProgram& p) {
            p.cuts.lower.allFinite();
 }
 
-void set_options(Ipopt::OptionsList& list, bool predictor_corrector) {
-    list.SetIntegerValue("print_level", 0);
-    list.SetStringValue("sb", "yes");
-    list.SetStringValue("jac_c_constant", "yes");
-    list.SetStringValue("jac_d_constant", "yes");
-    list.SetStringValue("hessian_constant", "yes");
-    list.SetStringValue("mehrotra_algorithm", predictor_corrector ? "yes" : "no");
-    if (!predictor_corrector) list.SetStringValue("mu_strategy", "adaptive");
-    list.SetStringValue("nlp_scaling_method", "none");
-    list.SetNumericValue("bound_relax_factor", 0);
-    list.SetNumericValue("tol", 1e-9);
-    list.SetNumericValue("acceptable_tol", 1e-7);
-    list.SetIntegerValue("max_iter", 300);
+const ElasticProgram& program_of(UserDataPtr data) { return *static_cast<const ElasticProgram*>(data); }
+
+// NOLINTBEGIN(readability-function-size): Ipopt's parameters
+Bool ask_value(Index, Number* x, Bool, Number* value, UserDataPtr data) {
+    *value = program_of(data).value(x);
+    return TRUE;
+}
+
+Bool ask_gradient(Index, Number* x, Bool, Number* gradient, UserDataPtr data) {
+    program_of(data).gradient(x, gradient);
+    return TRUE;
+}
+
+Bool ask_rows(Index, Number* x, Bool, Index, Number* values, UserDataPtr data) {
+    program_of(data).row_values(x, values);
+    return TRUE;
+}
+
+Bool ask_jacobian(Index, Number*, Bool, Index, Index, Index* row, Index* column, Number* values, UserDataPtr data) {
+    program_of(data).jacobian(row, column, values);
+    return TRUE;
+}
+
+Bool ask_hessian(Index, Number*, Bool, Number factor, Index, Number*, Bool, Index, Index* row, Index* column, Number* values,
+                 UserDataPtr data) {
+    program_of(data).hessian(factor, row, column, values);
+    return TRUE;
+}
+// NOLINTEND(readability-function-size)
+
+using IpoptHandle = std::unique_ptr<IpoptProblemInfo, void (*)(IpoptProblem)>;
+
+void set_options(const IpoptLibrary& ipopt, IpoptProblem problem, bool predictor_corrector) {
+    const auto set = [&](std::string key, std::string value) { ipopt.add_string_option(problem, key.data(), value.data()); };
+    const auto set_number = [&](std::string key, double value) { ipopt.add_number_option(problem, key.data(), value); };
+    const auto set_integer = [&](std::string key, int value) { ipopt.add_integer_option(problem, key.data(), value); };
+    set("option_file_name", "");  // none is read
+    set_integer("print_level", 0);
+    set("sb", "yes");
+    set("jac_c_constant", "yes");
+    set("jac_d_constant", "yes");
+    set("hessian_constant", "yes");
+    set("mehrotra_algorithm", predictor_corrector ? "yes" : "no");
+    if (!predictor_corrector) set("mu_strategy", "adaptive");
+    set("nlp_scaling_method", "none");
+    set_number("bound_relax_factor", 0);
+    set_number("tol", 1e-9);
+    set_number("acceptable_tol", 1e-7);
+    set_integer("max_iter", 300);
 }
 
 // Step and multipliers.
 std::optional<QuadraticSolution> solve_once(const QuadraticProgram& program, bool predictor_corrector) {
     static std::mutex one_solve_at_a_time;
     const std::lock_guard<std::mutex> lock(one_solve_at_a_time);
-    Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
-    set_options(*application->Options(), predictor_corrector);
-    if (application->Initialize("") != Ipopt::Solve_Succeeded) return std::nullopt;
-    Ipopt::SmartPtr<ElasticProgram> problem = new ElasticProgram(program);
-    const Ipopt::ApplicationReturnStatus status = application->OptimizeTNLP(GetRawPtr(problem));
-    if (status != Ipopt::Solve_Succeeded && status != Ipopt::Solved_To_Acceptable_Level) return std::nullopt;
-    if (!problem->solution_.step.allFinite() || !problem->solution_.multipliers.allFinite()) return std::nullopt;
-    return problem->solution_;
+    const IpoptLibrary& ipopt = ipopt_library();
+    ElasticProgram elastic(program);
+    VectorX lower = elastic.lower(), upper = elastic.upper(), row_lower = elastic.row_lower(), row_upper = elastic.row_upper();
+    const IpoptHandle problem(ipopt.create_problem(elastic.unknowns(), lower.data(), upper.data(), elastic.rows(), row_lower.data(),
+                                                   row_upper.data(), elastic.jacobian_entries(), elastic.hessian_entries(), 0, ask_value,
+                                                   ask_rows, ask_gradient, ask_jacobian, ask_hessian),
+                              ipopt.free_problem);
+    if (!problem) return std::nullopt;
+    set_options(ipopt, problem.get(), predictor_corrector);
+    VectorX x = elastic.start(), lambda = VectorX::Zero(elastic.rows());
+    const ApplicationReturnStatus status =
+        ipopt.solve(problem.get(), x.data(), nullptr, nullptr, lambda.data(), nullptr, nullptr, &elastic);
+    if (status != Solve_Succeeded && status != Solved_To_Acceptable_Level) return std::nullopt;
+    QuadraticSolution found = elastic.solution(x, lambda);
+    if (!found.step.allFinite() || !found.multipliers.allFinite()) return std::nullopt;
+    return found;
 }
 
 }  // namespace

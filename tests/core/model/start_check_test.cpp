@@ -2,6 +2,7 @@
 #include "fettle/core/model/start_check.hpp"
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
@@ -175,6 +176,34 @@ TEST_CASE("Where a mesh is not closed, containment is not claimed", "[model]") {
     REQUIRE(model);
     REQUIRE(model->warnings.size() == 1);
     CHECK(contains(model->warnings[0], "whether `ball` lies inside `shell` at the start cannot be verified"));
+}
+
+TEST_CASE("Of many bodies the same are at fault as pair by pair, in the same order", "[model]") {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    scene::Scene scene;
+    scene.dhat = 1e-3;
+    scene.dmin = 0.05;
+    for (int i = 0; i < 60; ++i) {
+        scene::Body body = body_of("b" + std::to_string(i), tests::box_mesh({0, 0, 0}, {0.2, 0.3, 0.1 + 0.05 * (i % 3)}));
+        body.pose.position = 2 * Vector3(uniform(random), uniform(random), uniform(random));
+        body.group = i % 7 == 0 ? 0 : -1;
+        scene.bodies.push_back(body);
+    }
+    BuildOptions options;
+    options.check_start = false;
+    const Model model = build_model(scene, options).value();
+    std::vector<std::string> expected;
+    for (int i = 0; i < 60; ++i) {
+        for (int j = i + 1; j < 60; ++j) {
+            if (!may_collide(model, i, j)) continue;
+            if (const auto error = check_start_pair(model, i, j)) expected.push_back(error->message);
+        }
+    }
+    std::vector<std::string> found;
+    for (const base::Error& error : report_start(model).errors) found.push_back(error.message);
+    CHECK(expected.size() > 5);
+    CHECK(found == expected);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the reader of scenes refuses: each fault with its message and its place, all of them at once.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "fettle/tests/core/scene/scene_workshop.hpp"
@@ -49,6 +50,39 @@ TEST_CASE("Meshes from elsewhere are mended with a warning, or refused when stri
     CHECK(untouched->warnings.empty());
     CHECK(untouched->bodies[0].mesh_policy == MeshPolicy::strict);
     CHECK(untouched->bodies[0].mesh.triangles.size() > read->bodies[0].mesh.triangles.size());
+}
+
+TEST_CASE("Each copy of a mesh is mended, scaled and told for itself", "[scene]") {
+    const Workshop shop;
+    const auto first = tests::support::box_mesh({0, 0, 0}, {1, 2, 3}).triangles[0];
+    shop.write("scenes/copied.obj",
+               "f " + std::to_string(first[1] + 1) + " " + std::to_string(first[2] + 1) + " " + std::to_string(first[0] + 1) + "\n");
+    json scene = plain();
+    const auto add = [&](const char* name, const char* mesh, const char* unit, const json& scale) {
+        json body = scene["bodies"][0];
+        body["name"] = name;
+        body["mesh"] = mesh;
+        body["mesh_unit"] = unit;
+        body["scale"] = scale;
+        scene["bodies"].push_back(body);
+    };
+    add("a", "copied.obj", "mm", 1);
+    add("b", "copied.obj", "mm", {1, 2, 1});
+    add("c", "copied.obj", "cm", 1);
+    add("d", "near.obj", "cm", 1);
+    add("e", "near.obj", "mm", 1);
+    const auto read = shop.read(scene);
+    REQUIRE(read);
+    REQUIRE(read->warnings.size() == 3);
+    for (const char* name : {"`a`", "`b`", "`c`"})
+        CHECK(std::count_if(read->warnings.begin(), read->warnings.end(), [&](const std::string& w) { return contains(w, name); }) == 1);
+    const auto size = [&](std::size_t body) { return Vector3(read->bodies[body].mesh.vertices.rowwise().maxCoeff() * 1000); };
+    CHECK(size(1).isApprox(Vector3(1, 2, 3)));
+    CHECK(size(2).isApprox(Vector3(1, 4, 3)));
+    CHECK(size(3).isApprox(Vector3(10, 20, 30)));
+    CHECK(size(4).isApprox(Vector3(10, 20, 30)));
+    CHECK(geometry::have_same_shape(read->bodies[0].mesh, read->bodies[5].mesh));
+    for (const Body& body : read->bodies) CHECK(body.mesh.triangles.size() == 12);
 }
 
 TEST_CASE("A static body without a density has none", "[scene]") {

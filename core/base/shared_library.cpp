@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/base/shared_library.hpp"
+
+#include <dlfcn.h>
+
+namespace fettle::core::base {
+namespace {
+
+std::string last_fault() {
+    const char* fault = dlerror();
+    return fault != nullptr ? fault : "no reason was given";
+}
+
+}  // namespace
+
+SharedLibrary::SharedLibrary(const std::string& name, const std::string& path) : name_(name) {
+    // Not for others to find symbols in, and with all of its own bound when they are called.
+    handle_ = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (handle_ != nullptr) return;
+    const std::string fault = last_fault();
+    if (!path.empty()) handle_ = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (handle_ == nullptr)
+        throw MissingLibrary("the library " + name + ", which this needs, cannot be loaded: " + fault +
+                             "; install it, or say where it is with LD_LIBRARY_PATH");
+}
+
+void* SharedLibrary::address(const char* symbol) const {
+    void* const found = dlsym(handle_, symbol);
+    if (found == nullptr)
+        throw MissingLibrary("the library " + name_ + " is not the one that this needs: " + last_fault() +
+                             "; install the version that fettle was built with");
+    return found;
+}
+
+}  // namespace fettle::core::base

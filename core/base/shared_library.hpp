@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+/// A shared library that is loaded where it is first needed: what few commands use must not cost every start. Which libraries that are is
+/// decided by the build (fettle_load_on_use in .cmake/load_on_use.cmake); a library that is linked as ever needs nothing of this.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace fettle::core::base {
+
+/// A library, or a function in it, is not there. what() names it, and says what the loader said and what to do.
+class MissingLibrary : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+class SharedLibrary {
+public:
+    /// Throws MissingLibrary.
+    /// @param name  As the loader looks for it: "libnlopt.so.0".
+    /// @param path  Where it was when this program was built: tried second. Empty: nowhere.
+    SharedLibrary(const std::string& name, const std::string& path);
+
+    /// Sets `function` to the library's of this name. Throws MissingLibrary.
+    template <class Function>
+    void find(const char* symbol, Function*& function) const {
+        function = reinterpret_cast<Function*>(address(symbol));
+    }
+
+private:
+    void* address(const char* symbol) const;
+
+    std::string name_;
+    void* handle_ = nullptr;  ///< never closed: libraries keep threads and memory of their own
+};
+
+}  // namespace fettle::core::base
