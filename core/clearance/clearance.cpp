@@ -199,26 +199,111 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
     return Certification(model, trajectory, pairs, options).run();
 }
 
+namespace {
+
+constexpr int most_body_segments = 1 << 17;  // kept at once
+
+// Searches the windows one stretch of time after another: in a stretch each body's segments are made once for all its pairs.
+class WindowSearch {
+public:
+    WindowSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                 const std::vector<NearWindow>& windows, const ClearanceOptions& options)
+        : model_(model), trajectory_(trajectory), places_(places), options_(options) {
+        std::vector<PairRequest> pairs;
+        for (const NearWindow& window : windows) pairs.push_back({window.a, window.b, 0});
+        const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
+        shapes_ = body_shapes(model, bodies);
+        const int length = std::max(1, most_body_segments / std::max(static_cast<int>(bodies.size()), 1));
+        for (const NearWindow& window : windows) {
+            if (!window.measurable) {
+                parts_.push_back(window);
+                continue;
+            }
+            for (int first = window.first, last = 0; first < window.last; first = last) {
+                const int stretch = first / length;
+                last = std::min(window.last, (stretch + 1) * length);
+                if (stretches_.size() <= static_cast<std::size_t>(stretch)) stretches_.resize(static_cast<std::size_t>(stretch) + 1);
+                stretches_[static_cast<std::size_t>(stretch)].push_back(static_cast<int>(parts_.size()));
+                parts_.push_back({window.a, window.b, first, last});
+            }
+        }
+    }
+
+    std::vector<PairClearance> run() {
+        std::vector<PairClearance> results;
+        results.reserve(parts_.size());
+        for (const NearWindow& part : parts_) results.push_back(unmeasured({part.a, part.b, 0}, unusable_numbers));
+        for (const std::vector<int>& stretch : stretches_) {
+            make_segments(stretch);
+            parallel_for(static_cast<int>(stretch.size()), 1, [&](int k) {
+                const int part = stretch[static_cast<std::size_t>(k)];
+                results[static_cast<std::size_t>(part)] = searched(parts_[static_cast<std::size_t>(part)]);
+            });
+        }
+        return results;
+    }
+
+private:
+    // Of a body from segment `first` of the path on.
+    struct Stretch {
+        int first = 0, last = 0;
+        std::vector<BodySegment> segments;
+    };
+
+    void make_segments(const std::vector<int>& stretch) {
+        bodies_.assign(model_.bodies.size(), {});
+        for (const int index : stretch) {
+            const NearWindow& part = parts_[static_cast<std::size_t>(index)];
+            for (const int body : {part.a, part.b}) {
+                Stretch& known = bodies_[static_cast<std::size_t>(body)];
+                const bool is_new = known.first == known.last;
+                known.first = is_new ? part.first : std::min(known.first, part.first);
+                known.last = is_new ? part.last : std::max(known.last, part.last);
+            }
+        }
+        parallel_for(static_cast<int>(bodies_.size()), 8, [&](int body) {
+            Stretch& known = bodies_[static_cast<std::size_t>(body)];
+            known.segments.reserve(static_cast<std::size_t>(known.last - known.first));
+            for (int i = known.first; i < known.last; ++i)
+                known.segments.push_back(body_segment(segment_at(trajectory_, places_[static_cast<std::size_t>(i)], body)));
+        });
+    }
+
+    PairClearance searched(const NearWindow& part) const {
+        const BodyShape &shape_a = shapes_[static_cast<std::size_t>(part.a)], &shape_b = shapes_[static_cast<std::size_t>(part.b)];
+        const Stretch &a = bodies_[static_cast<std::size_t>(part.a)], &b = bodies_[static_cast<std::size_t>(part.b)];
+        PairMotion pair{*shape_a.tree, *shape_b.tree, trajectory_, {}, *shape_a.solid, *shape_b.solid};
+        pair.segments.reserve(static_cast<std::size_t>(part.last - part.first));
+        for (int i = part.first; i < part.last; ++i) {
+            const PathPlace& place = places_[static_cast<std::size_t>(i)];
+            pair.segments.push_back(pair_segment(a.segments[static_cast<std::size_t>(i - a.first)],
+                                                 b.segments[static_cast<std::size_t>(i - b.first)], pair.a.radius(), pair.b.radius()));
+            pair.segments.back().step = place.step;
+            pair.segments.back().segment = place.segment;
+        }
+        return certify_pair(pair, {part.a, part.b, 0}, model_.dmin + model_.dhat, options_, std::nullopt);
+    }
+
+    const model::Model& model_;
+    const stepper::Trajectory& trajectory_;
+    const std::vector<PathPlace>& places_;
+    const ClearanceOptions& options_;
+    std::vector<BodyShape> shapes_;
+    std::vector<NearWindow> parts_;            // in the order of the windows
+    std::vector<std::vector<int>> stretches_;  // the parts of each
+    std::vector<Stretch> bodies_;
+};
+
+}  // namespace
+
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options) {
     FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
                   "a trajectory of the model's bodies");
     FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
     const std::vector<PathPlace> places = path_places(trajectory, options.motion);
     const NearWindows near = near_windows(model, trajectory, places, reach);
-    std::vector<PairRequest> pairs;
-    for (const NearWindow& window : near.windows) pairs.push_back({window.a, window.b, 0});
-    const std::vector<BodyShape> shapes = body_shapes(model, bodies_of(pairs, static_cast<int>(model.bodies.size())));
     options.enough = std::min(options.enough, reach);
-    NearClearances result;
-    result.everything = near.everything;
-    result.windows.resize(near.windows.size());
-    parallel_for(static_cast<int>(near.windows.size()), 1, [&](int i) {
-        const NearWindow& window = near.windows[i];
-        result.windows[i] = window.measurable ? certify_pair(window_motion(shapes, trajectory, places, window), pairs[i],
-                                                             model.dmin + model.dhat, options, std::nullopt)
-                                              : unmeasured(pairs[i], unusable_numbers);
-    });
-    return result;
+    return {WindowSearch(model, trajectory, places, near.windows, options).run(), near.everything};
 }
 
 std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,
