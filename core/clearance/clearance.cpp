@@ -210,6 +210,7 @@ public:
                  const std::vector<NearWindow>& windows, const ClearanceOptions& options)
         : model_(model), trajectory_(trajectory), places_(places), options_(options) {
         std::vector<PairRequest> pairs;
+        pairs.reserve(windows.size());
         for (const NearWindow& window : windows) pairs.push_back({window.a, window.b, 0});
         const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
         shapes_ = body_shapes(model, bodies);
