@@ -10,6 +10,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/clearance/body_motions.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
+#include "fettle/core/clearance/far_pairs.hpp"
 #include "fettle/core/clearance/near_windows.hpp"
 #include "fettle/core/clearance/pair_certification.hpp"
 
@@ -25,9 +26,8 @@ struct BodyMotion {
 };
 
 std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
-                                     const std::vector<int>& bodies) {
+                                     const std::vector<int>& bodies, const std::vector<BodyShape>& shapes) {
     std::vector<BodyMotion> motions(model.bodies.size());
-    const std::vector<BodyShape> shapes = body_shapes(model, bodies);
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const int body = bodies[i];
         motions[body].shape = shapes[body];
@@ -100,62 +100,200 @@ const char* to_string(PairStatus status) {
     return "unknown";
 }
 
+namespace {
+
+class Certification {
+public:
+    Certification(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                  const ClearanceOptions& options)
+        : model_(model), trajectory_(trajectory), pairs_(pairs), options_(options), places_(path_places(trajectory, options.motion)) {}
+
+    std::vector<PairClearance> run() {
+        const std::vector<int> bodies = bodies_of(pairs_, static_cast<int>(model_.bodies.size()));
+        const std::vector<BodyShape> shapes = body_shapes(model_, bodies);
+        far_ = far_pairs(model_, trajectory_, places_, pairs_, shapes, options_);
+        std::vector<PairRequest> wanted;  // those to look at one by one: a far one too, if its proof is to be recorded
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            if (far_[i] && !is_recorded()) continue;
+            indices_.push_back(static_cast<int>(i));
+            wanted.push_back(pairs_[i]);
+        }
+        motions_ = body_motions(model_, trajectory_, places_, bodies_of(wanted, static_cast<int>(model_.bodies.size())), shapes);
+        if (is_recorded()) start_record();
+        std::vector<PairClearance> results(pairs_.size());
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            if (far_[i]) results[i] = *far_[i];
+        }
+        const auto count = static_cast<int>(pairs_.size()), left = static_cast<int>(indices_.size());
+        std::mutex report;
+        int done = count - left;
+        // Each pair is a search of its own: the number of threads cannot change a result.
+        parallel_for(left, 1, [&](int k) {
+            const auto i = static_cast<std::size_t>(indices_[static_cast<std::size_t>(k)]);
+            results[i] = certified(i);
+            if (!options_.on_pair) return;
+            const std::lock_guard<std::mutex> lock(report);
+            options_.on_pair(++done, count);
+        });
+        if (is_recorded()) drop_unbounded(*options_.certificate);
+        return results;
+    }
+
+private:
+    bool is_recorded() const { return options_.certificate != nullptr; }
+
+    void start_record() {
+        std::vector<const PieceTree*> trees;
+        trees.reserve(motions_.size());
+        for (const BodyMotion& motion : motions_) trees.push_back(motion.shape.tree.get());
+        certificate::Certificate& certificate = *options_.certificate;
+        certificate = start_certificate(model_, trajectory_, trees, options_.motion && !trajectory_.steps.empty(), pairs_.size());
+        certified_ = certified_bodies(certificate, model_);
+    }
+
+    PairClearance certified(std::size_t i) const {
+        const PairRequest& request = pairs_[i];
+        std::optional<PairRecord> record;
+        if (is_recorded()) {
+            record.emplace(PairRecord{options_.certificate->pairs[i], certified_[static_cast<std::size_t>(request.a)],
+                                      certified_[static_cast<std::size_t>(request.b)]});
+            record->certificate.a = request.a;
+            record->certificate.b = request.b;
+        }
+        const BodyMotion &a = motions_[static_cast<std::size_t>(request.a)], &b = motions_[static_cast<std::size_t>(request.b)];
+        if (a.segments.empty() || b.segments.empty()) return unmeasured(request, unusable_numbers);
+        const PairMotion motion = pair_motion(a, b, trajectory_, places_);
+        if (far_[i]) {
+            const PairClearance known = recorded_far(motion, request, record);
+            if (known.lower >= request.far && known.status == PairStatus::clear) return far_pair(request, known.lower, known.solids);
+        }
+        return certify_pair(motion, request, model_.dmin + model_.dhat, options_, record);
+    }
+
+    // With a proof for the certificate, whose claim is less than what is proven by up to the tolerance.
+    PairClearance recorded_far(const PairMotion& motion, const PairRequest& request, const std::optional<PairRecord>& record) const {
+        ClearanceOptions options = options_;
+        options.enough = request.far + options.tolerance;
+        options.sample_nodes = options.margin_curve = false;
+        options.witness_tolerance = 0;
+        return certify_pair(motion, request, 0, options, record);
+    }
+
+    const model::Model& model_;
+    const stepper::Trajectory& trajectory_;
+    const std::vector<PairRequest>& pairs_;
+    const ClearanceOptions& options_;
+    std::vector<PathPlace> places_;
+    std::vector<std::optional<PairClearance>> far_;
+    std::vector<int> indices_;  // of the pairs to look at one by one
+    std::vector<BodyMotion> motions_;
+    std::vector<certificate::CertifiedBody> certified_;
+};
+
+}  // namespace
+
 std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
     FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
                   "a trajectory of the model's bodies");
-    const auto count = static_cast<int>(pairs.size());
-    const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
-    const std::vector<PathPlace> places = path_places(trajectory, options.motion);
-    const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, bodies);
-    std::vector<certificate::CertifiedBody> certified;
-    if (options.certificate != nullptr) {
-        std::vector<const PieceTree*> trees;
-        trees.reserve(motions.size());
-        for (const BodyMotion& motion : motions) trees.push_back(motion.shape.tree.get());
-        *options.certificate = start_certificate(model, trajectory, trees, options.motion && !trajectory.steps.empty(), pairs.size());
-        certified = certified_bodies(*options.certificate, model);
-    }
-    std::vector<PairClearance> results(pairs.size());
-    std::mutex report;
-    int done = 0;
-    // Each pair is a search of its own: the number of threads cannot change a result.
-    parallel_for(count, 1, [&](int i) {
-        const PairRequest& request = pairs[i];
-        std::optional<PairRecord> record;
-        if (options.certificate != nullptr) {
-            record.emplace(PairRecord{options.certificate->pairs[i], certified[request.a], certified[request.b]});
-            record->certificate.a = request.a;
-            record->certificate.b = request.b;
-        }
-        const BodyMotion &a = motions[request.a], &b = motions[request.b];
-        results[i] = a.segments.empty() || b.segments.empty()
-                         ? unmeasured(request, unusable_numbers)
-                         : certify_pair(pair_motion(a, b, trajectory, places), request, model.dmin + model.dhat, options, record);
-        if (!options.on_pair) return;
-        const std::lock_guard<std::mutex> lock(report);
-        options.on_pair(++done, count);
-    });
-    if (options.certificate != nullptr) drop_unbounded(*options.certificate);
-    return results;
+    return Certification(model, trajectory, pairs, options).run();
 }
 
 namespace {
 
-PairMotion window_motion(const std::vector<BodyShape>& shapes, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
-                         const NearWindow& window) {
-    const BodyShape &a = shapes[window.a], &b = shapes[window.b];
-    PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
-    pair.segments.reserve(static_cast<std::size_t>(window.last - window.first));
-    for (int i = window.first; i < window.last; ++i) {
-        const PathPlace& place = places[static_cast<std::size_t>(i)];
-        pair.segments.push_back(pair_segment(segment_at(trajectory, place, window.a), segment_at(trajectory, place, window.b),
-                                             pair.a.radius(), pair.b.radius()));
-        pair.segments.back().step = place.step;
-        pair.segments.back().segment = place.segment;
+constexpr int most_body_segments = 1 << 17;  // kept at once
+
+// Searches the windows one stretch of time after another: in a stretch each body's segments are made once for all its pairs.
+class WindowSearch {
+public:
+    WindowSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                 const std::vector<NearWindow>& windows, const ClearanceOptions& options)
+        : model_(model), trajectory_(trajectory), places_(places), options_(options) {
+        std::vector<PairRequest> pairs;
+        pairs.reserve(windows.size());
+        for (const NearWindow& window : windows) pairs.push_back({window.a, window.b, 0});
+        const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
+        shapes_ = body_shapes(model, bodies);
+        const int length = std::max(1, most_body_segments / std::max(static_cast<int>(bodies.size()), 1));
+        for (const NearWindow& window : windows) {
+            if (!window.measurable) {
+                parts_.push_back(window);
+                continue;
+            }
+            for (int first = window.first, last = 0; first < window.last; first = last) {
+                const int stretch = first / length;
+                last = std::min(window.last, (stretch + 1) * length);
+                if (stretches_.size() <= static_cast<std::size_t>(stretch)) stretches_.resize(static_cast<std::size_t>(stretch) + 1);
+                stretches_[static_cast<std::size_t>(stretch)].push_back(static_cast<int>(parts_.size()));
+                parts_.push_back({window.a, window.b, first, last});
+            }
+        }
     }
-    return pair;
-}
+
+    std::vector<PairClearance> run() {
+        std::vector<PairClearance> results;
+        results.reserve(parts_.size());
+        for (const NearWindow& part : parts_) results.push_back(unmeasured({part.a, part.b, 0}, unusable_numbers));
+        for (const std::vector<int>& stretch : stretches_) {
+            make_segments(stretch);
+            parallel_for(static_cast<int>(stretch.size()), 1, [&](int k) {
+                const int part = stretch[static_cast<std::size_t>(k)];
+                results[static_cast<std::size_t>(part)] = searched(parts_[static_cast<std::size_t>(part)]);
+            });
+        }
+        return results;
+    }
+
+private:
+    // Of a body from segment `first` of the path on.
+    struct Stretch {
+        int first = 0, last = 0;
+        std::vector<BodySegment> segments;
+    };
+
+    void make_segments(const std::vector<int>& stretch) {
+        bodies_.assign(model_.bodies.size(), {});
+        for (const int index : stretch) {
+            const NearWindow& part = parts_[static_cast<std::size_t>(index)];
+            for (const int body : {part.a, part.b}) {
+                Stretch& known = bodies_[static_cast<std::size_t>(body)];
+                const bool is_new = known.first == known.last;
+                known.first = is_new ? part.first : std::min(known.first, part.first);
+                known.last = is_new ? part.last : std::max(known.last, part.last);
+            }
+        }
+        parallel_for(static_cast<int>(bodies_.size()), 8, [&](int body) {
+            Stretch& known = bodies_[static_cast<std::size_t>(body)];
+            known.segments.reserve(static_cast<std::size_t>(known.last - known.first));
+            for (int i = known.first; i < known.last; ++i)
+                known.segments.push_back(body_segment(segment_at(trajectory_, places_[static_cast<std::size_t>(i)], body)));
+        });
+    }
+
+    PairClearance searched(const NearWindow& part) const {
+        const BodyShape &shape_a = shapes_[static_cast<std::size_t>(part.a)], &shape_b = shapes_[static_cast<std::size_t>(part.b)];
+        const Stretch &a = bodies_[static_cast<std::size_t>(part.a)], &b = bodies_[static_cast<std::size_t>(part.b)];
+        PairMotion pair{*shape_a.tree, *shape_b.tree, trajectory_, {}, *shape_a.solid, *shape_b.solid};
+        pair.segments.reserve(static_cast<std::size_t>(part.last - part.first));
+        for (int i = part.first; i < part.last; ++i) {
+            const PathPlace& place = places_[static_cast<std::size_t>(i)];
+            pair.segments.push_back(pair_segment(a.segments[static_cast<std::size_t>(i - a.first)],
+                                                 b.segments[static_cast<std::size_t>(i - b.first)], pair.a.radius(), pair.b.radius()));
+            pair.segments.back().step = place.step;
+            pair.segments.back().segment = place.segment;
+        }
+        return certify_pair(pair, {part.a, part.b, 0}, model_.dmin + model_.dhat, options_, std::nullopt);
+    }
+
+    const model::Model& model_;
+    const stepper::Trajectory& trajectory_;
+    const std::vector<PathPlace>& places_;
+    const ClearanceOptions& options_;
+    std::vector<BodyShape> shapes_;
+    std::vector<NearWindow> parts_;            // in the order of the windows
+    std::vector<std::vector<int>> stretches_;  // the parts of each
+    std::vector<Stretch> bodies_;
+};
 
 }  // namespace
 
@@ -165,20 +303,8 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
     FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
     const std::vector<PathPlace> places = path_places(trajectory, options.motion);
     const NearWindows near = near_windows(model, trajectory, places, reach);
-    std::vector<PairRequest> pairs;
-    for (const NearWindow& window : near.windows) pairs.push_back({window.a, window.b, 0});
-    const std::vector<BodyShape> shapes = body_shapes(model, bodies_of(pairs, static_cast<int>(model.bodies.size())));
     options.enough = std::min(options.enough, reach);
-    NearClearances result;
-    result.everything = near.everything;
-    result.windows.resize(near.windows.size());
-    parallel_for(static_cast<int>(near.windows.size()), 1, [&](int i) {
-        const NearWindow& window = near.windows[i];
-        result.windows[i] = window.measurable ? certify_pair(window_motion(shapes, trajectory, places, window), pairs[i],
-                                                             model.dmin + model.dhat, options, std::nullopt)
-                                              : unmeasured(pairs[i], unusable_numbers);
-    });
-    return result;
+    return {WindowSearch(model, trajectory, places, near.windows, options).run(), near.everything};
 }
 
 std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,
@@ -187,7 +313,7 @@ std::vector<Witness> nearest_by_window(const model::Model& model, const stepper:
     FETTLE_ASSERT(windows.first >= 0 && steps > 0 && windows.last <= static_cast<int>(trajectory.steps.size()),
                   "windows of the trajectory");
     const std::vector<PathPlace> places = path_places(trajectory, windows.first, windows.last);
-    const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, {pair.a, pair.b});
+    const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, {pair.a, pair.b}, body_shapes(model, {pair.a, pair.b}));
     const BodyMotion &a = motions[pair.a], &b = motions[pair.b];
     if (a.segments.empty() || b.segments.empty()) return {};
     const PairMotion whole = pair_motion(a, b, trajectory, places);

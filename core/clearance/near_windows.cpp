@@ -64,8 +64,9 @@ struct TimeSpans {
 
 class NearSearch {
 public:
-    NearSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, double reach)
-        : model_(model), trajectory_(trajectory), places_(places), reach_(reach), bodies_(static_cast<int>(model.bodies.size())) {
+    NearSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, double reach,
+               const PairFilter& wanted)
+        : trajectory_(trajectory), places_(places), reach_(reach), wanted_(wanted), bodies_(static_cast<int>(model.bodies.size())) {
         spans_.segments = static_cast<int>(places.size());
         spans_.count = std::clamp(most_boxes / std::max(bodies_, 1), 1, std::min(spans_.segments, most_time_spans));
         boxes_.resize(static_cast<std::size_t>(bodies_));
@@ -126,7 +127,7 @@ private:
                 if (y.low[axis] - x.high[axis] >= reach_) break;
                 if (((y.low - x.high).max(x.low - y.high) >= reach_).any()) continue;
                 const int a = std::min(order[i], order[j]), b = std::max(order[i], order[j]);
-                if (model::may_collide(model_, a, b)) pairs.emplace_back(a, b);
+                if (wanted_(a, b)) pairs.emplace_back(a, b);
             }
         }
         return pairs;
@@ -147,8 +148,8 @@ private:
             if (usable_[static_cast<std::size_t>(i)] != 0) continue;
             for (int j = 0; j < bodies_; ++j) {
                 const bool told = usable_[static_cast<std::size_t>(j)] == 0 && j < i;
-                if (!told && model::may_collide(model_, i, j))
-                    windows.push_back({std::min(i, j), std::max(i, j), 0, spans_.segments, false});
+                const int a = std::min(i, j), b = std::max(i, j);
+                if (!told && i != j && wanted_(a, b)) windows.push_back({a, b, 0, spans_.segments, false});
             }
         }
         if (windows.size() == measurable) return;
@@ -161,15 +162,15 @@ private:
         if (!std::all_of(windows.begin(), windows.end(), whole)) return false;
         std::size_t pairs = 0;
         for (int a = 0; a < bodies_ && pairs <= windows.size(); ++a) {
-            for (int b = a + 1; b < bodies_; ++b) pairs += model::may_collide(model_, a, b) ? 1 : 0;
+            for (int b = a + 1; b < bodies_; ++b) pairs += wanted_(a, b) ? 1 : 0;
         }
         return pairs == windows.size();
     }
 
-    const model::Model& model_;
     const stepper::Trajectory& trajectory_;
     const std::vector<PathPlace>& places_;
     double reach_;
+    const PairFilter& wanted_;
     int bodies_;
     TimeSpans spans_;
     std::vector<BodyBox> boxes_;
@@ -179,9 +180,29 @@ private:
 }  // namespace
 
 NearWindows near_windows(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
-                         double reach) {
+                         double reach, const PairFilter& wanted) {
     FETTLE_ASSERT(reach >= 0 && !places.empty(), "a reach of at least 0, over some time");
-    return NearSearch(model, trajectory, places, reach).run();
+    return NearSearch(model, trajectory, places, reach, wanted).run();
+}
+
+NearWindows near_windows(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                         double reach) {
+    return near_windows(model, trajectory, places, reach, [&](int a, int b) { return model::may_collide(model, a, b); });
+}
+
+PairMotion window_motion(const std::vector<BodyShape>& shapes, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                         const NearWindow& window) {
+    const BodyShape &a = shapes[window.a], &b = shapes[window.b];
+    PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
+    pair.segments.reserve(static_cast<std::size_t>(window.last - window.first));
+    for (int i = window.first; i < window.last; ++i) {
+        const PathPlace& place = places[static_cast<std::size_t>(i)];
+        pair.segments.push_back(pair_segment(segment_at(trajectory, place, window.a), segment_at(trajectory, place, window.b),
+                                             pair.a.radius(), pair.b.radius()));
+        pair.segments.back().step = place.step;
+        pair.segments.back().segment = place.segment;
+    }
+    return pair;
 }
 
 }  // namespace fettle::core::clearance

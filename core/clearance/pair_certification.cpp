@@ -257,6 +257,18 @@ private:
 
 }  // namespace
 
+std::optional<double> proven_apart(const PairMotion& pair, double reach, const ClearanceOptions& options) {
+    if (!is_measurable(pair)) return std::nullopt;
+    SearchOptions search;
+    search.tolerance = options.tolerance;
+    search.max_evaluations = options.max_evaluations;
+    search.should_stop = options.should_stop;
+    search.enough = search.refuted = reach;
+    const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
+    if (!(found.lower >= reach)) return std::nullopt;
+    return found.lower;
+}
+
 PairClearance unmeasured(const PairRequest& request, const std::string& reason) {
     PairClearance result;
     result.a = request.a;

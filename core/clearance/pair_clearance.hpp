@@ -55,6 +55,9 @@ struct MarginInterval {
 struct PairRequest {
     int a = 0, b = 0;    ///< bodies
     double minimum = 0;  ///< required clearance [m]
+    /// A pair that is proven to stay at least so far apart is left at that, unmeasured: PairClearance::is_far. Contract: > 0, >= minimum
+    /// [m]
+    double far = std::numeric_limits<double>::infinity();
 };
 
 struct ClearanceOptions {
@@ -77,6 +80,7 @@ struct PairClearance {
     int a = 0, b = 0;
     double minimum = 0;
     double lower = 0, upper = 0;  ///< [m]
+    bool is_far = false;          ///< clear: lower >= PairRequest::far. Not measured: `upper`, `sampled` are infinite, there is no witness
     PairStatus status = PairStatus::undecided;
     Witness witness;       ///< attains `upper`; of a clash of surfaces, where they meet first; of one inside the other, nearest surfaces
     bool complete = true;  ///< false: budget or should_stop ended the search before the tolerance was reached

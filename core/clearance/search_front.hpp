@@ -94,7 +94,7 @@ public:
     }
 
     bool is_settled() const {
-        if (queue_.empty()) return true;
+        if (queue_.empty() || result.upper < options.refuted) return true;
         const double next = queue_.front().lower;
         if (is_collecting()) return next > within_;
         if (options.seek_intersection) return result.intersecting || next > 0;

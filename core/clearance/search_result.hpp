@@ -16,10 +16,11 @@ namespace fettle::core::clearance {
 struct SearchOptions {
     double tolerance = 1e-6;
     long max_evaluations = 50'000'000;
-    double deviation_scale = 1;                               ///< less than 1 breaks the proof: for tests that must notice
-    std::function<bool()> should_stop;                        ///< optional
-    double enough = std::numeric_limits<double>::infinity();  ///< a lower bound of this much ends the search, whatever the gap [m]
-    bool nodes_only = false;                                  ///< at the ends of the segments instead of over them
+    double deviation_scale = 1;                                 ///< less than 1 breaks the proof: for tests that must notice
+    std::function<bool()> should_stop;                          ///< optional
+    double enough = std::numeric_limits<double>::infinity();    ///< a lower bound of this much ends the search, whatever the gap [m]
+    double refuted = -std::numeric_limits<double>::infinity();  ///< an upper bound below this ends the search, whatever the gap [m]
+    bool nodes_only = false;                                    ///< at the ends of the segments instead of over them
     bool seek_intersection = false;           ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
     std::optional<Encounter> seed;            ///< of the same bodies: its distance is the first upper bound
     bool sample_nodes = false;                ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment

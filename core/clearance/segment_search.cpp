@@ -27,8 +27,10 @@ bool splits_a(const Piece& a, const Piece& b) {
 
 SegmentSearch::SegmentSearch(SearchFront& front) : front_(front), recorder_(front.options.proof != nullptr, front.segments.size()) {
     const auto count = static_cast<int>(front_.segments.size());
-    for (int i = 0; i < count; ++i) add_interval(i);
+    intervals_.resize(static_cast<std::size_t>(count));
+    bounds_.resize(static_cast<std::size_t>(count));
     if (is_nodes_only()) {
+        for (int i = 0; i < count; ++i) make_whole(i);
         const int end = add_instant(front_.segments.back(), 1);
         push_interval({count - 1, end, end, end, -1, -1, 0});
     }
@@ -36,20 +38,30 @@ SegmentSearch::SegmentSearch(SearchFront& front) : front_(front), recorder_(fron
 
 void SegmentSearch::try_roots() {
     const auto roots = static_cast<int>(intervals_.size());
-    for (int i = 0; i < roots; ++i) try_pieces(i, 0, 0, recorder_.root(intervals_[i].segment));
+    for (int i = 0; i < roots; ++i) {
+        if (i < static_cast<int>(front_.segments.size())) make_whole(i);
+        try_pieces(i, 0, 0, recorder_.root(intervals_[i].segment));
+    }
 }
 
-void SegmentSearch::add_interval(int segment) {
+void SegmentSearch::make_whole(int segment) {
+    if (intervals_[segment].start >= 0) return;
     const PairSegment& moving = front_.segments[static_cast<std::size_t>(segment)];
     const int start = add_instant(moving, 0);
-    if (is_nodes_only() || is_still(moving)) return push_interval({segment, start, start, start, -1, -1, 0});
+    if (is_nodes_only() || is_still(moving)) return set_interval(segment, {segment, start, start, start, -1, -1, 0});
     const int middle = add_instant(moving, 0.5), end = add_instant(moving, 1);
-    push_interval({segment, start, middle, end, -1, -1, 0});
+    set_interval(segment, {segment, start, middle, end, -1, -1, 0});
+}
+
+void SegmentSearch::set_interval(int index, const Interval& i) {
+    intervals_[index] = i;
+    bounds_[index].emplace(segment_of(i), instants_[i.start], instants_[i.middle], instants_[i.end]);
 }
 
 void SegmentSearch::push_interval(const Interval& i) {
     intervals_.push_back(i);
-    bounds_.emplace_back(segment_of(i), instants_[i.start], instants_[i.middle], instants_[i.end]);
+    bounds_.emplace_back();
+    set_interval(static_cast<int>(intervals_.size()) - 1, i);
 }
 
 int SegmentSearch::add_instant(const PairSegment& segment, double s) {
@@ -79,7 +91,7 @@ void SegmentSearch::keep(const Entry& entry, double lower, const certificate::Le
 double SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
     ++front_.result.evaluations;
     const Interval& interval = intervals_[interval_index];
-    const IntervalBound& prepared = bounds_[interval_index];
+    const IntervalBound& prepared = *bounds_[interval_index];
     const Piece &piece_of_a = piece_a(a), &piece_of_b = piece_b(b);
     const Separation gap = separation(instants_[interval.middle], piece_of_a, piece_of_b);
     const certificate::LeafPlane plane{gap.direction, gap.direction};
@@ -143,6 +155,7 @@ Separation SegmentSearch::measure(int segment_index, const Instant& at, int a, i
 }
 
 Separation SegmentSearch::measure_at(const SegmentEnd& place, int a, int b) {
+    make_whole(place.segment);
     Instant at = instants_[place.at_end ? intervals_[place.segment].end : intervals_[place.segment].start];
     at.s = place.at_end ? 1 : 0;  // those of a segment at rest are one
     return measure(place.segment, at, a, b);
@@ -160,6 +173,7 @@ void SegmentSearch::refine_nearest() {
 
 void SegmentSearch::take_distance_of_any_pair() {
     int a = 0, b = 0;
+    make_whole(0);
     const Instant at = instants_[intervals_[0].start];
     const auto apart = [&](int x, int y) {
         return (at.offset + at.rotation_a * piece_a(x).center - at.rotation_b * piece_b(y).center).norm();
@@ -202,8 +216,8 @@ void SegmentSearch::measure_elements(const Entry& entry) {
     const Interval interval = intervals_[entry.interval];
     const Vector3 n = measure(interval.segment, instants_[interval.middle], entry.a, entry.b).direction;
     if (interval.start == interval.end) return try_elements(entry, n, n);
-    const SegmentBound bound = bounds_[entry.interval].along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a),
-                                                             &corners_b(entry.b), front_.options.deviation_scale);
+    const SegmentBound bound = bounds_[entry.interval]->along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a),
+                                                              &corners_b(entry.b), front_.options.deviation_scale);
     if (!front_.is_collecting() && bound.lower >= front_.cutoff()) return keep(entry, bound.lower, {n, n}, true);
     const Vector3 n0 = measure(interval.segment, instants_[interval.start], entry.a, entry.b).direction;
     try_elements(entry, n0, measure(interval.segment, instants_[interval.end], entry.a, entry.b).direction);

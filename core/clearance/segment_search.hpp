@@ -3,6 +3,7 @@
 /// motion loosens a bound more than the size of the boxes does, down to the closest points of two elements.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fettle/core/clearance/piece_bound.hpp"
@@ -19,7 +20,10 @@ public:
     /// Both whole bodies, over every segment.
     void try_roots();
     /// Two pieces over a whole segment; returns a lower bound of their distance there.
-    double try_segment(int segment, int a, int b) { return try_pieces(segment, a, b, recorder_.root(segment)); }
+    double try_segment(int segment, int a, int b) {
+        make_whole(segment);
+        return try_pieces(segment, a, b, recorder_.root(segment));
+    }
     /// Halves an entry that the queue gave back, in time or in space, unless its bound has become good enough.
     void split(int entry, double lower);
 
@@ -38,7 +42,7 @@ private:
     // A dyadic part of a segment; parts are made when first needed and shared by all pieces. Those of whole segments come first.
     struct Interval {
         int segment = 0;
-        int start = 0, middle = 0, end = 0;  // indices of instants
+        int start = -1, middle = 0, end = 0;  // indices of instants; start -1: not made yet
         int first_half = -1, second_half = -1;
         int halvings = 0;
     };
@@ -51,7 +55,8 @@ private:
         Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
     };
 
-    void add_interval(int segment);
+    void make_whole(int segment);
+    void set_interval(int index, const Interval& i);
     void push_interval(const Interval& i);
     int add_instant(const PairSegment& segment, double s);
     void make_halves(int index);
@@ -76,7 +81,7 @@ private:
     ProofRecorder recorder_;
     std::vector<Instant> instants_;
     std::vector<Interval> intervals_;
-    std::vector<IntervalBound> bounds_;  // of the intervals
+    std::vector<std::optional<IntervalBound>> bounds_;  // of the intervals
     EntryPool<Entry> entries_;
     std::vector<Encounter> found_;
 };

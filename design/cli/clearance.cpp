@@ -38,10 +38,20 @@ double default_tolerance(const PairSelection& selection) {
     return tolerance;
 }
 
-std::vector<core::clearance::PairRequest> requests_of(const PairSelection& selection) {
+// Of more pairs than this nobody reads each distance: those that nobody named, and that stay twice their minimum apart, are left at that.
+constexpr std::size_t most_measured = 100;
+
+std::vector<core::clearance::PairRequest> requests_of(const PairSelection& selection, bool all_measured) {
     std::vector<core::clearance::PairRequest> requests;
     for (const PairSpec& pair : selection.pairs) {
         for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, pair.minimum});
+    }
+    if (all_measured || requests.size() <= most_measured) return requests;
+    auto request = requests.begin();
+    for (const PairSpec& pair : selection.pairs) {
+        for (std::size_t i = 0; i < pair.body_pairs.size(); ++i, ++request) {
+            if (!pair.named && pair.minimum > 0) request->far = 2 * pair.minimum;
+        }
     }
     return requests;
 }
@@ -84,18 +94,23 @@ std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& s
     certify.certificate = nullptr;
     certify.on_pair = nullptr;
     certify.enough = 10 * certify.tolerance;
+    std::vector<core::clearance::PairRequest> requests;
+    for (const PairSpec& pair : selection.left_out) {
+        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0, certify.enough});
+    }
+    const auto found = core::clearance::certify_clearance(subject.model, subject.trajectory, requests, certify);
     std::vector<core::clearance::PairClearance> clashes;
     std::vector<PairSpec> apart;
+    auto first = found.begin();
     for (PairSpec& pair : selection.left_out) {
-        std::vector<core::clearance::PairRequest> requests;
-        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0});
-        auto found = core::clearance::certify_clearance(subject.model, subject.trajectory, requests, certify);
-        if (std::none_of(found.begin(), found.end(), [](const auto& each) { return each.is_clash(); })) {
+        const auto last = first + static_cast<std::ptrdiff_t>(pair.body_pairs.size());
+        if (std::any_of(first, last, [](const auto& each) { return each.is_clash(); })) {
+            clashes.insert(clashes.end(), first, last);
+            selection.pairs.push_back(std::move(pair));
+        } else {
             apart.push_back(std::move(pair));
-            continue;
         }
-        clashes.insert(clashes.end(), found.begin(), found.end());
-        selection.pairs.push_back(std::move(pair));
+        first = last;
     }
     selection.left_out = std::move(apart);
     return clashes;
@@ -162,7 +177,8 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     certify.should_stop = interrupted;
     core::certificate::Certificate certificate;
     if (!options.certificate.empty()) certify.certificate = &certificate;
-    auto results = core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection), certify);
+    auto results =
+        core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection, certify.margin_curve), certify);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
     certificate.source = subject->source == SubjectSource::trajectory ? "" : options.subject.path;

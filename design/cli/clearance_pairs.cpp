@@ -2,7 +2,9 @@
 #include "fettle/design/cli/clearance_pairs.hpp"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
+#include <unordered_map>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/nearest_word.hpp"
@@ -182,21 +184,27 @@ private:
             if (!pair.body_pairs.empty()) selection_.left_out.push_back(pair);
             return;
         }
-        for (PairSpec& known : selection_.pairs) {
-            if (!((same(known.a, a) && same(known.b, b)) || (same(known.a, b) && same(known.b, a)))) continue;
-            if (minimum) {
-                known.minimum = *minimum;
-                known.required_by = pair.required_by;
-            }
-            if (named && !known.named) {
-                known.named = true;
-                known.a = a;
-                known.b = b;
-                known.body_pairs = pair.body_pairs;
-            }
+        const auto [place, is_new] = places_.try_emplace(key(a, b), selection_.pairs.size());
+        if (is_new) {
+            selection_.pairs.push_back(std::move(pair));
             return;
         }
-        selection_.pairs.push_back(pair);
+        PairSpec& known = selection_.pairs[place->second];
+        if (minimum) {
+            known.minimum = *minimum;
+            known.required_by = pair.required_by;
+        }
+        if (named && !known.named) {
+            known.named = true;
+            known.a = a;
+            known.b = b;
+            known.body_pairs = pair.body_pairs;
+        }
+    }
+
+    // The same in either order.
+    static std::string key(const Unit& a, const Unit& b) {
+        return a.name < b.name ? a.name + std::string(1, '\0') + b.name : b.name + std::string(1, '\0') + a.name;
     }
 
     bool is_one_group(int i, int j) const {
@@ -270,22 +278,21 @@ private:
 
     // Each once, and not what another token named.
     void tidy_left_out() {
+        std::set<std::string> told;
+        for (const PairSpec& pair : selection_.pairs) told.insert(key(pair.a, pair.b));
         std::vector<PairSpec> once;
         for (PairSpec& pair : selection_.left_out) {
-            const auto is = [&](const PairSpec& known) {
-                return (same(known.a, pair.a) && same(known.b, pair.b)) || (same(known.a, pair.b) && same(known.b, pair.a));
-            };
             pair.minimum = 0;
-            if (std::none_of(once.begin(), once.end(), is) && std::none_of(selection_.pairs.begin(), selection_.pairs.end(), is))
-                once.push_back(pair);
+            if (told.insert(key(pair.a, pair.b)).second) once.push_back(std::move(pair));
         }
-        selection_.left_out = once;
+        selection_.left_out = std::move(once);
     }
 
     const Model& model_;
     const PairOptions& options_;
     std::vector<Unit> bodies_, groups_, units_;  // units: rows of the report by default
     PairSelection selection_;
+    std::unordered_map<std::string, size_t> places_;  // in selection_.pairs while it grows, by key()
     Errors errors_;
 };
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
+#include <unordered_map>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
@@ -55,6 +57,7 @@ PairClearance least_of(const std::vector<PairClearance>& members) {
         least.lower = std::min(before.lower, member.lower);
         least.upper = std::min(before.upper, member.upper);
         least.sampled = std::min(before.sampled, member.sampled);
+        least.is_far = before.is_far && member.is_far;
         least.complete = before.complete && member.complete;
         least.intersecting = before.intersecting || member.intersecting;
         least.solids = worse_of(before.solids, member.solids);
@@ -118,20 +121,9 @@ Json witness_json(const Witness& w) {
     return json;
 }
 
-Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
+// Where the least distance is, and how it was found.
+void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
     const PairClearance& least = pair.least;
-    Json json;
-    json["a"] = pair.spec.a.name;
-    json["b"] = pair.spec.b.name;
-    const bool required = !pair.spec.required_by.empty();
-    json["minimum"] = required ? Json(least.minimum) : Json();
-    json["required_by"] = required ? Json(pair.spec.required_by) : Json();
-    json["lower"] = least.lower;
-    json["upper"] = least.upper;
-    json["status"] = core::clearance::to_string(least.status);
-    json["finding"] = to_string(pair.finding);
-    json["solids"] = core::certificate::to_string(least.solids);
-    if (pair.finding == Finding::undecided && !least.reason.empty()) json["reason"] = least.reason;
     json["time"] = least.is_clash() ? least.clash_time : least.witness.time;
     json["point_a"] = vector_json(least.witness.point_a);
     json["point_b"] = vector_json(least.witness.point_b);
@@ -149,9 +141,36 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     json["pose_a"] = pose_json(file_pose(subject, least.witness, least.a));
     json["pose_b"] = pose_json(file_pose(subject, least.witness, least.b));
     json["witness"] = witness_json(least.witness);
-    if (!least.witnesses.empty()) {
-        json["witnesses"] = Json::array();
-        for (const Witness& witness : least.witnesses) json["witnesses"].push_back(witness_json(witness));
+    if (least.witnesses.empty()) return;
+    json["witnesses"] = Json::array();
+    for (const Witness& witness : least.witnesses) json["witnesses"].push_back(witness_json(witness));
+}
+
+// Of a pair that stays far enough apart nothing else is known.
+void add_no_witness(Json& json) {
+    json["measured"] = false;
+    for (const char* key : {"time", "point_a", "point_b", "gap", "sampled", "pose_a", "pose_b", "witness"}) json[key] = Json();
+    json["complete"] = true;
+}
+
+Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
+    const PairClearance& least = pair.least;
+    Json json;
+    json["a"] = pair.spec.a.name;
+    json["b"] = pair.spec.b.name;
+    const bool required = !pair.spec.required_by.empty();
+    json["minimum"] = required ? Json(least.minimum) : Json();
+    json["required_by"] = required ? Json(pair.spec.required_by) : Json();
+    json["lower"] = least.lower;
+    json["upper"] = least.is_far ? Json() : Json(least.upper);
+    json["status"] = core::clearance::to_string(least.status);
+    json["finding"] = to_string(pair.finding);
+    json["solids"] = core::certificate::to_string(least.solids);
+    if (pair.finding == Finding::undecided && !least.reason.empty()) json["reason"] = least.reason;
+    if (least.is_far) {
+        add_no_witness(json);
+    } else {
+        add_witness(json, pair, subject, names);
     }
     if (!pair.change.empty()) json["change"] = pair.change;
     if (pair.before) json["before"] = {{"status", pair.before->status}, {"lower", pair.before->lower}, {"upper", pair.before->upper}};
@@ -174,6 +193,20 @@ std::vector<std::string> uncovered(const core::model::Model& model, const PairSe
             if (covered.count({a, b}) == 0)
                 list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
     return list;
+}
+
+// Worst first; rows are large, and there may be many.
+void sort(std::vector<ReportedPair>& pairs) {
+    std::vector<size_t> order(pairs.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) {
+        const ReportedPair &x = pairs[i], &y = pairs[j];
+        return x.finding != y.finding ? x.finding < y.finding : share(x) < share(y);
+    });
+    std::vector<ReportedPair> sorted;
+    sorted.reserve(pairs.size());
+    for (const size_t i : order) sorted.push_back(std::move(pairs[i]));
+    pairs = std::move(sorted);
 }
 
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
@@ -228,6 +261,7 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
         pair.spec = spec;
         for (size_t i = 0; i < spec.body_pairs.size(); ++i) {
             pair.members.push_back(results[next++]);
+            if (pair.members.back().is_far) continue;
             set_time(pair.members.back().witness);  // where times are uneven only the trajectory knows them
             for (Witness& witness : pair.members.back().witnesses) set_time(witness);
         }
@@ -242,9 +276,7 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
     report.uncovered = uncovered(subject.model, selection);
     report.message = why_not_judged(subject, selection, stopped);
     if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
-    std::stable_sort(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& x, const ReportedPair& y) {
-        return x.finding != y.finding ? x.finding < y.finding : share(x) < share(y);
-    });
+    sort(report.pairs);
     return report;
 }
 
@@ -252,17 +284,20 @@ Errors compare_with_baseline(const std::string& path, ClearanceReport& report) {
     auto document = core::files::JsonDocument::read(path);
     if (!document) return document.errors();
     report.baseline = path;
+    const auto row_key = [](const std::string& a, const std::string& b) { return a < b ? a + '\n' + b : b + '\n' + a; };
+    std::unordered_map<std::string, ReportedPair*> rows;
+    for (ReportedPair& pair : report.pairs) rows.try_emplace(row_key(pair.spec.a.name, pair.spec.b.name), &pair);
     const core::files::JsonNode list = document->root().require("pairs");
     for (const core::files::JsonNode& node : list.elements()) {
         const auto a = node.require("a").string(), b = node.require("b").string();
         const auto status = node.require("status").choice({"clear", "violated", "undecided", "contact"});
-        const auto lower = node.require("lower").number(), upper = node.require("upper").number();
+        const auto lower = node.require("lower").number();
+        const core::files::JsonNode upper_node = node.require("upper");
+        const auto upper = upper_node.is_null() ? std::numeric_limits<double>::infinity() : upper_node.number();
         if (!a || !b || !status || !lower || !upper) continue;
-        const auto found = std::find_if(report.pairs.begin(), report.pairs.end(), [&](const ReportedPair& p) {
-            return (p.spec.a.name == *a && p.spec.b.name == *b) || (p.spec.a.name == *b && p.spec.b.name == *a);
-        });
-        if (found != report.pairs.end()) {
-            found->before = Before{*status, *lower, *upper};
+        const auto found = rows.find(row_key(*a, *b));
+        if (found != rows.end()) {
+            found->second->before = Before{*status, *lower, *upper};
         } else if (is_finding(*status)) {
             report.missing.push_back(*a + ":" + *b);
         }
@@ -278,9 +313,11 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     const std::vector<std::string> names = body_names(subject.model);
     double minimum = std::numeric_limits<double>::infinity(), least = minimum;
     Json list = Json::array();
+    int unmeasured = 0;
     for (const ReportedPair& pair : report.pairs) {
         if (!pair.spec.required_by.empty()) minimum = std::min(minimum, pair.least.minimum);
         least = std::min(least, pair.least.lower);
+        unmeasured += pair.least.is_far ? 1 : 0;
         list.push_back(pair_json(pair, subject, names));
     }
     Json json;
@@ -291,7 +328,8 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["motion"] = subject.motion();
     json["source"] = to_string(subject.source);
     json["steps"] = subject.trajectory.steps.size();
-    json["pairs"] = list;
+    json["pairs"] = std::move(list);
+    json["not_measured"] = unmeasured;
     json["ignored"] = report.ignored;
     json["left_out"] = report.left_out;
     json["uncovered"] = report.uncovered;

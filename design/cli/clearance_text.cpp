@@ -49,12 +49,14 @@ std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" 
 
 std::string table(const ClearanceReport& report, const Subject& subject, const Lengths& lengths, const Console& console) {
     size_t width = 4;
-    for (const ReportedPair& pair : report.pairs) width = std::max(width, pair_name(pair).size());
+    for (const ReportedPair& pair : report.pairs)
+        if (!pair.least.is_far) width = std::max(width, pair_name(pair).size());
     const int w = static_cast<int>(width);
     std::string text = formatted("%-*s %12s %14s %14s  %-16s%s   (lengths in %s, times in s)\n", w, "pair", "required", "at least",
                                  "at most", "status", subject.motion() ? "  when" : "", lengths.unit().c_str());
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
+        if (least.is_far) continue;
         const std::string status = formatted("%-16s", to_string(pair.finding));
         const bool good = pair.finding == Finding::clear || pair.finding == Finding::contact;
         text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(),
@@ -173,9 +175,18 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
                         const Console& console) {
     const Lengths lengths(unit, report.tolerance);
     std::string text = table(report, subject, lengths, console);
-    for (int i = 0; i < std::min<int>(explain, static_cast<int>(report.pairs.size())); ++i)
-        text += "\n" + formatted("%d. ", i + 1) + explained(report.pairs[static_cast<size_t>(i)], subject, lengths);
+    int told = 0;
+    for (const ReportedPair& pair : report.pairs) {
+        if (told == explain) break;
+        if (!pair.least.is_far) text += "\n" + formatted("%d. ", ++told) + explained(pair, subject, lengths);
+    }
     text += "\n" + summary(report, subject);
+    const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
+    if (far > 0)
+        text += formatted(
+            "%d of them without a row stay at least twice as far apart as is required, and were not measured: name a pair with --pairs "
+            "to measure it\n",
+            static_cast<int>(far));
     std::map<std::string, int> reasons;
     for (const ReportedPair& pair : report.pairs)
         if (pair.finding == Finding::undecided && !pair.least.reason.empty()) ++reasons[pair.least.reason];

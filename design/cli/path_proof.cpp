@@ -100,6 +100,7 @@ PathProof prove_path(const core::model::Model& model, const core::stepper::Simul
     if (!any_may_collide(model)) return {};
     double reach = model.dmin + model.dhat;
     for (const auto& step : simulation.report.steps) reach = std::min(reach, step.minimum_distance);
+    reach *= 1 + share;  // so that what was seen is found within it
     if (!(reach > model.dmin)) reach = model.dmin + model.dhat;
     core::clearance::ClearanceOptions options;
     options.motion = true;

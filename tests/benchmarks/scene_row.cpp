@@ -31,6 +31,37 @@ std::string quoted(const std::string& text) {
     return out + '"';
 }
 
+std::string program_json(const ProgramRun& run) {
+    std::string out = "{\"status\": " + quoted(run.status);
+    if (!run.message.empty()) out += ", \"message\": " + quoted(run.message);
+    for (const auto& [key, value] : {std::pair{"cpu_seconds", run.cpu_seconds},
+                                     {"wall_seconds", run.wall_seconds},
+                                     {"start_seconds", run.start_seconds},
+                                     {"stepping_seconds", run.stepping_seconds},
+                                     {"certify_seconds", run.certify_seconds},
+                                     {"peak_memory_bytes", run.peak_memory_bytes},
+                                     {"minimum_distance", run.minimum_distance}})
+        out += ", " + quoted(key) + ": " + number(value);
+    return out + ", \"steps\": " + std::to_string(run.steps) + "}";
+}
+
+ProgramRun read_program(const JsonNode& node) {
+    ProgramRun run;
+    if (!node.exists()) return run;
+    const auto real = [&](const char* key) { return node[key].unless_null().number().value_or(std::numeric_limits<double>::infinity()); };
+    run.status = node["status"].string().value_or("");
+    run.message = node["message"].string().value_or("");
+    run.cpu_seconds = real("cpu_seconds");
+    run.wall_seconds = real("wall_seconds");
+    run.start_seconds = real("start_seconds");
+    run.stepping_seconds = real("stepping_seconds");
+    run.certify_seconds = real("certify_seconds");
+    run.peak_memory_bytes = real("peak_memory_bytes");
+    run.minimum_distance = real("minimum_distance");
+    run.steps = static_cast<int>(node["steps"].number().value_or(0));
+    return run;
+}
+
 SceneRow read_row(const JsonNode& node) {
     SceneRow row;
     const auto text = [&](const char* key) { return node[key].string().value_or(""); };
@@ -57,6 +88,7 @@ SceneRow read_row(const JsonNode& node) {
     row.steps_checked = static_cast<int>(whole("steps_checked"));
     row.intersections = whole("intersections");
     row.first_intersection = text("first_intersection");
+    row.program = read_program(node["program"]);
     return row;
 }
 
@@ -71,6 +103,7 @@ std::string to_json(const SceneRow& row, const std::string& extra) {
     add("scene", quoted(row.scene));
     add("status", quoted(row.status));
     if (!row.message.empty()) add("message", quoted(row.message));
+    if (row.program.status != ProgramRun().status) add("program", program_json(row.program));
     add("bodies", std::to_string(row.bodies));
     add("triangles", std::to_string(row.triangles));
     add("steps", std::to_string(row.steps));

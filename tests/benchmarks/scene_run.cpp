@@ -2,12 +2,11 @@
 #include "fettle/tests/benchmarks/scene_run.hpp"
 
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cmath>
-#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <limits>
 #include <numeric>
@@ -16,6 +15,7 @@
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/benchmarks/child_run.hpp"
 #include "fettle/tests/benchmarks/scene_row.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 
@@ -155,39 +155,19 @@ SceneRow run_apart(const std::string& name, const std::string& text, const std::
     SceneRow failed;
     failed.scene = name;
     failed.status = "crashed";
-    int ends[2];
-    if (pipe(ends) != 0) return failed;
-    const pid_t child = fork();
-    if (child < 0) return failed;
-    if (child == 0) {
-        close(ends[0]);
-        // A run that hangs where it does not ask `should_stop` is ended by the kernel.
-        const auto limit =
-            static_cast<rlim_t>(options.threads * (3 * options.seconds + options.check_seconds + 2 * options.repeat_seconds) + 60);
-        const rlimit cpu_limit{limit, limit + 5};
-        setrlimit(RLIMIT_CPU, &cpu_limit);
+    // A run that hangs where it does not ask `should_stop` is ended by the kernel.
+    const double limit = options.threads * (3 * options.seconds + options.check_seconds + 2 * options.repeat_seconds) + 60;
+    const auto work = [&] {
         const std::string row = to_json(run_here(name, text, path, options));
-        for (std::size_t sent = 0; sent < row.size();) {
-            const ssize_t n = write(ends[1], row.data() + sent, row.size() - sent);
-            if (n <= 0) _exit(1);
-            sent += static_cast<std::size_t>(n);
-        }
-        _exit(0);
+        return std::fwrite(row.data(), 1, row.size(), stdout) == row.size() ? 0 : 1;
+    };
+    const ChildRun child = run_child(work, limit);
+    if (child.signal != 0) {
+        if (child.ran_out_of_time()) failed.status = "hung";
+        failed.message = std::string("signal ") + strsignal(child.signal);
     }
-    close(ends[1]);
-    std::string row;
-    char buffer[4096];
-    for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) row.append(buffer, static_cast<std::size_t>(n));
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (WIFSIGNALED(status)) {
-        if (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) failed.status = "hung";
-        failed.message = std::string("signal ") + strsignal(WTERMSIG(status));
-        return failed;
-    }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return failed;
-    return row_from_json(row).value_or(failed);
+    if (child.exit_code != 0) return failed;
+    return row_from_json(child.out).value_or(failed);
 }
 
 }  // namespace fettle::tests::benchmarks

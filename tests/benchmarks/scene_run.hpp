@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// One scene, run, timed and checked. Each run has a process of its own: its peak memory is its own, and neither a crash nor a run that
-/// never ends takes the others with it.
+/// One scene, run, timed and checked, in a process of its own (child_run.hpp).
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <string>
+
+#include "fettle/tests/benchmarks/program_run.hpp"
 
 namespace fettle::tests::benchmarks {
 
@@ -19,7 +20,7 @@ struct RunOptions {
     double repeat_seconds = 1;
 };
 
-/// What a run says about itself. Times are of `simulate` alone, without reading, building and checking.
+/// What a run says about itself. Times are of stepping alone, without reading, building and checking; `program` is the whole.
 struct SceneRow {
     std::string scene;
     std::string status;   ///< of the simulation; "interrupted": out of time; "refused": not read or not built; "crashed", "hung"
@@ -40,6 +41,7 @@ struct SceneRow {
     int steps_checked = 0;                     ///< for intersections: all, or as many as time allowed, spread over the run
     long intersections = 0;                    ///< found by the exact oracle; at most 10 are looked for
     std::string first_intersection;
+    ProgramRun program;  ///< `fettle simulate` over the same steps
 
     double seconds_per_step() const { return steps > 0 ? cpu_seconds / steps : 0; }
     bool is_sound() const { return finite && repeatable && intersections == 0; }

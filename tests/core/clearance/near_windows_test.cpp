@@ -6,56 +6,17 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "fettle/tests/core/clearance/tumbling_boxes.hpp"
 
 namespace fettle::core::clearance::near_windows_test {
 
 using namespace fettle::tests::support;
+using fettle::tests::clearance::tumbling;
+using Scene = fettle::tests::clearance::TumblingBoxes;
 
 namespace {
-
-struct Scene {
-    model::Model model;
-    stepper::Trajectory trajectory;
-};
-
-// Boxes that tumble and fly about in some steps of several segments; the first is static, two are of one group.
-Scene tumbling(int bodies, int steps, unsigned seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> normal;
-    const auto vector = [&](double size) { return Vector3(size * normal(random), size * normal(random), size * normal(random)); };
-    Scene scene;
-    scene.model.dhat = 1e-3;
-    for (int i = 0; i < bodies; ++i) {
-        const Vector3 half(0.1 + 0.02 * i, 0.2, 0.05), off = vector(0.1);  // the reference point is not the middle
-        scene.model.bodies.push_back(make_body("body " + std::to_string(i), box_mesh(off - half, off + half),
-                                               make_pose(vector(1), vector(1.2)),
-                                               i == 0 ? scene::BodyType::static_body : scene::BodyType::dynamic_body));
-    }
-    scene.model.bodies[1].group = scene.model.bodies[2].group = 7;
-    scene.trajectory = as_assembled(scene.model);
-    scene.trajectory.timestep = 0.1;
-    for (int t = 0; t < steps; ++t) {
-        stepper::TrajectoryStep step;
-        step.nodes.resize(static_cast<std::size_t>(2 + t % 3));
-        std::vector<kinematics::Pose> end = scene.trajectory.poses.back();
-        for (int i = 0; i < bodies; ++i) {
-            const kinematics::Pose& pose = scene.trajectory.poses.back()[static_cast<std::size_t>(i)];
-            const Vector3 turn = i == 0 ? Vector3::Zero() : vector(1.5), shift = i == 0 ? Vector3::Zero() : vector(0.4);
-            for (std::size_t k = 0; k < step.nodes.size(); ++k) {
-                const double s = static_cast<double>(k) / static_cast<double>(step.nodes.size() - 1);
-                step.nodes[k].push_back({pose.position + s * shift, s * turn});
-            }
-            end[static_cast<std::size_t>(i)] = {kinematics::rotation(turn) * pose.rotation, pose.position + shift};
-        }
-        scene.trajectory.steps.push_back(step);
-        scene.trajectory.poses.push_back(end);
-    }
-    return scene;
-}
 
 // The path of one segment alone.
 stepper::Trajectory only(const stepper::Trajectory& trajectory, const PathPlace& place) {
