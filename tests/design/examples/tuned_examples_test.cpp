@@ -46,8 +46,9 @@ public:
 TEST_CASE("where an optimiser stopped short, the design is called feasible, not optimal, and what could move is named", "[slow]") {
     auto file = read_design("examples/slider_crank/slider_crank.design.json", {});
     REQUIRE(file);
-    const double millimetres[] = {5.141987954247895, 4.13335901529852,  3.1247302191549657, 14.341425183377662,
-                                  41.38732488218496, 20.64708652521357, 9.78168131970727};
+    // Where an interior-point method ends that knows nothing of how rough the stroke is, moved by 0.02 mm in journal_radius and 0.03 in
+    // rod_length, so that the motion within the play leaves rod and block their millimetre.
+    const double millimetres[] = {5.122, 4.13335901529852, 3.1247302191549657, 14.341425183377662, 41.357, 20.647, 9.78168131970727};
     const auto problem = DesignProblem::create(std::move(file->design));
     REQUIRE(problem);
     auto seen = fettle::design::problem::optimiser_problem(*problem);
@@ -55,10 +56,13 @@ TEST_CASE("where an optimiser stopped short, the design is called feasible, not 
     OptimiserOptions options;
     options.max_evaluations = 30;
     const OptimiserReport report = optimise(seen, Idle(), options);
-    CHECK(report.start.objective == Approx(16.494).epsilon(1e-3));
+    CHECK(report.start.objective == Approx(16.689).epsilon(1e-3));
     CHECK(report.status == OptimiserStatus::feasible);
-    REQUIRE_FALSE(report.optimality.improvable.empty());
-    CHECK(problem->design().parameters[static_cast<size_t>(report.optimality.improvable[0])].name == "piston_length");
+    std::vector<std::string> named;  // journal_radius pays more per step, piston_length has farther to go
+    for (const int k : report.optimality.improvable) named.push_back(problem->design().parameters[static_cast<size_t>(k)].name);
+    REQUIRE(named.size() >= 2);
+    CHECK(named[0] == "journal_radius");
+    CHECK(std::find(named.begin(), named.end(), "piston_length") != named.end());
     CHECK(report.optimality.step[5] < 0);
 }
 
