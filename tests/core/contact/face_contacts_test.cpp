@@ -7,6 +7,8 @@
 #include <random>
 
 #include "fettle/core/contact/contact_set.hpp"
+#include "fettle/core/model/choose_kappa.hpp"
+#include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::core::contact::face_contacts_test {
@@ -194,6 +196,36 @@ TEST_CASE("two boxes face to face: their diagonals do not matter", "[face_contac
         return barrier_potential(set, barrier_parameters(model.dhat, 0, 1, 1));
     };
     CHECK(potential(true) == Approx(potential(false)).epsilon(1e-12));
+}
+
+TEST_CASE("a block falls, tips and slides alike on a floor however that is cut", "[face_contacts][physics]") {
+    const auto end_on = [](geometry::Mesh floor) {
+        floor.vertices *= 2.0;
+        floor.vertices.topRows<2>().array() -= 1.0;
+        model::Model model;
+        model.bodies = {make_body("floor", floor, {}, scene::BodyType::static_body),
+                        make_body("block", box_mesh(Vector3(-0.05, -0.04, -0.03), Vector3(0.05, 0.04, 0.03)),
+                                  make_pose(Vector3(0.3, -0.2, 0.4), Vector3(-0.11, 0.07, 0.08)))};
+        set_velocity(model.bodies[1], Vector3(0.8, -0.5, 0), Vector3(1, 2, -1));
+        model.gravity = Vector3(0, 0, -9.81);
+        model.dhat = 1e-3;
+        model.diagonal = 0.2;
+        model.velocity_tolerance = 1e-8;
+        model.friction.mu.setConstant(0.2);
+        model.kappa = model::choose_kappa(model);
+        stepper::SimulationOptions options;
+        options.steps = 60;
+        const stepper::Simulation run = simulate(model, options);
+        REQUIRE(run.report.status == stepper::SimulationStatus::ok);
+        REQUIRE(run.report.steps.back().contacts > 0);
+        return run.trajectory.poses.back()[1];
+    };
+    const Pose coarse = end_on(square(1));
+    CHECK(coarse.position.head<2>().norm() < 0.5);
+    for (const Pose& other : {end_on(square(7)), end_on(fan())}) {
+        CHECK((other.position - coarse.position).norm() < 1e-8);
+        CHECK((other.rotation - coarse.rotation).norm() < 1e-7);
+    }
 }
 
 }  // namespace fettle::core::contact::face_contacts_test
