@@ -2,6 +2,7 @@
 // A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
 #include "fettle/core/contact/face_contacts.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
