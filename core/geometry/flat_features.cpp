@@ -2,8 +2,8 @@
 #include "fettle/core/geometry/flat_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "fettle/core/geometry/half_edges.hpp"
@@ -18,24 +18,93 @@ int far_corner(const Triangle& t, const HalfEdge& edge) {
     return -1;
 }
 
-// Of `far` from the plane of the edge and `other`; infinity where these are no plane, or both are on the same side of the edge.
-double height_over(const Mesh& mesh, const HalfEdge& edge, int other, int far) {
-    const Vector3 origin = mesh.vertices.col(edge.low);
-    const Vector3 along = mesh.vertices.col(edge.high) - origin;
-    const Vector3 u = mesh.vertices.col(other) - origin, v = mesh.vertices.col(far) - origin;
-    const Vector3 normal = along.cross(u);
-    const bool opposite = normal.dot(along.cross(v)) < 0;
-    return opposite ? std::abs(v.dot(normal.normalized())) : std::numeric_limits<double>::infinity();
+// Twice the area times the normal.
+Vector3 area_vector(const Mesh& mesh, std::size_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    const Vector3 origin = mesh.vertices.col(t[0]);
+    return (mesh.vertices.col(t[1]) - origin).cross(mesh.vertices.col(t[2]) - origin);
 }
 
-double bend_of(const Mesh& mesh, const std::vector<HalfEdge>& halves, std::size_t first, std::size_t last) {
-    constexpr double bent = std::numeric_limits<double>::infinity();
-    if (last - first != 2 || halves[first].low == halves[first].high) return bent;
-    const int a = far_corner(mesh.triangles[static_cast<std::size_t>(halves[first].triangle)], halves[first]);
-    const int b = far_corner(mesh.triangles[static_cast<std::size_t>(halves[first + 1].triangle)], halves[first]);
-    if (a < 0 || b < 0) return bent;
-    return std::max(height_over(mesh, halves[first], a, b), height_over(mesh, halves[first], b, a));
-}
+// Two triangles and nothing else at an edge, one on each side of it.
+struct Hinge {
+    std::size_t edge;  // first of its half edges
+    std::array<int, 2> triangle, far;
+};
+
+// Facets: triangles joined over hinges, all within `flatness` of the plane of the one that they grow from.
+class Facets {
+public:
+    Facets(const Mesh& mesh, const std::vector<HalfEdge>& halves, double flatness) : mesh_(mesh), flatness_(flatness) {
+        hinges_of_.resize(mesh.triangles.size());
+        visit_edges(halves, [&](std::size_t first, std::size_t last) { add_hinge(halves, first, last); });
+        facet_.assign(mesh.triangles.size(), -1);
+        for (const int seed : by_area()) grow(seed);
+    }
+
+    // Calls visit(first half edge) for each edge within a facet, in their order.
+    template <class Visit>
+    void visit_flat_edges(const Visit& visit) const {
+        for (const Hinge& hinge : hinges_)
+            if (facet_[at(hinge.triangle[0])] == facet_[at(hinge.triangle[1])]) visit(hinge.edge);
+    }
+
+    double height() const { return height_; }
+
+private:
+    static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+    void add_hinge(const std::vector<HalfEdge>& halves, std::size_t first, std::size_t last) {
+        const HalfEdge& edge = halves[first];
+        if (last - first != 2 || edge.low == edge.high) return;
+        const std::array<int, 2> triangle{edge.triangle, halves[first + 1].triangle};
+        const std::array<int, 2> far{far_corner(mesh_.triangles[at(triangle[0])], edge),
+                                     far_corner(mesh_.triangles[at(triangle[1])], edge)};
+        if (far[0] < 0 || far[1] < 0) return;
+        const Vector3 origin = mesh_.vertices.col(edge.low), along = mesh_.vertices.col(edge.high) - origin;
+        const auto side = [&](int v) { return Vector3(along.cross(mesh_.vertices.col(v) - origin)); };
+        if (!(side(far[0]).dot(side(far[1])) < 0)) return;
+        for (const int t : triangle) hinges_of_[at(t)].push_back(static_cast<int>(hinges_.size()));
+        hinges_.push_back({first, triangle, far});
+    }
+
+    // The largest first: their planes are the best known.
+    std::vector<int> by_area() const {
+        std::vector<std::pair<double, int>> order;
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+            order.emplace_back(-area_vector(mesh_, t).squaredNorm(), static_cast<int>(t));
+        std::sort(order.begin(), order.end());
+        std::vector<int> triangles;
+        for (const auto& [area, t] : order) triangles.push_back(t);
+        return triangles;
+    }
+
+    void grow(int seed) {
+        if (facet_[at(seed)] >= 0) return;
+        facet_[at(seed)] = seed;
+        const Vector3 normal = area_vector(mesh_, at(seed)).normalized();
+        const Vector3 origin = mesh_.vertices.col(mesh_.triangles[at(seed)][0]);
+        std::vector<int> open{seed};
+        while (!open.empty()) {
+            const int t = open.back();
+            open.pop_back();
+            for (const int k : hinges_of_[at(t)]) {
+                const Hinge& hinge = hinges_[at(k)];
+                const int side = hinge.triangle[0] == t ? 1 : 0;
+                const double height = std::abs(normal.dot(mesh_.vertices.col(hinge.far[at(side)]) - origin));
+                if (facet_[at(hinge.triangle[at(side)])] >= 0 || !(height <= flatness_)) continue;
+                facet_[at(hinge.triangle[at(side)])] = seed;
+                height_ = std::max(height_, height);
+                open.push_back(hinge.triangle[at(side)]);
+            }
+        }
+    }
+
+    const Mesh& mesh_;
+    double flatness_, height_ = 0;
+    std::vector<Hinge> hinges_;
+    std::vector<std::vector<int>> hinges_of_;  // [triangle]
+    std::vector<int> facet_;                   // [triangle] the one it has grown from; -1: none yet
+};
 
 }  // namespace
 
@@ -43,13 +112,10 @@ FlatFeatures flat_features(const Mesh& mesh, double flatness) {
     FlatFeatures out;
     std::vector<std::pair<int, int>> flat;  // edges, sorted as the half edges are
     const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
-    visit_edges(halves, [&](std::size_t first, std::size_t last) {
-        const double bend = bend_of(mesh, halves, first, last);
-        if (!(bend <= flatness)) return;
-        flat.emplace_back(halves[first].low, halves[first].high);
-        out.height = std::max(out.height, bend);
-    });
+    const Facets facets(mesh, halves, flatness);
+    facets.visit_flat_edges([&](std::size_t first) { flat.emplace_back(halves[first].low, halves[first].high); });
     if (flat.empty()) return out;
+    out.height = facets.height();
     const auto is_flat = [&flat](int a, int b) {
         return std::binary_search(flat.begin(), flat.end(), std::pair(std::min(a, b), std::max(a, b)));
     };

@@ -10,12 +10,13 @@
 
 namespace fettle::core::geometry {
 
-/// An edge is flat if it has exactly two triangles, one on each side, and the far vertex of each lies within `flatness` of the plane of the
-/// other. A vertex is flat if all its edges are, and it has no edge without triangles.
+/// Facets grow from the largest triangles, over edges with exactly two triangles, one on each side, as far as all vertices lie within
+/// `flatness` of the first triangle's plane: what is curved finely stays in pieces no farther from a plane than that. An edge is flat if
+/// both its triangles are of one facet. A vertex is flat if all its edges are.
 struct FlatFeatures {
     std::vector<std::uint8_t> edge;  ///< [edge of the mesh] 1: flat; empty where the mesh has none
     std::vector<std::uint8_t> face;  ///< [triangle] bit k: the edge from corner k to the next is flat; bit 3 + k: corner k is
-    double height = 0;               ///< largest distance of a far vertex from the other plane, of the flat edges [m]
+    double height = 0;               ///< largest distance of a vertex from its facet's plane [m]
 
     bool any() const { return !edge.empty(); }
     bool is_flat_edge(int e) const { return any() && edge[static_cast<std::size_t>(e)] != 0; }

@@ -157,7 +157,7 @@ void complete_geometry(Body& body) {
     }
     add_areas(body);
     body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh);
-    constexpr double flatness = 1e-7;  // of the body: what single precision makes of a plane
+    constexpr double flatness = 1e-5;  // of the body: above single precision, and above what derivatives are checked with
     body.flat = std::make_shared<const geometry::FlatFeatures>(geometry::flat_features(body.mesh, flatness * body.radius));
 }
 
