@@ -34,7 +34,7 @@ struct ContactPair {
     geometry::ClosestPoints closest;
     double mollifier_eps = 0;  ///< edge_edge: eps [m^4]
     double weight = 1;         ///< on the potential; if the barrier is area-weighted [m^2], half the vertex's area, or half the lesser of
-                        ///< the edges' (they cannot share more). Times how often it counts (face_contacts.hpp), which can be negative
+                        ///< the edges' (they cannot share more). Times how often it counts (counted_contacts.hpp), which can be negative
 };
 
 /// How many of the four vertices lie on the first body.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/face_contacts.hpp"
+#include "fettle/core/contact/counted_contacts.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
@@ -15,75 +15,60 @@ namespace {
 
 using kinematics::Pose;
 
-Vector3 vertex(const model::Body& body, const Pose& pose, int v) { return world_position(pose, body.mesh.vertices.col(v)); }
-
 bool is_finite(const Pose& pose) { return pose.rotation.allFinite() && pose.position.allFinite(); }
 
-// Are the boxes of the two primitives so far apart? Of finite vertices.
-bool are_boxes_beyond(const ContactPair& pair, double limit_squared) {
-    const PairVertices& x = pair.x;
-    const int n = first_count(pair.type);
-    Vector3 low_a = x[0], high_a = x[0], low_b = x[3], high_b = x[3];
-    for (int i = 1; i < 3; ++i) {
-        Vector3 &low = i < n ? low_a : low_b, &high = i < n ? high_a : high_b;
-        low = low.cwiseMin(x[i]);
-        high = high.cwiseMax(x[i]);
+// Vertices of bodies in space. Of small meshes all are placed beforehand: contacts ask for each several times.
+class WorldVertices {
+public:
+    WorldVertices(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses)
+        : model_(model), poses_(poses), begin_(model.bodies.size(), -1) {
+        for (const BodyPairCandidates& list : candidates.pairs) {
+            if (list.empty()) continue;
+            place(list.a);
+            place(list.b);
+        }
     }
-    return (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(0.0).squaredNorm() > limit_squared;
+
+    Vector3 operator()(int body, int v) const {
+        const int begin = begin_[static_cast<std::size_t>(body)];
+        if (begin >= 0) return vertices_[static_cast<std::size_t>(begin + v)];
+        return world_position(poses_[static_cast<std::size_t>(body)], model_.bodies[static_cast<std::size_t>(body)].mesh.vertices.col(v));
+    }
+
+private:
+    void place(int body) {
+        constexpr Eigen::Index small = 64;
+        int& begin = begin_[static_cast<std::size_t>(body)];
+        const auto& vertices = model_.bodies[static_cast<std::size_t>(body)].mesh.vertices;
+        if (begin >= 0 || vertices.cols() > small) return;
+        begin = static_cast<int>(vertices_.size());
+        for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+            vertices_.push_back(world_position(poses_[static_cast<std::size_t>(body)], vertices.col(v)));
+    }
+
+    const model::Model& model_;
+    const std::vector<Pose>& poses_;
+    std::vector<int> begin_;  // [body] into vertices_; -1: not there
+    std::vector<Vector3> vertices_;
+};
+
+double gap_squared(const Vector3& low_a, const Vector3& high_a, const Vector3& low_b, const Vector3& high_b) {
+    return (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(0.0).squaredNorm();
+}
+
+// Squared distance of the two primitives' boxes. Of finite vertices.
+template <PairType type>
+double box_distance_squared(const PairVertices& x) {
+    if constexpr (type == PairType::point_triangle)
+        return gap_squared(x[0], x[0], x[1].cwiseMin(x[2]).cwiseMin(x[3]), x[1].cwiseMax(x[2]).cwiseMax(x[3]));
+    else
+        return gap_squared(x[0].cwiseMin(x[1]), x[0].cwiseMax(x[1]), x[2].cwiseMin(x[3]), x[2].cwiseMax(x[3]));
 }
 
 // Null where nothing of the body is flat enough to be left out beside the activation distance.
 const geometry::FlatFeatures* flat_features_of(const model::Model& model, const model::Body& body) {
     constexpr double negligible = 1e-2;  // of dhat: what is left out is nearer than what stays by no more
     return body.flat && body.flat->any() && body.flat->height <= negligible * model.dhat ? body.flat.get() : nullptr;
-}
-
-// Calls visit(first, pair) with vertices filled, for every candidate that may be closer than the activation distance. Edges within plane
-// faces are no contacts of their own: an edge that nears a plane face nears it with an end, or nears the face's border.
-template <class Visit>
-void for_each_pair(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, double activation,
-                   const Visit& visit) {
-    if (list.empty()) return;
-    constexpr double margin = 1 + 1e-9;  // of the boxes' squared distance, for rounding
-    const double reach = activation + motion_since(model, list, poses);
-    const model::Body &a = model.bodies[list.a], &b = model.bodies[list.b];
-    const Pose &pa = poses[list.a], &pb = poses[list.b];
-    const bool finite = is_finite(pa) && is_finite(pb);
-    ContactPair pair;
-    const auto visit_near = [&](int first) {
-        if (!finite || !are_boxes_beyond(pair, margin * activation * activation)) visit(first, pair);
-    };
-    const auto point_triangle = [&](const model::Body& vb, const Pose& vp, int v, const model::Body& tb, const Pose& tp, int t) {
-        const geometry::Triangle& corners = tb.hierarchy->faces()[t];
-        pair.weight = model.area_weighted ? 0.5 * vb.vertex_area[v] : 1;
-        pair.face = t;
-        pair.vertex = {v, corners[0], corners[1], corners[2]};
-        pair.x[0] = vertex(vb, vp, v);
-        for (int k = 0; k < 3; ++k) pair.x[k + 1] = vertex(tb, tp, corners[k]);
-    };
-    for (const auto& [v, t, distance] : list.vertex_triangle) {
-        if (distance > reach) break;
-        point_triangle(a, pa, v, b, pb, t);
-        visit_near(list.a);
-    }
-    for (const auto& [t, v, distance] : list.triangle_vertex) {
-        if (distance > reach) break;
-        point_triangle(b, pb, v, a, pa, t);
-        visit_near(list.b);
-    }
-    pair.type = PairType::edge_edge;
-    pair.face = -1;
-    const geometry::FlatFeatures *flat_a = flat_features_of(model, a), *flat_b = flat_features_of(model, b);
-    for (const auto& [ea, eb, distance] : list.edge_edge) {
-        if (distance > reach) break;
-        if ((flat_a && flat_a->is_flat_edge(ea)) || (flat_b && flat_b->is_flat_edge(eb))) continue;
-        const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
-        pair.vertex = {va[0], va[1], vb[0], vb[1]};
-        pair.x = {vertex(a, pa, va[0]), vertex(a, pa, va[1]), vertex(b, pb, vb[0]), vertex(b, pb, vb[1])};
-        pair.weight = model.area_weighted ? 0.5 * std::min(a.edge_area[ea], b.edge_area[eb]) : 1;
-        pair.mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
-        visit_near(list.a);
-    }
 }
 
 // Surely at least so far apart. Not so what is not finite: that stays a contact, of infinite potential.
@@ -94,11 +79,82 @@ bool is_beyond(double distance_squared, double limit_squared) {
 // The lesser; what is not a number wins.
 double least_of(double a, double b) { return a <= b || std::isnan(a) ? a : b; }
 
-// Where a pair stands in the order of its bodies' primitives: pairs of vertices and faces first, by vertex.
-using Key = std::array<int, 5>;
-Key key_of(const ContactPair& pair) {
-    return {pair.type == PairType::edge_edge ? 1 : 0, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]};
-}
+// The pairs of one pair of bodies that are closer than the activation distance.
+class NearSearch {
+public:
+    NearSearch(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, const WorldVertices& vertices)
+        : model_(model), list_(list), vertices_(vertices), activation_(model.dmin + model.dhat) {
+        reach_ = activation_ + motion_since(model, list, poses);
+        finite_ = is_finite(poses[list.a]) && is_finite(poses[list.b]);
+    }
+
+    /// @return the least squared distance
+    double find(NearPairs& near) {
+        near.clear();
+        for (const auto& [v, t, distance] : list_.vertex_triangle) {
+            if (distance > reach_) break;
+            add_vertex(list_.a, v, list_.b, t, near.on_second);
+        }
+        for (const auto& [t, v, distance] : list_.triangle_vertex) {
+            if (distance > reach_) break;
+            add_vertex(list_.b, v, list_.a, t, near.on_first);
+        }
+        add_edges(near.edges);
+        return least_;
+    }
+
+private:
+    // Is what is at `x` near? Then it is appended, and the rest is the caller's.
+    template <PairType type>
+    ContactPair* add(const PairVertices& x, std::vector<ContactPair>& out) {
+        constexpr double margin = 1 + 1e-9;  // of the boxes' squared distance, for rounding
+        if (finite_ && box_distance_squared<type>(x) > margin * activation_ * activation_) return nullptr;
+        const geometry::ClosestPoints closest = closest_points(type, x);
+        if (is_beyond(closest.distance_squared, activation_ * activation_)) return nullptr;
+        least_ = least_of(least_, closest.distance_squared);
+        ContactPair& pair = out.emplace_back();
+        pair.type = type;
+        pair.x = x;
+        pair.closest = closest;
+        return &pair;
+    }
+
+    void add_vertex(int vertex_body, int v, int face_body, int t, std::vector<ContactPair>& out) {
+        const model::Body& vertex_of = model_.bodies[vertex_body];
+        const geometry::Triangle& corners = model_.bodies[face_body].hierarchy->faces()[t];
+        ContactPair* pair = add<PairType::point_triangle>({vertices_(vertex_body, v), vertices_(face_body, corners[0]),
+                                                           vertices_(face_body, corners[1]), vertices_(face_body, corners[2])},
+                                                          out);
+        if (pair == nullptr) return;
+        pair->face = t;
+        pair->vertex = {v, corners[0], corners[1], corners[2]};
+        if (model_.area_weighted) pair->weight = 0.5 * vertex_of.vertex_area[v];
+    }
+
+    // Edges within plane faces are no contacts of their own: an edge that nears a plane face nears it with an end, or nears its border.
+    void add_edges(std::vector<ContactPair>& out) {
+        const model::Body &a = model_.bodies[list_.a], &b = model_.bodies[list_.b];
+        const geometry::FlatFeatures *flat_a = flat_features_of(model_, a), *flat_b = flat_features_of(model_, b);
+        for (const auto& [ea, eb, distance] : list_.edge_edge) {
+            if (distance > reach_) break;
+            if ((flat_a && flat_a->is_flat_edge(ea)) || (flat_b && flat_b->is_flat_edge(eb))) continue;
+            const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
+            ContactPair* pair = add<PairType::edge_edge>(
+                {vertices_(list_.a, va[0]), vertices_(list_.a, va[1]), vertices_(list_.b, vb[0]), vertices_(list_.b, vb[1])}, out);
+            if (pair == nullptr) continue;
+            pair->vertex = {va[0], va[1], vb[0], vb[1]};
+            pair->mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
+            if (model_.area_weighted) pair->weight = 0.5 * std::min(a.edge_area[ea], b.edge_area[eb]);
+        }
+    }
+
+    const model::Model& model_;
+    const BodyPairCandidates& list_;
+    const WorldVertices& vertices_;
+    double activation_, reach_ = 0;
+    bool finite_ = false;
+    double least_ = std::numeric_limits<double>::infinity();
+};
 
 kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
     auto& blocks = hessian.off_diagonal;
@@ -108,58 +164,21 @@ kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, in
     return *blocks.insert(at, {a, b, Matrix6::Zero()});
 }
 
-}  // namespace
-
-namespace {
-
 // Contacts of one pair of bodies; vertices on the higher body come as a list of their own.
 struct ListContacts {
     BodyPairContacts forward, backward;
     double least = std::numeric_limits<double>::infinity();  // squared distance
 };
 
-// By way of their places: contacts are large.
-void sort_by_key(std::vector<ContactPair>& contacts) {
-    std::vector<std::pair<Key, int>> order;
-    order.reserve(contacts.size());
-    for (std::size_t k = 0; k < contacts.size(); ++k) order.emplace_back(key_of(contacts[k]), static_cast<int>(k));
-    if (std::is_sorted(order.begin(), order.end())) return;
-    std::sort(order.begin(), order.end());
-    std::vector<ContactPair> sorted;
-    sorted.reserve(contacts.size());
-    for (const auto& [key, k] : order) sorted.push_back(contacts[static_cast<std::size_t>(k)]);
-    contacts = std::move(sorted);
-}
-
-// Sorted: those of a vertex with faces become what counts of them.
-void count_faces(const FaceSide& side, std::vector<ContactPair>& contacts) {
-    std::vector<ContactPair> counted;
-    counted.reserve(contacts.size());
-    auto first = contacts.begin();
-    while (first != contacts.end() && first->type == PairType::point_triangle) {
-        auto last = first;
-        while (last != contacts.end() && last->type == PairType::point_triangle && last->vertex[0] == first->vertex[0]) ++last;
-        count_faces_once(side, {first, last}, counted);
-        first = last;
-    }
-    counted.insert(counted.end(), first, contacts.end());
-    contacts = std::move(counted);
-}
-
-ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses) {
-    const double activation = model.dmin + model.dhat;
+ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses,
+                         const WorldVertices& vertices) {
     ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
-    for_each_pair(model, list, poses, activation, [&](int first, ContactPair& pair) {
-        pair.closest = closest_points(pair.type, pair.x);
-        if (is_beyond(pair.closest.distance_squared, activation * activation)) return;
-        out.least = least_of(out.least, pair.closest.distance_squared);
-        (first == list.a ? out.forward : out.backward).contacts.push_back(pair);
-    });
-    for (BodyPairContacts* of : {&out.forward, &out.backward}) {
-        sort_by_key(of->contacts);
-        const model::Body& faces = model.bodies[of->second];
-        count_faces({faces, poses[of->second], flat_features_of(model, faces), activation, model.contact_damping_time > 0}, of->contacts);
-    }
+    if (list.empty()) return out;
+    static thread_local NearPairs near;
+    out.least = NearSearch(model, list, poses, vertices).find(near);
+    const auto side = [&](int body) { return ContactSide{model.bodies[body], poses[body], flat_features_of(model, model.bodies[body])}; };
+    const bool by_element = model.contact_damping_time > 0;  // it feels more than the distance at one time
+    count_contacts({side(list.a), side(list.b), model.dmin + model.dhat, by_element}, near, out.forward.contacts, out.backward.contacts);
     return out;
 }
 
@@ -182,10 +201,8 @@ constexpr int pairs_a_piece = 16;  // pairs of bodies that a thread takes at a t
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
     const int count = static_cast<int>(candidates.pairs.size());
     std::vector<ListContacts> found(candidates.pairs.size());
-    base::parallel_for(count, pairs_a_piece, [&](int k) {
-        const BodyPairCandidates& list = candidates.pairs[k];
-        found[k] = contacts_of(model, list, poses);
-    });
+    const WorldVertices vertices(model, candidates, poses);
+    base::parallel_for(count, pairs_a_piece, [&](int k) { found[k] = contacts_of(model, candidates.pairs[k], poses, vertices); });
     ContactSet set;
     double least = std::numeric_limits<double>::infinity();
     for (ListContacts& list : found) {

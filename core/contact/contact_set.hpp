@@ -24,8 +24,8 @@ struct ContactSet {
     double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
 
-/// Contacts among the candidates at `poses`, plane faces counted once (face_contacts.hpp). Pairs at or below dmin are contacts too, of no
-/// finite potential. Contract: candidates cover `poses`.
+/// Contacts among the candidates at `poses`, plane faces counted once (counted_contacts.hpp). Pairs at or below dmin are contacts too, of
+/// no finite potential. Contract: candidates cover `poses`.
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
 /// Sum of the barrier potential over the contacts; infinity where a pair is at or below dmin, or its distance is not finite.

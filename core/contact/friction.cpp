@@ -2,11 +2,16 @@
 #include "fettle/core/contact/friction.hpp"
 
 #include <cmath>
+#include <utility>
+
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::contact {
 namespace {
 
 using kinematics::Pose;
+
+constexpr int frictional_pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
 
 // A contact at given poses: how far it has slid, and where its material points are relative to the bodies' positions.
 struct Slide {
@@ -47,39 +52,45 @@ FrictionContact lag_contact(const ContactPair& pair, const Pose& first, const Po
 
 FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, const std::vector<Pose>& poses,
                          const BarrierParameters& parameters, const std::vector<Matrix34>& slip_reference, double slip_time) {
-    FrictionSet set;
-    set.slip_bound = model.friction.eps_v * slip_time;
-    for (const BodyPairContacts& list : contacts.pairs) {
-        const double mu = friction_coefficient(model, list.first, list.second);
-        if (!(mu > 0)) continue;
-        BodyPairFriction pair{list.first, list.second, mu, {}};
+    std::vector<BodyPairFriction> lagged(contacts.pairs.size());
+    base::parallel_for(static_cast<int>(lagged.size()), frictional_pairs_a_piece, [&](int k) {
+        const BodyPairContacts& list = contacts.pairs[k];
+        BodyPairFriction& pair = lagged[k];
+        pair.first = list.first;
+        pair.second = list.second;
+        pair.mu = friction_coefficient(model, list.first, list.second);
+        if (!(pair.mu > 0)) return;
+        pair.contacts.reserve(list.contacts.size());
         for (const ContactPair& contact : list.contacts) {
-            const double load = mu * normal_force(contact, parameters);
+            const double load = pair.mu * normal_force(contact, parameters);
             if (!(load > 0)) continue;
             pair.contacts.push_back(
                 lag_contact(contact, poses[list.first], poses[list.second], slip_reference[list.first], slip_reference[list.second]));
             pair.contacts.back().load = load;
         }
-        if (!pair.contacts.empty()) set.pairs.push_back(std::move(pair));
-    }
-    return set;
+    });
+    std::erase_if(lagged, [](const BodyPairFriction& pair) { return pair.contacts.empty(); });
+    return {model.friction.eps_v * slip_time, std::move(lagged)};
 }
 
 double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses) {
-    double sum = 0;
-    for (const BodyPairFriction& pair : set.pairs) {
-        double pair_sum = 0;
+    std::vector<double> values(set.pairs.size());
+    base::parallel_for(static_cast<int>(values.size()), frictional_pairs_a_piece, [&](int k) {
+        const BodyPairFriction& pair = set.pairs[k];
         for (const FrictionContact& c : pair.contacts)
-            pair_sum += c.load * friction_mollifier(slide_of(c, poses[pair.first], poses[pair.second]).distance, set.slip_bound).value;
-        sum += pair_sum;
-    }
+            values[k] += c.load * friction_mollifier(slide_of(c, poses[pair.first], poses[pair.second]).distance, set.slip_bound).value;
+    });
+    double sum = 0;
+    for (const double value : values) sum += value;
     return sum;
 }
 
 void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& poses, HessianKind kind,
                               std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
-    for (const BodyPairFriction& pair : set.pairs) {
-        BodyPairSum sum;
+    std::vector<BodyPairSum> sums(set.pairs.size());
+    base::parallel_for(static_cast<int>(sums.size()), frictional_pairs_a_piece, [&](int k) {
+        const BodyPairFriction& pair = set.pairs[k];
+        BodyPairSum& sum = sums[k];
         for (const FrictionContact& c : pair.contacts) {
             const Slide s = slide_of(c, poses[pair.first], poses[pair.second]);
             const FrictionMollifier f = friction_mollifier(s.distance, set.slip_bound);
@@ -93,8 +104,8 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             add_rigid_stiffness(sum.hessian, c.load * stiffness, along, s.arm_first, s.arm_second);
             add_rigid_stiffness(sum.hessian, c.load * f.first_by_y, across, s.arm_first, s.arm_second);
         }
-        add_body_pair(pair.first, pair.second, sum, gradients, hessian);
-    }
+    });
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
 }
 
 Vector3 friction_force(const FrictionSet& set, const BodyPairFriction& pair, const FrictionContact& c, const std::vector<Pose>& poses) {

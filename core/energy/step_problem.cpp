@@ -30,8 +30,12 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> 
 
 std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points) {
     std::vector<Pose> poses(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        poses[i] = {kinematics::rotation(points[i].rotation_vector) * problem.poses_t0[i].rotation, points[i].position};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vector3& theta = points[i].rotation_vector;
+        const Matrix3& start = problem.poses_t0[i].rotation;
+        poses[i].position = points[i].position;
+        poses[i].rotation = theta.isZero(0) ? start : kinematics::orthonormalised(kinematics::rotation(theta) * start);
+    }
     return poses;
 }
 

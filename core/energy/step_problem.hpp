@@ -33,6 +33,7 @@ void set_kappa(StepProblem& problem, double kappa);
 StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinematics::Pose> poses_t0,
                                    const std::vector<Matrix34>& velocities_t0);
 
+/// Rotations to rounding, however many steps there were before; what has not turned keeps its bits.
 std::vector<kinematics::Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points);
 
 /// Is anything of this body solved for? Terms of one body leave out those of which nothing is.

@@ -99,7 +99,10 @@ private:
 
     void start_group(const Words& words) {
         std::string name;
-        for (std::size_t i = 1; i < words.size(); ++i) name += (i > 1 ? " " : "") + std::string(words[i]);
+        for (std::size_t i = 1; i < words.size(); ++i) {
+            if (i > 1) name += ' ';
+            name += words[i];
+        }
         // `o` before `g` (or the reverse) names one object twice: the later name holds for the faces that follow it.
         group_ = -1;
         if (name.empty() || name == "default") return;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/core/solver/caution.hpp"
@@ -52,7 +53,7 @@ public:
         const std::vector<PathSegment> here = segments_to(at_.points);
         cover(here);
         settle(at_.poses, workspace_.candidates);
-        find_contacts(at_);
+        if (!take_known_contacts()) find_contacts(at_);
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
             if (frictional_) lag_friction();
@@ -84,6 +85,15 @@ private:
     void find_contacts(Iterate& at) {
         const auto span = workspace_.clock.charge(SolvePhase::contacts);
         at.contacts = contact::find_contacts(model_, workspace_.candidates, at.poses);
+    }
+
+    // Those of the step before, where it ended.
+    bool take_known_contacts() {
+        KnownContacts known = std::exchange(workspace_.contacts, {});
+        const auto same = [](const Pose& a, const Pose& b) { return a.position == b.position && a.rotation == b.rotation; };
+        if (!std::equal(known.poses.begin(), known.poses.end(), at_.poses.begin(), at_.poses.end(), same)) return false;
+        at_.contacts = std::move(known.contacts);
+        return true;
     }
 
     double potential(const Iterate& at) {

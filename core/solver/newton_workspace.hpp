@@ -4,6 +4,7 @@
 
 #include "fettle/core/base/phase_clock.hpp"
 #include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/contact/contact_set.hpp"
 #include "fettle/core/solver/linear_solver.hpp"
 
 namespace fettle::core::solver {
@@ -20,11 +21,18 @@ enum class SolvePhase {
 };
 const char* to_string(SolvePhase phase);
 
+/// Contacts, and where all bodies are when these are the contacts.
+struct KnownContacts {
+    std::vector<kinematics::Pose> poses;  ///< empty: none known
+    contact::ContactSet contacts;
+};
+
 /// What is worth keeping from one solve to the next; the result does not depend on it.
 struct NewtonWorkspace {
     FreeDofs dofs;
     LinearSolver linear;             ///< its symbolic factor
     contact::Candidates candidates;  ///< near where the last solve ended
+    KnownContacts contacts;          ///< where the last step ended
     base::PhaseClock<SolvePhase> clock;
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
 };

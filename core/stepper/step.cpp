@@ -195,10 +195,9 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     result.path = std::move(driven.path);
     result.state.time = state.time + model.timestep;
     result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
-    std::vector<kinematics::Pose> end = solved.poses;
-    for (kinematics::Pose& pose : end) pose.rotation = kinematics::orthonormalised(pose.rotation);
-    result.state.history = energy::advanced(model, state.history, problem, std::move(end));
+    result.state.history = energy::advanced(model, state.history, problem, solved.poses);
     if (options.outputs) result.outputs = step_outputs(model, problem, solved, result.state);
+    workspace.contacts = {std::move(driven.solved.poses), std::move(driven.solved.contacts)};
     return result;
 }
 

@@ -103,7 +103,11 @@ std::optional<PairType> type_of(const fs::path& file) {
 
 /// Adds row `row` (of the whole file, from 0) to its query.
 std::optional<Error> add_row(CcdQueries& queries, PairType type, std::size_t row, const Row& read, const std::string& where) {
-    if (row % rows_per_query == 0) queries.linear.push_back({type, {}, {}, read.truth});
+    if (row % rows_per_query == 0) {
+        queries.linear.emplace_back();
+        queries.linear.back().type = type;
+        queries.linear.back().truth = read.truth;
+    }
     LinearQuery& query = queries.linear.back();
     (row % rows_per_query < 4 ? query.t0 : query.t1)[row % 4] = read.point;
     if (query.truth == read.truth) return std::nullopt;

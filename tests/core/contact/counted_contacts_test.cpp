@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
-#include "fettle/core/contact/face_contacts.hpp"
+#include "fettle/core/contact/counted_contacts.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::contact::face_contacts_test {
+namespace fettle::core::contact::counted_contacts_test {
 
 using kinematics::Pose;
 using namespace fettle::tests::support;
@@ -86,7 +86,10 @@ Measured measure(const model::Model& model, const Vector3& x) {
     out.potential = barrier_potential(set, barrier);
     out.count = set.count;
     for (const BodyPairContacts& list : set.pairs)
-        for (const ContactPair& pair : list.contacts) out.force += sheet.rotation.transpose() * pair_forces(pair, barrier)[0];
+        for (const ContactPair& pair : list.contacts)
+            for (int i = 0; i < 4; ++i)
+                if ((i < first_count(pair.type) ? list.first : list.second) == 1)
+                    out.force += sheet.rotation.transpose() * pair_forces(pair, barrier)[i];
     return out;
 }
 
@@ -98,7 +101,7 @@ Vector3 random_point(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("a square face counts once, however it is cut", "[face_contacts]") {
+TEST_CASE("a square face counts once, however it is cut", "[counted_contacts]") {
     const std::vector<model::Model> cuts{over(square(1)), over(square(2)), over(square(7)), over(fan())};
     std::mt19937 random(5);
     for (int k = 0; k < 2000; ++k) {
@@ -119,7 +122,7 @@ TEST_CASE("a square face counts once, however it is cut", "[face_contacts]") {
     }
 }
 
-TEST_CASE("round a notch the potential is smooth, and never less than that of the nearest place", "[face_contacts]") {
+TEST_CASE("round a notch the potential is smooth, and never less than that of the nearest place", "[counted_contacts]") {
     const model::Model model = over(notched());
     std::mt19937 random(6);
     int negative = 0;
@@ -141,7 +144,7 @@ TEST_CASE("round a notch the potential is smooth, and never less than that of th
     CHECK(negative > 20);
 }
 
-TEST_CASE("the projected Hessian stays semi-definite where a corner counts against", "[face_contacts]") {
+TEST_CASE("the projected Hessian stays semi-definite where a corner counts against", "[counted_contacts]") {
     const model::Model model = over(notched());
     const Pose& sheet = model.bodies[0].pose_start;
     const BarrierParameters parameters = barrier_parameters(model.dhat, 0, 3, 1);
@@ -163,7 +166,54 @@ TEST_CASE("the projected Hessian stays semi-definite where a corner counts again
     CHECK(against == 1);
 }
 
-TEST_CASE("two boxes face to face: their diagonals do not matter", "[face_contacts]") {
+TEST_CASE("contacts with the same closest features are one, of the same potential and derivatives", "[counted_contacts]") {
+    const geometry::Mesh box = box_mesh(Vector3::Constant(-0.5), Vector3::Constant(0.5));
+    model::Model merged;
+    merged.dhat = 0.05;
+    merged.bodies = {make_body("low", box, {}), make_body("high", box, {})};
+    model::Model apart = merged;
+    apart.contact_damping_time = 1;  // each primitive by itself
+    const BarrierParameters parameters = barrier_parameters(merged.dhat, 0, 1, 1);
+    const auto derivatives = [&](const ContactSet& set, const std::vector<Pose>& poses, HessianKind kind) {
+        std::vector<kinematics::PoseGradient> gradients(2);
+        kinematics::BlockHessian hessian{std::vector<Matrix6>(2, Matrix6::Zero()), {}};
+        add_barrier_derivatives(set, poses, parameters, kind, gradients, hessian);
+        Matrix12 all = Matrix12::Zero();
+        for (int i = 0; i < 2; ++i) all.block<6, 6>(6 * i, 6 * i) = hessian.diagonal[static_cast<std::size_t>(i)];
+        all.topRightCorner<6, 6>() = hessian.off_diagonal.at(0).block;
+        Eigen::Matrix<double, 12, 1> gradient;
+        gradient << tangent_gradient(gradients[0]), tangent_gradient(gradients[1]);
+        return std::pair(gradient, all);
+    };
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int fewer = 0;
+    for (int k = 0; k < 400; ++k) {
+        // On top of each other, corner over corner, edge over edge; turned a little about some axes, or much about the vertical one.
+        Vector3 shift(k % 3 == 0 ? 0.0 : unit(random), k % 2 == 0 ? 0.0 : unit(random), 1.01);
+        Vector3 turn = 0.02 * Vector3(unit(random), unit(random), unit(random));
+        if (k % 5 == 0) turn.setZero();
+        if (k % 7 == 0) turn.z() = unit(random);
+        const std::vector<Pose> poses{{}, make_pose(turn, shift)};
+        const Candidates candidates = find_candidates(merged, poses, 0);
+        const ContactSet few = find_contacts(merged, candidates, poses), many = find_contacts(apart, candidates, poses);
+        if (many.count == 0 || !(many.minimum_distance > 0)) continue;
+        CAPTURE(k, shift.transpose(), turn.transpose(), few.count, many.count);
+        CHECK(barrier_potential(few, parameters) == Approx(barrier_potential(many, parameters)).epsilon(1e-9).margin(1e-20));
+        CHECK(few.minimum_distance == many.minimum_distance);
+        const auto [g_few, h_few] = derivatives(few, poses, HessianKind::exact);
+        const auto [g_many, h_many] = derivatives(many, poses, HessianKind::exact);
+        CHECK((g_few - g_many).norm() <= 1e-9 * g_many.norm() + 1e-20);
+        CHECK((h_few - h_many).norm() <= 1e-8 * h_many.norm() + 1e-20);
+        const Matrix12 projected = derivatives(few, poses, HessianKind::projected).second;
+        const double least = Eigen::SelfAdjointEigenSolver<Matrix12>(projected.selfadjointView<Eigen::Upper>()).eigenvalues()[0];
+        CHECK(least >= -1e-12 * projected.norm());
+        fewer += 2 * few.count < many.count;
+    }
+    CHECK(fewer > 100);
+}
+
+TEST_CASE("two boxes face to face: their diagonals do not matter", "[counted_contacts]") {
     const auto potential = [](bool other_cut) {
         geometry::Mesh box = box_mesh(Vector3::Constant(-0.5), Vector3::Constant(0.5));
         if (other_cut) {
@@ -199,7 +249,7 @@ TEST_CASE("two boxes face to face: their diagonals do not matter", "[face_contac
     CHECK(potential(true) == Approx(potential(false)).epsilon(1e-12));
 }
 
-TEST_CASE("a block falls, tips and slides alike on a floor however that is cut", "[face_contacts][physics]") {
+TEST_CASE("a block falls, tips and slides alike on a floor however that is cut", "[counted_contacts][physics]") {
     const auto end_on = [](geometry::Mesh floor) {
         floor.vertices *= 2.0;
         floor.vertices.topRows<2>().array() -= 1.0;
@@ -229,4 +279,4 @@ TEST_CASE("a block falls, tips and slides alike on a floor however that is cut",
     }
 }
 
-}  // namespace fettle::core::contact::face_contacts_test
+}  // namespace fettle::core::contact::counted_contacts_test

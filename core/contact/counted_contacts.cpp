@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/counted_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "fettle/core/contact/closest_feature.hpp"
+
+namespace fettle::core::contact {
+namespace {
+
+std::uint64_t two(int high, int low) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
+}
+
+// Where a pair stands in the order of its bodies' primitives.
+struct Place {
+    std::uint64_t first, second;
+    int index;
+    bool operator<(const Place& other) const { return first != other.first ? first < other.first : second < other.second; }
+};
+
+enum class Kind : int { of_first, of_edges, of_second };  // whose vertex
+
+// What counts `weight` times: pair `pair`, as it is, or as the contact of its vertex `end`, or the other way round.
+struct Entry {
+    std::uint64_t kind_vertex, corners;
+    std::uint64_t last_order;  // last corner, then where the entry stands among those with the same features
+    int pair;
+    int end;
+    bool swap;
+    double weight;
+    bool has_features_of(const Entry& other) const {
+        return kind_vertex == other.kind_vertex && corners == other.corners && last_order >> 32 == other.last_order >> 32;
+    }
+    bool operator<(const Entry& other) const {
+        if (kind_vertex != other.kind_vertex) return kind_vertex < other.kind_vertex;
+        return corners != other.corners ? corners < other.corners : last_order < other.last_order;
+    }
+};
+
+Feature edge_feature(int a, int b) { return {std::min(a, b), std::max(a, b), -1}; }
+
+// Is the element, an edge or a vertex, one of the pair's face, and does the face's closest point lie in it? Then it is the element's too.
+bool is_closest_in(const Feature& element, const ContactPair& pair, const Feature& closest) {
+    const auto in = [&element](int v) { return v < 0 || v == element[0] || v == element[1]; };
+    const auto has = [&pair](int v) { return v < 0 || v == pair.vertex[1] || v == pair.vertex[2] || v == pair.vertex[3]; };
+    return in(closest[0]) && in(closest[1]) && closest[2] < 0 && has(element[0]) && has(element[1]);
+}
+
+bool are_finite(const std::vector<ContactPair>& pairs) {
+    return std::all_of(pairs.begin(), pairs.end(), [](const ContactPair& pair) { return std::isfinite(pair.closest.distance_squared); });
+}
+
+class Counter {
+public:
+    void count(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
+        if (!are_finite(near.on_second) || !are_finite(near.on_first) || !are_finite(near.edges)) {  // none may be lost
+            emit_as_they_are(near.on_second, forward);
+            emit_as_they_are(near.edges, forward);
+            emit_as_they_are(near.on_first, backward);
+            return;
+        }
+        if (sides.by_element) {
+            emit_elements(sides, sides.second, near.on_second, forward);
+            emit_as_they_are(near.edges, forward);
+            emit_elements(sides, sides.first, near.on_first, backward);
+            return;
+        }
+        entries_.clear();
+        add_vertices(sides, sides.second, Kind::of_first, near.on_second);
+        add_vertices(sides, sides.first, Kind::of_second, near.on_first);
+        add_edges(near.edges);
+        emit(near, forward, backward);
+    }
+
+private:
+    void find_order(const std::vector<ContactPair>& pairs) {
+        order_.clear();
+        for (const ContactPair& pair : pairs) {
+            const auto& v = pair.vertex;
+            const int index = static_cast<int>(order_.size());
+            if (pair.type == PairType::edge_edge)
+                order_.push_back({two(v[0], v[1]), two(v[2], v[3]), index});
+            else
+                order_.push_back({two(v[0], 0), two(pair.face, 0), index});
+        }
+        std::sort(order_.begin(), order_.end());
+    }
+
+    void emit_as_they_are(const std::vector<ContactPair>& pairs, std::vector<ContactPair>& out) {
+        find_order(pairs);
+        for (const Place& place : order_) out.push_back(pairs[static_cast<std::size_t>(place.index)]);
+    }
+
+    // Calls visit(first, last) for the places of each vertex.
+    template <class Visit>
+    void for_each_vertex(const std::vector<ContactPair>& pairs, const Visit& visit) {
+        find_order(pairs);
+        for (std::size_t first = 0; first < order_.size();) {
+            std::size_t last = first;
+            while (last < order_.size() && order_[last].first == order_[first].first) ++last;
+            visit(first, last);
+            first = last;
+        }
+    }
+
+    const ContactPair& pair_at(const std::vector<ContactPair>& pairs, std::size_t place) const {
+        return pairs[static_cast<std::size_t>(order_[place].index)];
+    }
+
+    // Flat edges and vertices of the faces in elements_, each once.
+    void find_elements(const ContactSide& faces, const std::vector<ContactPair>& pairs, std::size_t first, std::size_t last) {
+        elements_.clear();
+        if (faces.flat == nullptr) return;
+        for (std::size_t k = first; k < last; ++k) {
+            const int face = pair_at(pairs, k).face;
+            const unsigned bits = face < 0 ? 0 : faces.flat->of_face(face);
+            if (bits == 0) continue;
+            const geometry::Triangle& corners = faces.body.hierarchy->faces()[face];
+            for (int j = 0; j < 3; ++j) {
+                if ((bits >> j & 1U) != 0) elements_.push_back(edge_feature(corners[j], corners[(j + 1) % 3]));
+                if ((bits >> (3 + j) & 1U) != 0) elements_.push_back({corners[j], -1, -1});
+            }
+        }
+        std::sort(elements_.begin(), elements_.end());
+        elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+    }
+
+    static int count_of(const Feature& element) { return element[1] < 0 ? 1 : -1; }
+
+    static ContactPair pair_with(const ContactSide& faces, const Feature& element, const ContactPair& of_vertex) {
+        ContactPair pair = of_vertex;
+        const int a = element[0], b = element[1] < 0 ? a : element[1];
+        pair.face = -1;
+        pair.vertex = {pair.vertex[0], a, b, b};
+        for (int k = 1; k < 4; ++k) pair.x[k] = world_position(faces.pose, faces.body.mesh.vertices.col(pair.vertex[k]));
+        pair.closest = closest_points(pair.type, pair.x);
+        return pair;
+    }
+
+    void emit_elements(const CountedSides& sides, const ContactSide& faces, const std::vector<ContactPair>& pairs,
+                       std::vector<ContactPair>& out) {
+        for_each_vertex(pairs, [&](std::size_t first, std::size_t last) {
+            for (std::size_t k = first; k < last; ++k) out.push_back(pair_at(pairs, k));
+            find_elements(faces, pairs, first, last);
+            for (const Feature& element : elements_) {
+                ContactPair pair = pair_with(faces, element, pair_at(pairs, first));
+                if (!(pair.closest.distance_squared < sides.activation * sides.activation)) continue;
+                pair.weight *= count_of(element);
+                out.push_back(pair);
+            }
+        });
+    }
+
+    void add_entry(Kind kind, int vertex, const Feature& feature, int pair, int end, double weight) {
+        const bool swap = kind == Kind::of_second && feature[1] < 0;
+        const int order = static_cast<int>(entries_.size());
+        if (swap)
+            entries_.push_back(
+                {two(static_cast<int>(Kind::of_first), feature[0]), two(vertex, -1), two(-1, order), pair, end, true, weight});
+        else
+            entries_.push_back(
+                {two(static_cast<int>(kind), vertex), two(feature[0], feature[1]), two(feature[2], order), pair, end, false, weight});
+    }
+
+    void add_vertices(const CountedSides& sides, const ContactSide& faces, Kind kind, std::vector<ContactPair>& pairs) {
+        for_each_vertex(pairs, [&](std::size_t first, std::size_t last) {
+            const int vertex = pair_at(pairs, first).vertex[0];
+            const double weight = pair_at(pairs, first).weight;
+            features_.clear();
+            for (std::size_t k = first; k < last; ++k) {
+                features_.push_back(closest_feature(pair_at(pairs, k)));
+                add_entry(kind, vertex, features_.back(), order_[k].index, -1, weight);
+            }
+            find_elements(faces, pairs, first, last);
+            for (const Feature& element : elements_) {
+                std::size_t known = first;
+                while (known < last && !is_closest_in(element, pair_at(pairs, known), features_[known - first])) ++known;
+                if (known < last) {
+                    add_entry(kind, vertex, features_[known - first], order_[known].index, -1, count_of(element) * weight);
+                    continue;
+                }
+                const ContactPair pair = pair_with(faces, element, pair_at(pairs, first));
+                if (!(pair.closest.distance_squared < sides.activation * sides.activation)) continue;
+                add_entry(kind, vertex, closest_feature(pair), static_cast<int>(pairs.size()), -1, count_of(element) * weight);
+                pairs.push_back(pair);
+            }
+        });
+    }
+
+    void add_edges(const std::vector<ContactPair>& pairs) {
+        find_order(pairs);
+        for (const Place& place : order_) {
+            const ContactPair& pair = pairs[static_cast<std::size_t>(place.index)];
+            const int end = closest_end(pair);
+            if (end < 0)
+                add_entry(Kind::of_edges, pair.vertex[0], {pair.vertex[1], pair.vertex[2], pair.vertex[3]}, place.index, end, pair.weight);
+            else
+                add_entry(end < 2 ? Kind::of_first : Kind::of_second, pair.vertex[end], feature_opposite(pair, end), place.index, end,
+                          pair.weight);
+        }
+    }
+
+    // Of those with the same features the first one's numbers are taken.
+    void emit(const NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
+        std::sort(entries_.begin(), entries_.end());
+        for (std::size_t first = 0; first < entries_.size();) {
+            const Entry& entry = entries_[first];
+            double weight = 0;
+            std::size_t last = first;
+            for (; last < entries_.size() && entries_[last].has_features_of(entry); ++last) weight += entries_[last].weight;
+            first = last;
+            if (weight == 0) continue;
+            const Kind kind = static_cast<Kind>(entry.kind_vertex >> 32);
+            std::vector<ContactPair>& out = kind == Kind::of_second ? backward : forward;
+            out.push_back(contact_of(entry, kind, near));
+            out.back().weight = weight;
+        }
+    }
+
+    static ContactPair contact_of(const Entry& entry, Kind kind, const NearPairs& near) {
+        const auto index = static_cast<std::size_t>(entry.pair);
+        if (kind == Kind::of_edges) return near.edges[index];
+        if (entry.end >= 0) return on_end(near.edges[index], entry.end);  // two vertices begin with that of the first body
+        const bool of_first = kind == Kind::of_first && !entry.swap;
+        const ContactPair& pair = of_first ? near.on_second[index] : near.on_first[index];
+        const ContactPair out = on_feature(pair, closest_feature(pair));
+        return entry.swap ? swapped(out) : out;
+    }
+
+    std::vector<Place> order_;
+    std::vector<Entry> entries_;
+    std::vector<Feature> elements_, features_;
+};
+
+}  // namespace
+
+void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
+    static thread_local Counter counter;
+    counter.count(sides, near, forward, backward);
+}
+
+}  // namespace fettle::core::contact

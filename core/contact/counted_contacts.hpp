@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// Contacts between two bodies: of the pairs of primitives that are near, what counts, and how often.
+///
+/// One vertex over the faces of a body: a plane face is one contact, however it is cut into triangles. Inclusion and exclusion over the
+/// faces T near the vertex, the flat edges e and the flat vertices w between them (geometry/flat_features.hpp):
+///   sum_T b(T) - sum_e b(e) + sum_w b(w).
+/// Over a plane face without notches all terms but the one of the nearest place cancel; round notches what remains is smooth, with a corner
+/// that may count -1. Source of the idea: Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang, Kaufman, "Convergent Incremental
+/// Potential Contact", 2023 (section on improved max approximation).
+///
+/// Contacts with the same closest features (closest_feature.hpp) are one contact, weighted by how often the features count: pairs of edges
+/// that meet in a vertex of one, and two vertices that each body's faces name. Where boxes stand on one another that is most of them.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/geometry/flat_features.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::contact {
+
+struct ContactSide {
+    const model::Body& body;
+    const kinematics::Pose& pose;
+    const geometry::FlatFeatures* flat = nullptr;  ///< null: nothing is
+};
+
+struct CountedSides {
+    ContactSide first, second;
+    double activation = 0;  ///< [m]
+    bool by_element =
+        false;  ///< merge nothing, and keep faces, edges and vertices apart: for functions of more than the distance at one time
+};
+
+/// All pairs that are closer than the activation distance, `closest` filled, in any order.
+struct NearPairs {
+    std::vector<ContactPair> on_second;  ///< vertices of the first body over faces of the second
+    std::vector<ContactPair> on_first;   ///< vertices of the second over faces of the first
+    std::vector<ContactPair> edges;
+    void clear() {
+        on_second.clear();
+        on_first.clear();
+        edges.clear();
+    }
+};
+
+/// The order of what comes out depends on the primitives alone.
+/// @param near      used up
+/// @param forward   appended: contacts whose first primitive is on the first body; two vertices are here, and pairs of edges
+/// @param backward  appended: contacts whose first primitive is a vertex of the second
+void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward);
+
+}  // namespace fettle::core::contact
