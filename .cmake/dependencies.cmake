@@ -13,11 +13,3 @@ find_dependency(PkgConfig)
 if(NOT TARGET PkgConfig::IPOPT)
   pkg_check_modules(IPOPT REQUIRED QUIET IMPORTED_TARGET GLOBAL ipopt)
 endif()
-if(NOT TARGET fettle::cholmod)  # Debian's suitesparse has neither a .pc nor a CMake file
-  find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
-  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
-  mark_as_advanced(CHOLMOD_INCLUDE CHOLMOD_LIBRARY)
-  add_library(fettle::cholmod UNKNOWN IMPORTED GLOBAL)
-  set_target_properties(fettle::cholmod PROPERTIES
-    IMPORTED_LOCATION "${CHOLMOD_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${CHOLMOD_INCLUDE}")
-endif()

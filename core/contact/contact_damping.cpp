@@ -33,16 +33,18 @@ void add_damped_pair(const DampedPair& pair, const BarrierParameters& closeness,
     const double slope = pair.slope();
     const bool closing = slope >= 0 && pair.stiffness >= 0;  // the sum of its positive parts is one
     BodyPairSum phi;
-    add_pair_derivatives(pair.end, closeness, closing ? kind : HessianKind::exact, first_position, second_position, phi);
+    add_pair_derivatives(pair.end, closeness, closing || kind == HessianKind::none ? kind : HessianKind::exact, first_position,
+                         second_position, phi);
+    sum.first.force += slope * phi.first.force;
+    sum.first.arm += slope * phi.first.arm;
+    sum.second.force += slope * phi.second.force;
+    sum.second.arm += slope * phi.second.arm;
+    if (kind == HessianKind::none) return;
     PairVector gradient;  // the forces are opposite
     gradient << tangent_gradient(phi.first), tangent_gradient(phi.second).tail<3>();
     PairMatrix h = slope * phi.hessian;
     add_outer_product(h, pair.stiffness, gradient);
     sum.hessian += kind == HessianKind::projected && !closing ? positive_part(h) : h;
-    sum.first.force += slope * phi.first.force;
-    sum.first.arm += slope * phi.first.arm;
-    sum.second.force += slope * phi.second.force;
-    sum.second.arm += slope * phi.second.arm;
 }
 
 }  // namespace
@@ -96,7 +98,7 @@ void add_contact_damping_derivatives(const DampedContacts& damped, const std::ve
             add_damped_pair(damped_pair(model, damping, list, pair), damping.closeness, kind, poses[list.first].position,
                             poses[list.second].position, sums[k]);
     });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
 }
 
 }  // namespace fettle::core::contact

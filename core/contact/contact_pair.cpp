@@ -263,6 +263,7 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
     const double turning = q.f * q.b.value * q.m.first;
     sum.first.arm += turning * q.k.c1 * q.k.e1.transpose();
     sum.second.arm += turning * q.k.c2 * q.k.e2.transpose();
+    if (kind == HessianKind::none) return;
     if (kind == HessianKind::exact)
         add_exact_mollified_hessian(pair, arms, q, sum.hessian);
     else
@@ -383,7 +384,7 @@ void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& p, H
     const Vector3 force = 2 * b.first * pair.closest.difference;
     sum.first.add_force(force, arms.first);
     sum.second.add_force(-force, arms.second);
-    add_distance_hessian(pair, arms, b, kind, sum.hessian);
+    if (kind != HessianKind::none) add_distance_hessian(pair, arms, b, kind, sum.hessian);
 }
 
 }  // namespace fettle::core::contact

@@ -21,8 +21,9 @@
 namespace fettle::core::contact {
 
 enum class HessianKind {
-    exact,     ///< true second derivative
-    projected  ///< positive semi-definite approximation per pair
+    exact,      ///< true second derivative
+    projected,  ///< positive semi-definite approximation per pair
+    none        ///< no second derivative is asked for: Hessians are left as they are
 };
 
 /// One pair closer than the activation distance, in world coordinates.

@@ -233,15 +233,16 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& pos
         for (const ContactPair& pair : list.contacts)
             add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sums[k]);
     });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
 }
 
-void add_body_pair(int first, int second, const BodyPairSum& sum, std::vector<kinematics::PoseGradient>& gradients,
+void add_body_pair(int first, int second, const BodyPairSum& sum, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
                    kinematics::BlockHessian& hessian) {
     gradients[first].force += sum.first.force;
     gradients[first].arm += sum.first.arm;
     gradients[second].force += sum.second.force;
     gradients[second].arm += sum.second.arm;
+    if (kind == HessianKind::none) return;
     const Matrix12 full = in_both_bodies(sum.hessian);
     hessian.diagonal[first] += full.topLeftCorner<6, 6>();
     hessian.diagonal[second] += full.bottomRightCorner<6, 6>();

@@ -37,7 +37,7 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<kinematics
                              HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
 /// Adds one pair of bodies' sums to the per-body ones. hessian.off_diagonal stays sorted.
-void add_body_pair(int first, int second, const BodyPairSum& sum, std::vector<kinematics::PoseGradient>& gradients,
+void add_body_pair(int first, int second, const BodyPairSum& sum, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
                    kinematics::BlockHessian& hessian);
 
 }  // namespace fettle::core::contact

@@ -97,6 +97,7 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             const Vector3 force = c.load * f.first_by_y * (s.u1 * c.tangent_1 + s.u2 * c.tangent_2);
             sum.first.add_force(force, s.arm_first);
             sum.second.add_force(-force, s.arm_second);
+            if (kind == HessianKind::none) continue;
             // Along the slide f0'', across it f0' / y; at rest both are 2 / e and any two tangents do.
             const double c1 = s.distance > 0 ? s.u1 / s.distance : 1, c2 = s.distance > 0 ? s.u2 / s.distance : 0;
             const Vector3 along = c1 * c.tangent_1 + c2 * c.tangent_2, across = c1 * c.tangent_2 - c2 * c.tangent_1;
@@ -105,7 +106,7 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             add_rigid_stiffness(sum.hessian, c.load * f.first_by_y, across, s.arm_first, s.arm_second);
         }
     });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], gradients, hessian);
+    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
 }
 
 Vector3 friction_force(const FrictionSet& set, const BodyPairFriction& pair, const FrictionContact& c, const std::vector<Pose>& poses) {

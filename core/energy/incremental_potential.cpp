@@ -72,7 +72,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     ChartDerivatives out;
     const std::size_t n = poses.size();
     out.gradient.resize(n);
-    out.hessian.diagonal.resize(n);
+    if (kind != contact::HessianKind::none) out.hessian.diagonal.resize(n);
     out.force_magnitude.resize(n);
     std::vector<Matrix6> to_tangent(n);
     base::parallel_for(static_cast<int>(n), bodies_a_piece, [&](int i) {
@@ -82,11 +82,13 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         const kinematics::PoseGradient gradient{d.coupling[i].force + d.own[i].force, d.coupling[i].arm + d.own[i].arm};
         out.gradient[i] = to_tangent[i].transpose() * tangent_gradient(gradient);
         out.gradient[i].tail<3>() += d.chart_gradient[i];
+        if (kind == contact::HessianKind::none) return;
         Matrix6 own = to_tangent[i].transpose() * d.own_hessian[i] * to_tangent[i];
         own.bottomRightCorner<3, 3>() += chart_curvature(gradient.arm, kinematics::rotation_derivatives(theta));
         if (kind == contact::HessianKind::projected) own = positive_part(own);
         out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.coupling_hessian.diagonal[i] * to_tangent[i];
     });
+    if (kind == contact::HessianKind::none) return out;
     out.hessian.off_diagonal = std::move(d.coupling_hessian.off_diagonal);
     base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {
         kinematics::OffDiagonalBlock& b = out.hessian.off_diagonal[k];

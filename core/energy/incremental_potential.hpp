@@ -27,7 +27,7 @@ struct ChartDerivatives {
     std::vector<double> force_magnitude;  ///< per body: sum of the magnitudes of the forces' parts, in gradient units per metre
 };
 /// @param kind  projected: terms that couple bodies per pair, and each body's own 6 x 6 block with the curvature of its rotation, made
-///              positive semi-definite.
+///              positive semi-definite. none: the Hessian stays empty.
 ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,
                                    const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts,
                                    contact::HessianKind kind);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Solves with the Hessian over the free degrees of freedom: dense Cholesky for few, CHOLMOD (simplicial, symbolic factor kept while
-/// the pattern holds) for many. The same bits on every machine with the same instruction set: no BLAS is involved.
+/// Solves with the Hessian over the free degrees of freedom: Cholesky by blocks (block_cholesky.hpp). The same bits on every machine with
+/// the same instruction set: no BLAS is involved.
 #pragma once
 
 #include <array>

@@ -176,6 +176,19 @@ private:
         return !options_.to_rounding && newton && fraction == 1 && has_arrived(direction) && is_slow(direction);
     }
 
+    // A whole step of Newton's that gained what it foretold may leave so little that inertia alone makes the next one short enough: free
+    // flight, for one. Then no second derivative is needed to know it.
+    bool leaves_nothing(const Direction& direction, double fraction) {
+        constexpr double foretold = 0.1;  // how far the gain may be off
+        const bool newton = direction.kind == HessianKind::exact && direction.shift == 0 && !caution_.is_on();
+        if (options_.to_rounding || !newton || fraction < 1 || !has_arrived(direction)) return false;
+        if (!(std::abs(value_change_ - 0.5 * direction.slope) <= -foretold * 0.5 * direction.slope)) return false;
+        const Remainder remainder = remainder_at(problem_, at_, workspace_);
+        if (!(remainder.motion <= velocity_tolerance() * model_.timestep)) return false;
+        result_.residual = remainder.residual;
+        return true;
+    }
+
     // The exact Hessian, but for a few iterations after it has failed.
     std::optional<Direction> find_direction() {
         const HessianKind kind = projected_iterations_ > 0 ? HessianKind::projected : HessianKind::exact;
@@ -202,7 +215,7 @@ private:
 
     bool go_on_from_step(const Direction& direction, double fraction) {
         if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
-        if (was_the_last(direction, fraction)) return stop(NewtonStatus::converged);
+        if (was_the_last(direction, fraction) || leaves_nothing(direction, fraction)) return stop(NewtonStatus::converged);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
         if (!has_arrived(direction) && drive_.is_stalled()) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/solver/newton_direction.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,16 +66,21 @@ bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
     return true;
 }
 
+// Of body i.
+Matrix6 inertia_in_chart(const StepProblem& problem, const Iterate& at, std::size_t i) {
+    Matrix6 to_tangent = Matrix6::Identity();
+    to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
+    const Matrix6 inertia = energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
+    return to_tangent.transpose() * inertia * to_tangent;
+}
+
 // What the shift is measured in: each body's inertia, which is definite whatever contact makes of the rest, and a share of the diagonal, as
 // rounding is a share of it. A diagonal entry that is exactly zero, as of a spike balanced on an edge, cannot be raised by a factor.
 std::vector<Matrix6> shift_unit(const StepProblem& problem, const Iterate& at, const ChartDerivatives& d) {
     std::vector<Matrix6> unit(d.hessian.diagonal.size());
     double largest = 0;
     for (std::size_t i = 0; i < unit.size(); ++i) {
-        Matrix6 to_tangent = Matrix6::Identity();
-        to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
-        const Matrix6 inertia = energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
-        unit[i] = to_tangent.transpose() * inertia * to_tangent;
+        unit[i] = inertia_in_chart(problem, at, i);
         unit[i].diagonal() += rounding_share * d.hessian.diagonal[i].diagonal().cwiseAbs();
         largest = std::max(largest, unit[i].diagonal().maxCoeff());
     }
@@ -241,7 +247,32 @@ std::vector<ChartPoint> moved(const std::vector<ChartPoint>& points, const Direc
 }
 
 double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
-    return residual_of(derivatives(problem, at, HessianKind::projected, workspace), *problem.model, workspace.dofs);
+    return residual_of(derivatives(problem, at, HessianKind::none, workspace), *problem.model, workspace.dofs);
+}
+
+Remainder remainder_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
+    const model::Model& model = *problem.model;
+    const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
+    Remainder out;
+    out.residual = residual_of(d, model, workspace.dofs);
+    for (std::size_t i = 0; i < d.gradient.size(); ++i) {
+        if (!energy::has_free_dof(model.bodies[i])) continue;
+        Matrix6 inertia = inertia_in_chart(problem, at, i);
+        Vector6 force = d.gradient[i];
+        for (int k = 0; k < 6; ++k) {
+            if (workspace.dofs.index[i][k] >= 0) continue;
+            inertia.row(k).setZero();
+            inertia.col(k).setZero();
+            inertia(k, k) = 1;
+            force[k] = 0;
+        }
+        const Eigen::LLT<Matrix6> factor(inertia);
+        if (factor.info() != Eigen::Success) return {std::numeric_limits<double>::infinity(), out.residual};
+        const Vector6 step = factor.solve(force);
+        const double motion = step.head<3>().norm() + step.tail<3>().norm() * model.bodies[i].radius;
+        if (!(motion <= out.motion)) out.motion = motion;
+    }
+    return out;
 }
 
 }  // namespace fettle::core::solver

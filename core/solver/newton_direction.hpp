@@ -59,4 +59,12 @@ std::vector<kinematics::ChartPoint> moved(const std::vector<kinematics::ChartPoi
 /// NewtonResult::residual at this point.
 double residual_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);
 
+/// What is left to solve at a point, by first derivatives alone.
+struct Remainder {
+    double motion = 0;    ///< Direction::motion of the step that the bodies would make if their inertia were all that stands against what
+                          ///< is left of the forces: what else is stiff makes it shorter [m]; infinity where a body has no inertia
+    double residual = 0;  ///< NewtonResult::residual
+};
+Remainder remainder_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);
+
 }  // namespace fettle::core::solver

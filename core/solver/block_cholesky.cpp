@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/solver/block_cholesky.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/solver/linear_solver.hpp"
+
+namespace fettle::core::solver {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// In place, the lower triangle; zeros above. @return false if it is not positive definite
+bool cholesky(Matrix6& a) {
+    for (int j = 0; j < 6; ++j) {
+        double pivot = a(j, j);
+        for (int k = 0; k < j; ++k) pivot -= a(j, k) * a(j, k);
+        if (!(pivot > 0) || !std::isfinite(pivot)) return false;
+        pivot = std::sqrt(pivot);
+        a(j, j) = pivot;
+        const double inverse = 1 / pivot;
+        for (int i = j + 1; i < 6; ++i) {
+            double sum = a(i, j);
+            for (int k = 0; k < j; ++k) sum -= a(i, k) * a(j, k);
+            a(i, j) = sum * inverse;
+            a(j, i) = 0;
+        }
+    }
+    return true;
+}
+
+// b <- b l^-T.
+void solve_from_right(const Matrix6& l, Matrix6& b) {
+    for (int j = 0; j < 6; ++j) {
+        for (int k = 0; k < j; ++k) b.col(j) -= l(j, k) * b.col(k);
+        b.col(j) *= 1 / l(j, j);
+    }
+}
+
+// a -= b c^T.
+void subtract_product(Matrix6& a, const Matrix6& b, const Matrix6& c) {
+    for (int j = 0; j < 6; ++j)
+        for (int k = 0; k < 6; ++k) a.col(j) -= c(j, k) * b.col(k);
+}
+
+// Order of elimination of the nodes.
+std::vector<int> minimum_degree(const std::vector<std::vector<int>>& neighbours) {
+    const int n = static_cast<int>(neighbours.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < n; ++i) {
+        entries.emplace_back(i, i, 1);
+        for (const int j : neighbours[at(i)]) entries.emplace_back(i, j, 1);
+    }
+    Eigen::SparseMatrix<double> graph(n, n);
+    graph.setFromTriplets(entries.begin(), entries.end());
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+    Eigen::AMDOrdering<int>()(graph.selfadjointView<Eigen::Lower>(), permutation);
+    return {permutation.indices().data(), permutation.indices().data() + n};
+}
+
+// Free DOFs of a block whose others are prescribed: those are as good as not there.
+Matrix6 free_part(const Matrix6& block, const std::array<int, 6>& rows, const std::array<int, 6>& columns) {
+    Matrix6 out = block;
+    for (int k = 0; k < 6; ++k) {
+        if (rows[at(k)] < 0) out.row(k).setZero();
+        if (columns[at(k)] < 0) out.col(k).setZero();
+    }
+    return out;
+}
+
+}  // namespace
+
+void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+    std::vector<std::pair<int, int>> pattern;
+    pattern.reserve(hessian.off_diagonal.size());
+    for (const auto& b : hessian.off_diagonal) pattern.emplace_back(b.a, b.b);
+    if (analysed_ && pattern == pattern_) return;
+    FETTLE_ASSERT(std::adjacent_find(pattern.begin(), pattern.end(), std::greater_equal<>()) == pattern.end(), "blocks out of order");
+    pattern_ = std::move(pattern);
+    analysed_ = true;
+    std::vector<int> bodies;
+    node_of_.assign(dofs.index.size(), -1);
+    for (std::size_t body = 0; body < dofs.index.size(); ++body) {
+        const auto& index = dofs.index[body];
+        if (std::none_of(index.begin(), index.end(), [](int k) { return k >= 0; })) continue;
+        node_of_[body] = static_cast<int>(bodies.size());
+        bodies.push_back(static_cast<int>(body));
+    }
+    std::vector<std::vector<int>> neighbours(bodies.size());
+    for (const auto& [a, b] : pattern_) {
+        if (node_of_[at(a)] < 0 || node_of_[at(b)] < 0) continue;
+        neighbours[at(node_of_[at(a)])].push_back(node_of_[at(b)]);
+        neighbours[at(node_of_[at(b)])].push_back(node_of_[at(a)]);
+    }
+    const std::vector<int> order = minimum_degree(neighbours);
+    std::vector<int> place(bodies.size());
+    body_of_.resize(bodies.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        body_of_[k] = bodies[at(order[k])];
+        place[at(order[k])] = static_cast<int>(k);
+    }
+    for (std::size_t k = 0; k < body_of_.size(); ++k) node_of_[at(body_of_[k])] = static_cast<int>(k);
+    std::vector<std::vector<int>> ordered(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        for (const int j : neighbours[i]) ordered[at(place[i])].push_back(place[at(j)]);
+    find_columns(ordered);
+}
+
+// The rows of a column: those of the matrix, and those of the columns whose first row it is.
+void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours) {
+    const std::size_t n = neighbours.size();
+    columns_.assign(n, {});
+    rows_.assign(n, {});
+    std::vector<std::vector<int>> children(n);
+    int blocks = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+        std::vector<int> rows;
+        for (const int i : neighbours[j])
+            if (i > static_cast<int>(j)) rows.push_back(i);
+        for (const int child : children[j])
+            for (const Entry& entry : columns_[at(child)])
+                if (entry.row > static_cast<int>(j)) rows.push_back(entry.row);
+        std::sort(rows.begin(), rows.end());
+        rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+        for (const int i : rows) {
+            rows_[at(i)].push_back({static_cast<int>(j), static_cast<int>(columns_[j].size())});
+            columns_[j].push_back({i, blocks++});
+        }
+        if (!rows.empty()) children[at(rows.front())].push_back(static_cast<int>(j));
+    }
+    diagonal_.resize(n);
+    blocks_.resize(at(blocks));
+    place_.assign(n, -1);
+}
+
+void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+    for (std::size_t k = 0; k < body_of_.size(); ++k) {
+        const std::size_t body = at(body_of_[k]);
+        diagonal_[k] = free_part(hessian.diagonal[body], dofs.index[body], dofs.index[body]);
+        for (int i = 0; i < 6; ++i)
+            if (dofs.index[body][at(i)] < 0) diagonal_[k](i, i) = 1;
+    }
+    std::fill(blocks_.begin(), blocks_.end(), Matrix6::Zero());
+    for (const kinematics::OffDiagonalBlock& b : hessian.off_diagonal) {
+        const int na = node_of_[at(b.a)], nb = node_of_[at(b.b)];
+        if (na < 0 || nb < 0) continue;
+        const Matrix6 block = free_part(b.block, dofs.index[at(b.a)], dofs.index[at(b.b)]);
+        const std::vector<Entry>& column = columns_[at(std::min(na, nb))];
+        const auto entry =
+            std::lower_bound(column.begin(), column.end(), std::max(na, nb), [](const Entry& e, int row) { return e.row < row; });
+        blocks_[at(entry->block)] = na > nb ? block : Matrix6(block.transpose());
+    }
+}
+
+bool BlockCholesky::eliminate(int column) {
+    Matrix6& pivot = diagonal_[at(column)];
+    const std::vector<Entry>& below = columns_[at(column)];
+    for (const Entry& entry : below) place_[at(entry.row)] = entry.block;
+    for (const Entry& before : rows_[at(column)]) {
+        const std::vector<Entry>& other = columns_[at(before.row)];
+        const Matrix6& reach = blocks_[at(other[at(before.block)].block)];
+        subtract_product(pivot, reach, reach);
+        for (std::size_t k = at(before.block) + 1; k < other.size(); ++k)
+            subtract_product(blocks_[at(place_[at(other[k].row)])], blocks_[at(other[k].block)], reach);
+    }
+    if (!cholesky(pivot)) return false;
+    for (const Entry& entry : below) solve_from_right(pivot, blocks_[at(entry.block)]);
+    return true;
+}
+
+bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+    analyse(hessian, dofs);
+    fill(hessian, dofs);
+    for (int column = 0; column < static_cast<int>(columns_.size()); ++column)
+        if (!eliminate(column)) return false;
+    return true;
+}
+
+MatrixX BlockCholesky::solve(const MatrixX& rhs, const FreeDofs& dofs) const {
+    const std::size_t n = columns_.size();
+    std::vector<Vector6> x(n);
+    MatrixX out(rhs.rows(), rhs.cols());
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+        for (std::size_t k = 0; k < n; ++k)
+            for (int i = 0; i < 6; ++i) {
+                const int index = dofs.index[at(body_of_[k])][at(i)];
+                x[k][i] = index >= 0 ? rhs(index, c) : 0;
+            }
+        for (std::size_t k = 0; k < n; ++k) {
+            diagonal_[k].triangularView<Eigen::Lower>().solveInPlace(x[k]);
+            for (const Entry& entry : columns_[k]) x[at(entry.row)] -= blocks_[at(entry.block)] * x[k];
+        }
+        for (std::size_t k = n; k-- > 0;) {
+            for (const Entry& entry : columns_[k]) x[k] -= blocks_[at(entry.block)].transpose() * x[at(entry.row)];
+            diagonal_[k].transpose().triangularView<Eigen::Upper>().solveInPlace(x[k]);
+        }
+        for (std::size_t k = 0; k < n; ++k)
+            for (int i = 0; i < 6; ++i) {
+                const int index = dofs.index[at(body_of_[k])][at(i)];
+                if (index >= 0) out(index, c) = x[k][i];
+            }
+    }
+    return out;
+}
+
+}  // namespace fettle::core::solver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// Cholesky factor L L^T of a sparse symmetric matrix of 6 x 6 blocks, one row of blocks per body, with the bodies ordered so that few
+/// blocks fill in (approximate minimum degree, Amestoy, Davis and Duff 1996, from Eigen). A library's factor would go by single numbers:
+/// 36 times the indices, and an ordering of six times as many unknowns.
+/// Left-looking, by columns of blocks. Same bits on every machine with the same instruction set; one thread.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "fettle/core/kinematics/tangent_system.hpp"
+
+namespace fettle::core::solver {
+
+struct FreeDofs;
+
+class BlockCholesky {
+public:
+    /// The symbolic factor is kept while the same bodies are coupled. @return false if the free part is not positive definite to rounding,
+    /// or not finite (then solve must not be called)
+    bool factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
+
+    /// Of the free part, one column per right-hand side.
+    MatrixX solve(const MatrixX& rhs, const FreeDofs& dofs) const;
+
+private:
+    struct Entry {
+        int row;    // node
+        int block;  // into blocks_
+    };
+
+    void analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
+    void find_columns(const std::vector<std::vector<int>>& neighbours);
+    void fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
+    bool eliminate(int column);
+
+    std::vector<std::pair<int, int>> pattern_;  // bodies of the off-diagonal blocks that the analysis saw
+    bool analysed_ = false;
+    std::vector<int> body_of_;                 // [node] in the order of elimination
+    std::vector<int> node_of_;                 // [body] -1: nothing of it is free
+    std::vector<std::vector<Entry>> columns_;  // [node] rows below it, ascending
+    std::vector<std::vector<Entry>> rows_;     // [node] columns before it that reach it: .row is the column, .block its place there
+    std::vector<Matrix6> diagonal_, blocks_;   // the matrix, then its factor
+    std::vector<int> place_;                   // [node] scratch: where a row stands in the column at hand
+};
+
+}  // namespace fettle::core::solver
