@@ -9,7 +9,6 @@
 #include <functional>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
 
 namespace fettle::core::solver {
 namespace {

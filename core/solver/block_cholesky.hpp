@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/solver/free_dofs.hpp"
 
 namespace fettle::core::solver {
-
-struct FreeDofs;
 
 class BlockCholesky {
 public:

@@ -3,25 +3,13 @@
 /// the same instruction set: no BLAS is involved.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/model/model.hpp"
+#include "fettle/core/solver/free_dofs.hpp"
 
 namespace fettle::core::solver {
-
-/// Numbering of the degrees of freedom that are solved for.
-struct FreeDofs {
-    std::vector<std::array<int, 6>> index;  ///< [body][dof]: column, or -1 if prescribed
-    int count = 0;
-};
-FreeDofs free_dofs(const model::Model& model);
-
-/// Entries of the free DOFs of a per-body vector, and back (prescribed entries are left alone).
-VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values);
-void scatter(const FreeDofs& dofs, const VectorX& free_values, std::vector<Vector6>& values);
 
 /// H v over all bodies' six coordinates.
 std::vector<Vector6> multiply(const kinematics::BlockHessian& hessian, const std::vector<Vector6>& v);

@@ -13,6 +13,7 @@
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"
 #include "fettle/core/solver/prescribed_drive.hpp"
+#include "fettle/core/solver/touching_groups.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -176,15 +177,28 @@ private:
         return !options_.to_rounding && newton && fraction == 1 && has_arrived(direction) && is_slow(direction);
     }
 
-    // A whole step of Newton's that gained what it foretold may leave so little that inertia alone makes the next one short enough: free
-    // flight, for one. Then no second derivative is needed to know it.
+    // Bodies that touch one another are a problem of their own. Each such group may be done for its own reason: a whole step of Newton's
+    // that was short enough to end with; or one that leaves so little that inertia alone makes the next one short enough, as in free
+    // flight. Then no second derivative is needed to know it.
     bool leaves_nothing(const Direction& direction, double fraction) {
-        constexpr double foretold = 0.1;  // how far the gain may be off
+        constexpr double foretold = 0.1;  // how far the gain may be off what a quadratic potential would give
         const bool newton = direction.kind == HessianKind::exact && direction.shift == 0 && !caution_.is_on();
         if (options_.to_rounding || !newton || fraction < 1 || !has_arrived(direction)) return false;
         if (!(std::abs(value_change_ - 0.5 * direction.slope) <= -foretold * 0.5 * direction.slope)) return false;
+        const double enough = velocity_tolerance() * model_.timestep;
+        const std::vector<int> group = touching_groups(model_, at_.contacts, problem_.friction);
+        std::vector<double> step(group.size(), 0);  // [group] the longest
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            double& longest = step[static_cast<std::size_t>(group[i])];
+            if (energy::has_free_dof(model_.bodies[i])) longest = std::max(longest, motion_of(model_.bodies[i], direction.step[i]));
+        }
+        const auto is_hopeless = [&](const contact::BodyPairContacts& pair) {  // contact leaves more than inertia could bear
+            return std::max(step[group[pair.first]], step[group[pair.second]]) > enough;
+        };
+        if (std::any_of(at_.contacts.pairs.begin(), at_.contacts.pairs.end(), is_hopeless)) return false;
         const Remainder remainder = remainder_at(problem_, at_, workspace_);
-        if (!(remainder.motion <= velocity_tolerance() * model_.timestep)) return false;
+        for (std::size_t i = 0; i < group.size(); ++i)
+            if (!(step[group[i]] <= enough) && !(remainder.motion[i] <= enough)) return false;
         result_.residual = remainder.residual;
         return true;
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 
 namespace fettle::core::solver {
@@ -16,6 +17,7 @@ using energy::ChartDerivatives;
 using energy::StepProblem;
 using kinematics::ChartPoint;
 
+constexpr int bodies_at_once = 16;               // that a thread takes
 constexpr double largest_turn = 0.3;             // of one iteration [rad], or twice what the body turns in a step as it goes
 constexpr double largest_shift = 0.1;            // of the scene's size, or twice what the body moves
 constexpr double rounding_shift = 1e-12;         // of the diagonal
@@ -202,8 +204,7 @@ void measure_step(const ChartDerivatives& d, const model::Model& model, const Fr
         const Vector6& step = direction.step[i];
         direction.slope += d.gradient[i].dot(step);
         const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
-        if (solved_for)
-            direction.motion = std::max(direction.motion, step.head<3>().norm() + step.tail<3>().norm() * model.bodies[i].radius);
+        if (solved_for) direction.motion = std::max(direction.motion, motion_of(model.bodies[i], step));
     }
 }
 
@@ -250,28 +251,36 @@ double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspac
     return residual_of(derivatives(problem, at, HessianKind::none, workspace), *problem.model, workspace.dofs);
 }
 
+namespace {
+
+// The step of a body under its inertia alone; not finite without.
+Vector6 inertial_step(const StepProblem& problem, const Iterate& at, const ChartDerivatives& d, const FreeDofs& dofs, int body) {
+    Matrix6 inertia = inertia_in_chart(problem, at, static_cast<std::size_t>(body));
+    Vector6 force = d.gradient[body];
+    for (int k = 0; k < 6; ++k) {
+        if (dofs.index[body][k] >= 0) continue;
+        inertia.row(k).setZero();
+        inertia.col(k).setZero();
+        inertia(k, k) = 1;
+        force[k] = 0;
+    }
+    const Eigen::LLT<Matrix6> factor(inertia);
+    return factor.info() == Eigen::Success ? Vector6(factor.solve(force))
+                                           : Vector6(Vector6::Constant(std::numeric_limits<double>::infinity()));
+}
+
+}  // namespace
+
+double motion_of(const model::Body& body, const Vector6& step) { return step.head<3>().norm() + step.tail<3>().norm() * body.radius; }
+
 Remainder remainder_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
     const model::Model& model = *problem.model;
     const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
-    Remainder out;
-    out.residual = residual_of(d, model, workspace.dofs);
-    for (std::size_t i = 0; i < d.gradient.size(); ++i) {
-        if (!energy::has_free_dof(model.bodies[i])) continue;
-        Matrix6 inertia = inertia_in_chart(problem, at, i);
-        Vector6 force = d.gradient[i];
-        for (int k = 0; k < 6; ++k) {
-            if (workspace.dofs.index[i][k] >= 0) continue;
-            inertia.row(k).setZero();
-            inertia.col(k).setZero();
-            inertia(k, k) = 1;
-            force[k] = 0;
-        }
-        const Eigen::LLT<Matrix6> factor(inertia);
-        if (factor.info() != Eigen::Success) return {std::numeric_limits<double>::infinity(), out.residual};
-        const Vector6 step = factor.solve(force);
-        const double motion = step.head<3>().norm() + step.tail<3>().norm() * model.bodies[i].radius;
-        if (!(motion <= out.motion)) out.motion = motion;
-    }
+    Remainder out{std::vector<double>(d.gradient.size(), 0.0), residual_of(d, model, workspace.dofs)};
+    base::parallel_for(static_cast<int>(d.gradient.size()), bodies_at_once, [&](int i) {
+        if (energy::has_free_dof(model.bodies[i]))
+            out.motion[i] = motion_of(model.bodies[i], inertial_step(problem, at, d, workspace.dofs, i));
+    });
     return out;
 }
 

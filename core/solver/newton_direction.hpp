@@ -59,11 +59,15 @@ std::vector<kinematics::ChartPoint> moved(const std::vector<kinematics::ChartPoi
 /// NewtonResult::residual at this point.
 double residual_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);
 
+/// Bound on how far points of the body move with this step of its coordinates [m].
+double motion_of(const model::Body& body, const Vector6& step);
+
 /// What is left to solve at a point, by first derivatives alone.
 struct Remainder {
-    double motion = 0;    ///< Direction::motion of the step that the bodies would make if their inertia were all that stands against what
-                          ///< is left of the forces: what else is stiff makes it shorter [m]; infinity where a body has no inertia
-    double residual = 0;  ///< NewtonResult::residual
+    std::vector<double> motion;  ///< [body] bound on the motion of its points in the step that it would make if its inertia were all that
+                                 ///< stands against what is left of the forces: what else is stiff makes it shorter [m]; infinity
+                                 ///< without inertia, 0 where nothing is free
+    double residual = 0;         ///< NewtonResult::residual
 };
 Remainder remainder_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);
 
