@@ -2,6 +2,40 @@
 #include "fettle/adjoint/model_gradient.hpp"
 
 namespace fettle::adjoint {
+namespace {
+
+MechanismGradient zero_mechanism_gradient(const core::model::Mechanism& mechanism) {
+    MechanismGradient g;
+    g.frames.resize(mechanism.set.frames.size());
+    g.term_coefficient.assign(mechanism.terms.size(), 0);
+    g.term_reference = g.term_coefficient;
+    for (const core::model::MeasureTerm& term : mechanism.terms) g.term_values.emplace_back(term.curve.values.size(), 0.0);
+    g.row_constant.assign(mechanism.rows.size(), 0);
+    for (const core::constraint::Row& row : mechanism.rows) g.row_values.emplace_back(row.curve.values.size(), 0.0);
+    return g;
+}
+
+void add(std::vector<double>& sum, const std::vector<double>& part) {
+    for (std::size_t i = 0; i < sum.size() && i < part.size(); ++i) sum[i] += part[i];
+}
+
+void add(std::vector<std::vector<double>>& sum, const std::vector<std::vector<double>>& part) {
+    for (std::size_t i = 0; i < sum.size() && i < part.size(); ++i) add(sum[i], part[i]);
+}
+
+void add(MechanismGradient& sum, const MechanismGradient& part) {
+    for (std::size_t i = 0; i < sum.frames.size() && i < part.frames.size(); ++i) {
+        sum.frames[i].point += part.frames[i].point;
+        sum.frames[i].axes += part.frames[i].axes;
+    }
+    add(sum.term_coefficient, part.term_coefficient);
+    add(sum.term_reference, part.term_reference);
+    add(sum.term_values, part.term_values);
+    add(sum.row_constant, part.row_constant);
+    add(sum.row_values, part.row_values);
+}
+
+}  // namespace
 
 TrajectoryGradient zero_trajectory_gradient(int steps, int bodies) {
     TrajectoryGradient g;
@@ -11,6 +45,7 @@ TrajectoryGradient zero_trajectory_gradient(int steps, int bodies) {
 
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps) {
     ModelGradient g;
+    g.mechanism = zero_mechanism_gradient(model.mechanism);
     g.bodies.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         g.bodies[i].vertices_bar = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());
@@ -32,6 +67,7 @@ void add(ModelGradient& sum, const ModelGradient& part) {
             to.increment_bar[t] += from.increment_bar[t];
     }
     sum.gravity_bar += part.gravity_bar;
+    add(sum.mechanism, part.mechanism);
 }
 
 Seeds zero_seeds(const core::model::Model& model, int steps) {
@@ -40,6 +76,7 @@ Seeds zero_seeds(const core::model::Model& model, int steps) {
 
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps) {
     ModelTangent d;
+    d.mechanism = zero_mechanism_gradient(model.mechanism);
     d.bodies.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         d.bodies[i].vertices_dot = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());

@@ -29,9 +29,21 @@ struct BodyGradient {
     std::vector<Vector6> increment_bar;  ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
 };
 
+/// dJ/d(core::model::Mechanism). Everything is per frame, term and row of the model, as it was built: how frames, rests and constants
+/// follow from a scene is chained by whoever builds it.
+struct MechanismGradient {
+    std::vector<core::measure::FrameGradient> frames;  ///< placement, entry by entry: axes too, as if they could be anything
+    std::vector<double> term_coefficient;              ///< stiffness, damping, friction, factor of a force
+    std::vector<double> term_reference;                ///< rest or limit; 0 of others
+    std::vector<std::vector<double>> term_values;      ///< values of a force's curve
+    std::vector<double> row_constant;
+    std::vector<std::vector<double>> row_values;  ///< values of a motor's curve
+};
+
 struct ModelGradient {
     std::vector<BodyGradient> bodies;
     Vector3 gravity_bar = Vector3::Zero();
+    MechanismGradient mechanism;
 };
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
 
@@ -55,9 +67,11 @@ struct BodyTangent {
     Vector3 force_dot = Vector3::Zero();
     std::vector<Vector6> increment_dot;  ///< [step]
 };
+using MechanismTangent = MechanismGradient;
 struct ModelTangent {
     std::vector<BodyTangent> bodies;
     Vector3 gravity_dot = Vector3::Zero();
+    MechanismTangent mechanism;
 };
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps);
 

@@ -9,12 +9,13 @@
 #include "fettle/adjoint/energy/friction_adjoint.hpp"
 #include "fettle/adjoint/energy/inertia_adjoint.hpp"
 #include "fettle/adjoint/energy/loads_adjoint.hpp"
+#include "fettle/adjoint/energy/measure_terms_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 
 std::span<const TermAdjoint* const> term_adjoints() {
-    static const std::array list{&inertia_term_adjoint, &loads_term_adjoint,           &damping_term_adjoint,
-                                 &barrier_term_adjoint, &contact_damping_term_adjoint, &friction_term_adjoint};
+    static const std::array list{&inertia_term_adjoint,         &loads_term_adjoint,    &damping_term_adjoint, &barrier_term_adjoint,
+                                 &contact_damping_term_adjoint, &friction_term_adjoint, &measure_terms_adjoint};
     return list;
 }
 

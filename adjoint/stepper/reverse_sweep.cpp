@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
@@ -26,7 +27,12 @@ Vector3 rotation_gradient(const Matrix3& r_bar, const Matrix3& rotation) {
 class ReverseSweep {
 public:
     ReverseSweep(const Model& model, const Trajectory& trajectory, const std::vector<TrajectoryGradient>& seeds)
-        : model_(model), trajectory_(trajectory), seeds_(seeds), dofs_(core::solver::free_dofs(model)), solver_(dofs_) {
+        : model_(model),
+          trajectory_(trajectory),
+          seeds_(seeds),
+          solver_(model),
+          dofs_(solver_.dofs()),
+          angles_(angles_along(model, trajectory)) {
         const std::size_t bodies = model.bodies.size();
         const int steps = static_cast<int>(trajectory.steps.size());
         for (const TrajectoryGradient& seed : seeds)
@@ -38,6 +44,7 @@ public:
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
         lambda_ = motion_ = y_bar_;
+        mu_.resize(seeds.size());
         left_jacobian_.resize(bodies);
     }
 
@@ -67,15 +74,17 @@ private:
     }
 
     Errors step_back(int t) {
-        const LinearisedStep step = linearise_step(model_, trajectory_, t);
-        if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
+        const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
+        if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
         solve(step);
         for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
             for (auto& bodies : *bars)
                 for (Matrix34& bar : bodies) bar.setZero();
         energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
+        if (step.rows.count() > 0) constraint::subtract_rows_reverse({step.problem, step.poses, step.multipliers}, motion_, mu_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
-            const std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
+            std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
+            if (step.rows.count() > 0) add_transposed(step.rows, mu_[s], h_lambda);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 prescribed_back(t, s, i, step, h_lambda[i]);
                 pose_hat_back(t, s, i);
@@ -97,8 +106,9 @@ private:
             }
             rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
         }
-        const MatrixX lambda = refined_solve(solver_, dofs_, step.derivatives.hessian, rhs);
+        const auto [lambda, mu] = solver_.solve(step, rhs, MatrixX::Zero(step.rows.count(), rhs.cols()));
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
+            if (step.rows.count() > 0) mu_[s] = mu.col(static_cast<Eigen::Index>(s));
             core::solver::scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 motion_[s][i].head<3>() = lambda_[s][i].head<3>();
@@ -165,12 +175,14 @@ private:
     const Model& model_;
     const Trajectory& trajectory_;
     const std::vector<TrajectoryGradient>& seeds_;
+    StepSolver solver_;
     const core::solver::FreeDofs dofs_;
-    core::solver::LinearSolver solver_;
+    const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
     std::vector<ModelGradient> out_;
     std::vector<std::vector<Matrix34>> end_, start_, before_;  // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
     energy::StepGradient step_bar_;                            // P_hat's of the step at hand; the moments' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
+    std::vector<VectorX> mu_;  // [seed]: adjoint variable of the rows
     std::vector<Matrix3> left_jacobian_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {
@@ -40,32 +41,7 @@ Errors check_scripts(const core::model::Model& model) {
     return errors;
 }
 
-}  // namespace
-
-bool rotates_freely(const core::model::Body& body) { return is_free(body, 3) && is_free(body, 4) && is_free(body, 5); }
-
-LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t) {
-    LinearisedStep step;
-    step.problem = core::energy::step_problem(model, {trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}}, model.kappa);
-    step.poses = trajectory.poses[t + 1];
-    step.points = trajectory.steps[t].nodes.back();
-    const core::contact::Candidates candidates = core::contact::find_candidates(model, step.poses, 0);
-    step.contacts = core::contact::find_contacts(model, candidates, step.poses);
-    step.derivatives =
-        core::energy::chart_derivatives(step.problem, step.points, step.poses, step.contacts, core::contact::HessianKind::exact);
-    return step;
-}
-
-Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step, core::solver::LinearSolver& solver) {
-    if (solver.factorise_indefinite(step.derivatives.hessian)) return {};
-    const double time = trajectory.time_start + t * trajectory.timestep;
-    return {
-        {core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
-         "the step at t = " + std::to_string(time) +
-             " s has no derivative: its equations' matrix is singular. Is a body left without mass, or was the trajectory simulated from "
-             "another model?"}};
-}
-
+// H^-1 rhs, one column each, with one round of iterative refinement.
 MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
                       const core::kinematics::BlockHessian& hessian, const MatrixX& rhs) {
     MatrixX x = solver.solve(rhs);
@@ -76,6 +52,137 @@ MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solv
         residual.col(k) = rhs.col(k) - core::solver::gather(dofs, core::solver::multiply(hessian, column));
     }
     return x + solver.solve(residual);
+}
+
+// [H C^T; C 0], whole.
+Eigen::SparseMatrix<double> saddle_matrix(const LinearisedStep& step, const core::solver::FreeDofs& dofs) {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add_block = [&](int a, int b, const Matrix6& block) {
+        for (int i = 0; i < 6; ++i)
+            for (int j = 0; j < 6; ++j)
+                if (dofs.index[a][i] >= 0 && dofs.index[b][j] >= 0) entries.emplace_back(dofs.index[a][i], dofs.index[b][j], block(i, j));
+    };
+    const core::kinematics::BlockHessian& h = step.derivatives.hessian;
+    for (std::size_t i = 0; i < h.diagonal.size(); ++i) add_block(static_cast<int>(i), static_cast<int>(i), h.diagonal[i]);
+    for (const core::kinematics::OffDiagonalBlock& b : h.off_diagonal) {
+        add_block(b.a, b.b, b.block);
+        add_block(b.b, b.a, b.block.transpose());
+    }
+    for (int row = 0; row < step.rows.count(); ++row)
+        for (int k = step.rows.first[row]; k < step.rows.first[row + 1]; ++k)
+            for (int i = 0; i < 6; ++i) {
+                const int column = dofs.index[step.rows.entries[k].body][i];
+                if (column < 0) continue;
+                entries.emplace_back(dofs.count + row, column, step.rows.entries[k].gradient[i]);
+                entries.emplace_back(column, dofs.count + row, step.rows.entries[k].gradient[i]);
+            }
+    Eigen::SparseMatrix<double> out(dofs.count + step.rows.count(), dofs.count + step.rows.count());
+    out.setFromTriplets(entries.begin(), entries.end());
+    return out;
+}
+
+// The rows' part of the Lagrangian.
+void add_rows(StepSolver& solver, LinearisedStep& step) {
+    const core::model::Mechanism& mechanism = step.problem.model->mechanism;
+    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, step.poses);
+    step.rows = row_jacobian(mechanism.set, mechanism.rows, frames);
+    std::vector<Vector3> rotation_vectors;
+    std::vector<Matrix3> left_jacobians;
+    for (const core::kinematics::ChartPoint& p : step.points) {
+        rotation_vectors.push_back(p.rotation_vector);
+        left_jacobians.push_back(core::kinematics::left_jacobian(p.rotation_vector));
+    }
+    to_chart(left_jacobians, step.rows);
+    const auto add_curvature = [&](const VectorX& multipliers) {
+        add_row_curvature(mechanism.set, mechanism.rows, multipliers, frames, rotation_vectors, step.derivatives.hessian);
+    };
+    add_curvature(VectorX::Zero(step.rows.count()));  // the pattern
+    step.multipliers = solver.multipliers(step);
+    add_curvature(step.multipliers);
+    add_transposed(step.rows, step.multipliers, step.derivatives.gradient);
+}
+
+}  // namespace
+
+bool rotates_freely(const core::model::Body& body) { return is_free(body, 3) && is_free(body, 4) && is_free(body, 5); }
+
+StepSolver::StepSolver(const core::model::Model& model) : dofs_(core::solver::free_dofs(model)), linear_(dofs_) {
+    if (!model.mechanism.rows.empty()) saddle_.emplace(dofs_.index, dofs_.count);
+}
+
+Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
+    indefinite_.reset();
+    if (!saddle_) {
+        if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
+    } else {
+        if (saddle_->factorise(step.derivatives.hessian, step.rows)) return {};
+        indefinite_ = std::make_shared<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+        indefinite_->compute(saddle_matrix(step, dofs_));
+        if (indefinite_->info() == Eigen::Success) return {};
+    }
+    const double time = trajectory.time_start + t * trajectory.timestep;
+    return {
+        {core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
+         "the step at t = " + std::to_string(time) +
+             " s has no derivative: its equations' matrix is singular. Is a body left without mass, is a linkage at a dead centre, or was "
+             "the trajectory simulated from another model?"}};
+}
+
+StepSolver::Solution StepSolver::solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
+    if (!saddle_) return {refined_solve(linear_, dofs_, step.derivatives.hessian, rhs), {}};
+    Solution out{MatrixX(rhs.rows(), rhs.cols()), MatrixX(of_rows.rows(), rhs.cols())};
+    for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
+        if (!indefinite_) {
+            const core::constraint::SaddleSolver::Solution x = saddle_->solve(rhs.col(k), of_rows.col(k));
+            out.y.col(k) = x.y;
+            out.mu.col(k) = x.multipliers;
+            continue;
+        }
+        const Eigen::SparseMatrix<double> matrix = saddle_matrix(step, dofs_);
+        VectorX b(rhs.rows() + of_rows.rows());
+        b << rhs.col(k), of_rows.col(k);
+        VectorX x = indefinite_->solve(b);
+        x += indefinite_->solve(b - matrix * x);
+        out.y.col(k) = x.head(rhs.rows());
+        out.mu.col(k) = x.tail(of_rows.rows());
+    }
+    return out;
+}
+
+VectorX StepSolver::multipliers(const LinearisedStep& step) {
+    core::kinematics::BlockHessian weight = step.derivatives.hessian;  // the same pattern: one analysis serves both
+    for (std::size_t i = 0; i < weight.diagonal.size(); ++i) {
+        Matrix6 to_tangent = Matrix6::Identity();
+        to_tangent.bottomRightCorner<3, 3>() = core::kinematics::left_jacobian(step.points[i].rotation_vector);
+        const Matrix6 mass = core::kinematics::mass_matrix(step.poses[i].rotation, step.problem.model->bodies[i].moments);
+        weight.diagonal[i] = to_tangent.transpose() * mass * to_tangent;
+    }
+    for (core::kinematics::OffDiagonalBlock& b : weight.off_diagonal) b.block.setZero();
+    saddle_->factorise(weight, step.rows);
+    return saddle_->solve(-core::solver::gather(dofs_, step.derivatives.gradient), VectorX::Zero(step.rows.count())).multipliers;
+}
+
+std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+    std::vector<std::vector<double>> out{model.mechanism.angles_start};
+    for (std::size_t t = 1; t < trajectory.poses.size(); ++t)
+        out.push_back(core::constraint::angles_at(model.mechanism.set, trajectory.poses[t], out.back()));
+    return out;
+}
+
+LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                              const std::vector<double>& angles, StepSolver& solver) {
+    LinearisedStep step;
+    step.problem =
+        core::energy::step_problem(model, {trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}, angles}, model.kappa);
+    set_end_time(step.problem, t * model.timestep + model.timestep);
+    step.poses = trajectory.poses[t + 1];
+    step.points = trajectory.steps[t].nodes.back();
+    const core::contact::Candidates candidates = core::contact::find_candidates(model, step.poses, 0);
+    step.contacts = core::contact::find_contacts(model, candidates, step.poses);
+    step.derivatives =
+        core::energy::chart_derivatives(step.problem, step.points, step.poses, step.contacts, core::contact::HessianKind::exact);
+    if (!model.mechanism.rows.empty()) add_rows(solver, step);
+    return step;
 }
 
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {

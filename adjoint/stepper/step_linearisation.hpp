@@ -4,7 +4,13 @@
 /// else.
 #pragma once
 
+#include <Eigen/SparseLU>
+#include <memory>
+#include <optional>
+#include <vector>
+
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/solver/linear_solver.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
@@ -16,19 +22,44 @@ struct LinearisedStep {
     std::vector<core::kinematics::Pose> poses;         ///< at the step's end
     std::vector<core::kinematics::ChartPoint> points;  ///< the same in the step's chart
     core::contact::ContactSet contacts;                ///< at the step's end
-    core::energy::ChartDerivatives derivatives;        ///< gradient and true Hessian in the chart (q, theta)
+    core::energy::ChartDerivatives derivatives;        ///< gradient and true Hessian in the chart (q, theta), of the Lagrangian
+    core::constraint::RowJacobian rows;                ///< of joints and motors, in the chart
+    VectorX multipliers;                               ///< per row: those that balance the potential's gradient
     core::energy::DerivativesAt end() const { return {problem, poses, contacts, core::contact::HessianKind::exact}; }
 };
 
-/// Step t, which leads from trajectory.poses[t] to poses[t + 1].
-LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t);
+/// The system of one step: H over the free degrees of freedom, or [H C^T; C 0] where there are rows.
+class StepSolver {
+public:
+    explicit StepSolver(const core::model::Model& model);
 
-/// Factorises the step's Hessian. Error (inconsistent): it is singular; names the step and the time.
-Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step, core::solver::LinearSolver& solver);
+    const core::solver::FreeDofs& dofs() const { return dofs_; }
 
-/// H^-1 rhs over the free degrees of freedom, one column each, with one round of iterative refinement: the barrier makes H stiff.
-MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
-                      const core::kinematics::BlockHessian& hessian, const MatrixX& rhs);
+    /// Error (inconsistent): the matrix is singular; names the step and the time.
+    Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
+
+    struct Solution {
+        MatrixX y, mu;  ///< one column per right-hand side
+    };
+    /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows of no matter.
+    Solution solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
+
+    /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free.
+    VectorX multipliers(const LinearisedStep& step);
+
+private:
+    core::solver::FreeDofs dofs_;
+    core::solver::LinearSolver linear_;
+    std::optional<core::constraint::SaddleSolver> saddle_;
+    std::shared_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> indefinite_;  ///< where H is not positive definite on the rows
+};
+
+/// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.
+std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+
+/// Step t, which leads from trajectory.poses[t] to poses[t + 1]. @param angles  at its start.
+LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                              const std::vector<double>& angles, StepSolver& solver);
 
 /// What the sweeps cannot differentiate, by name: bdf2 and newmark, what the terms refuse (adjoint/energy: shells,
 /// wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of poses (all unsupported); a step

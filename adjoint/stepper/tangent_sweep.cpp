@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
@@ -41,7 +42,12 @@ const Matrix3& second_derivative(const RotationDerivatives& r, int a, int b) {
 class TangentSweep {
 public:
     TangentSweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction)
-        : model_(model), trajectory_(trajectory), direction_(direction), dofs_(core::solver::free_dofs(model)), solver_(dofs_) {
+        : model_(model),
+          trajectory_(trajectory),
+          direction_(direction),
+          solver_(model),
+          dofs_(solver_.dofs()),
+          angles_(angles_along(model, trajectory)) {
         FETTLE_ASSERT(direction.bodies.size() == model.bodies.size(), "a direction has an entry for each body");
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const Body& body = model.bodies[i];
@@ -115,8 +121,8 @@ private:
     }
 
     Errors step(int t) {
-        const LinearisedStep step = linearise_step(model_, trajectory_, t);
-        if (Errors errors = factorise(trajectory_, t, step, solver_); !errors.empty()) return errors;
+        const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
+        if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
         const std::size_t n = model_.bodies.size();
         std::vector<RotationDerivatives> r(n);
         std::vector<Matrix34> end_dot(n);
@@ -126,13 +132,16 @@ private:
             end_dot[i] = known_change(t, i, r[i]);
             pose_hat_dot[i] = pose_hat_change(i);
         }
-        const contact::PoseGradientTangent energy =
+        contact::PoseGradientTangent energy =
             adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, poses_dot_, moments_dot_}, direction_);
+        VectorX row_dot;
+        if (step.rows.count() > 0)
+            row_dot = constraint::add_rows_tangent({step.problem, step.poses, step.multipliers}, end_dot, direction_, energy);
         std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);
         const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
-        core::solver::scatter(dofs_, refined_solve(solver_, dofs_, step.derivatives.hessian, rhs).col(0), y_dot);
+        core::solver::scatter(dofs_, solver_.solve(step, rhs, -row_dot).y.col(0), y_dot);
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, r[i], k);
         advance(t, end_dot);
@@ -152,8 +161,9 @@ private:
     const Model& model_;
     const Trajectory& trajectory_;
     const ModelTangent& direction_;
+    StepSolver solver_;
     const core::solver::FreeDofs dofs_;
-    core::solver::LinearSolver solver_;
+    const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
     std::vector<Matrix4> moments_dot_;
     std::vector<Matrix34> poses_dot_, velocities_dot_;  // at the current step's start
     std::vector<std::vector<Vector6>> out_;

@@ -12,6 +12,7 @@
 #include "fettle/core/energy/friction.hpp"
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/energy/loads.hpp"
+#include "fettle/core/energy/measure_terms.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -52,7 +53,8 @@ TermDerivatives sum_of_terms(const DerivativesAt& at) {
 }  // namespace
 
 std::span<const Term* const> terms() {
-    static const std::array list{&inertia_term, &loads_term, &damping_term, &barrier_term, &contact_damping_term, &friction_term};
+    static const std::array list{&inertia_term,         &loads_term,    &damping_term, &barrier_term,
+                                 &contact_damping_term, &friction_term, &measure_terms};
     return list;
 }
 

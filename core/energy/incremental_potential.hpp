@@ -2,7 +2,7 @@
 /// The function that one time step minimises over all bodies' poses: the sum of its terms (term.hpp), potentials times the integrator's
 /// weight. docs/method.md sections 3 and 6.
 ///   E(y) = sum E_d(P) - weight sum (f . (q - q_t0) + tau . theta) + damping + barrier + contact damping
-///          + friction
+///          + friction + springs, dampers, stops, forces along measures
 /// Coordinates: each body's (q, theta) in the chart of the step, R = exp([theta]) R_t0 (step_problem.hpp).
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace fettle::core::energy {
 
-/// Inertia, loads, damping, barrier, contact damping, friction: in the order of their sums.
+/// Inertia, loads, damping, barrier, contact damping, friction, terms of measures: in the order of their sums.
 std::span<const Term* const> terms();
 
 /// The value; infinity where a pair is at or below dmin. `poses` are those of `points` (poses_of), `contacts` those there.

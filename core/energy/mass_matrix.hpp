@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// A rigid body's 6 x 6 mass matrix in (dq, phi): what accelerations take and what the inertia's Hessian is made of. docs/method.md
-/// section 3.
+/// A rigid body's mass matrix (kinematics/mass_matrix.hpp), as the terms name it.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::energy {
 
-/// J^T (M (x) I) J in (dq, phi): positive semi-definite for a true moment matrix.
-///   [ m I, -[R s] ; [R s], tr(J_w) I - J_w ],  s first moments, J_w = R J R^T second moments.
-Matrix6 mass_matrix(const Matrix3& rotation, const Matrix4& moments);
+using kinematics::mass_matrix;
 
 }  // namespace fettle::core::energy

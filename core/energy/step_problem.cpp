@@ -8,13 +8,15 @@ namespace fettle::core::energy {
 using kinematics::Pose;
 
 StepProblem step_problem(const model::Model& model, const History& history, double kappa) {
-    StepProblem problem{integration_step(model, history), &model, history.poses, 0, {}, {}, {}};
+    StepProblem problem{integration_step(model, history), &model, history.poses, 0, {}, {}, {}, mechanism_step(model, history)};
     // Quasi-static steps know no rates.
     if (model.contact_damping_time > 0 && model.integrator != scene::Integrator::quasi_static)
         for (const Pose& pose : history.poses) problem.contact_damping.start.push_back(pose_matrix(pose));
     set_kappa(problem, kappa);
     return problem;
 }
+
+void set_end_time(StepProblem& problem, double time) { set_end_time(problem.model->mechanism, time, problem.mechanism); }
 
 void set_kappa(StepProblem& problem, double kappa) {
     problem.kappa = kappa;

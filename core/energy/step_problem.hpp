@@ -8,6 +8,7 @@
 #include "fettle/core/contact/barrier.hpp"
 #include "fettle/core/contact/contact_damping.hpp"
 #include "fettle/core/contact/friction.hpp"
+#include "fettle/core/energy/mechanism_step.hpp"
 #include "fettle/core/energy/time_integration.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
@@ -21,10 +22,14 @@ struct StepProblem : IntegrationStep {
     contact::BarrierParameters barrier;
     contact::FrictionSet friction;            ///< empty: none
     contact::ContactDamping contact_damping;  ///< factor 0: none
+    MechanismStep mechanism;                  ///< joints, springs, motors; empty: none
 };
 
 /// The step that follows `history`, without friction until it is lagged (contact/friction.hpp).
 StepProblem step_problem(const model::Model& model, const History& history, double kappa);
+
+/// When the step ends: what curves drive follows from it. Without it they are at time 0.
+void set_end_time(StepProblem& problem, double time);
 
 /// The barrier's stiffness from here on.
 void set_kappa(StepProblem& problem, double kappa);

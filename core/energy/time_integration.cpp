@@ -103,6 +103,7 @@ Vector3 chart_torque(const model::Body& body, const Matrix3& R, const Matrix34& 
 
 History start_history(const model::Model& model) {
     History history;
+    history.angles = model.mechanism.angles_start;
     for (const model::Body& body : model.bodies) {
         history.poses.push_back(body.pose_start);
         history.velocities.push_back(body.velocity_start);
@@ -181,6 +182,7 @@ History advanced(const model::Model& model, const History& history, const Integr
         if (model.integrator == Integrator::bdf2) next.poses_before.push_back(before);
     }
     if (model.integrator == Integrator::bdf2) next.velocities_before = history.velocities;
+    next.angles = constraint::angles_at(model.mechanism.set, poses, history.angles);
     next.poses = std::move(poses);
     return next;
 }

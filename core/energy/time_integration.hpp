@@ -31,6 +31,7 @@ struct History {
     std::vector<Matrix34> poses_before;       ///< P_-1 (BDF2; empty before the first step)
     std::vector<Matrix34> velocities_before;  ///< V_-1 (BDF2)
     std::vector<Matrix34> accelerations;      ///< A0 (Newmark)
+    std::vector<double> angles{};             ///< of the mechanism's measures at P0, with their turns; empty: by half a turn
 };
 
 /// At the start of a simulation. Newmark's A0 is that of each body on its own, without contact.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/model/model.hpp"
 
+#include <algorithm>
+
 namespace fettle::core::model {
 
 kinematics::Pose scripted_pose(const Body& body, double time) { return scene::scripted_pose(body.script, body.pose_start, time); }
@@ -10,6 +12,8 @@ bool may_collide(const Model& model, int a, int b) {
     const Body& first = model.bodies[static_cast<std::size_t>(a)];
     const Body& second = model.bodies[static_cast<std::size_t>(b)];
     if (first.group >= 0 && first.group == second.group) return false;
+    const auto& joined = model.mechanism.not_colliding;
+    if (!joined.empty() && std::binary_search(joined.begin(), joined.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
     return first.type == scene::BodyType::dynamic_body || second.type == scene::BodyType::dynamic_body;
 }
 

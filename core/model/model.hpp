@@ -11,6 +11,7 @@
 #include "fettle/core/geometry/flat_features.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/model/mechanism.hpp"
 #include "fettle/core/scene/scene.hpp"
 
 namespace fettle::core::model {
@@ -62,6 +63,7 @@ struct Model {
     bool area_weighted = false;
     double contact_damping_time = 0;  ///< T of contact/contact_damping.hpp [s]; 0: none
     Friction friction;
+    Mechanism mechanism;
     scene::Integrator integrator = scene::Integrator::implicit_euler;
     double proximal_weight = 0;     ///< h^2/eps of quasi-static steps [s^2] (choose_proximal_weight.hpp); 0: not quasi-static
     double velocity_tolerance = 0;  ///< [m/s]
@@ -78,9 +80,9 @@ inline double friction_coefficient(const Model& model, int a, int b) {
 /// Where a kinematic body's script has c's frame at `time`: its start pose before, the last pose after (scene::scripted_pose).
 kinematics::Pose scripted_pose(const Body& body, double time);
 
-/// Does contact act between these two? Not on a body with itself, nor within a group (>= 0), nor where neither is dynamic: static and
-/// kinematic bodies never push each other. By type alone: a dynamic body all of whose coordinates are held or driven still meets static
-/// ones, and is stopped by them.
+/// Does contact act between these two? Not on a body with itself, nor within a group (>= 0), nor between what a joint joins, nor where
+/// neither is dynamic: static and kinematic bodies never push each other. By type alone: a dynamic body all of whose coordinates are held
+/// or driven still meets static ones, and is stopped by them.
 bool may_collide(const Model& model, int a, int b);
 
 }  // namespace fettle::core::model

@@ -11,6 +11,7 @@
 
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/scene/mechanism.hpp"
 
 namespace fettle::core::scene {
 
@@ -123,6 +124,7 @@ struct Scene {
     bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
     double contact_damping_time = 0;    ///< of contacts against kappa [s] (docs/method.md section 4); 0: none
     Friction friction;
+    Mechanism mechanism;  ///< joints, springs, motors, loads at points
     Integrator integrator = Integrator::implicit_euler;
     std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s
     int max_newton_iterations = 3000;

@@ -6,6 +6,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/scene/fixture_reader.hpp"
+#include "fettle/core/scene/mechanism_reader.hpp"
 #include "fettle/core/scene/scene_body.hpp"
 
 namespace fettle::core::scene {
@@ -21,7 +22,7 @@ public:
     base::Result<Scene> read() {
         const files::JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_scene", "description", "units", "gravity", "timestep", "end_time", "integrator", "contact",
-                         "materials", "friction", "bodies"});
+                         "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
         root["$schema"].string();
         root["description"].string();
         root["fettle_scene"].integer(1, 1);
@@ -37,6 +38,7 @@ public:
         read_materials(root["materials"]);
         read_friction(root["friction"]);
         read_bodies(root.require("bodies"));
+        scene_.mechanism = read_mechanism(root, unit_, scene_.bodies);
         if (!document_.errors().empty()) return document_.errors();
         scene_.warnings = document_.warnings();
         return std::move(scene_);

@@ -66,6 +66,7 @@ public:
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
         result_.friction = std::move(problem_.friction);
+        if (workspace_.rows) result_.multipliers = workspace_.rows->multipliers();
         return std::move(result_);
     }
 
@@ -184,6 +185,7 @@ private:
         constexpr double foretold = 0.1;  // how far the gain may be off what a quadratic potential would give
         const bool newton = direction.kind == HessianKind::exact && direction.shift == 0 && !caution_.is_on();
         if (options_.to_rounding || !newton || fraction < 1 || !has_arrived(direction)) return false;
+        if (workspace_.rows || !model_.mechanism.terms.empty()) return false;  // joints and springs couple what does not touch
         if (!(std::abs(value_change_ - 0.5 * direction.slope) <= -foretold * 0.5 * direction.slope)) return false;
         const double enough = velocity_tolerance() * model_.timestep;
         const std::vector<int> group = touching_groups(model_, at_.contacts, problem_.friction);
@@ -310,6 +312,16 @@ private:
         return contact::longest_safe_step(model_, workspace_.candidates, segments);
     }
 
+    // From the straight step onto the rows, and whether the way there is clear too.
+    bool reach_by_rows(const Direction& direction, double fraction, std::vector<ChartPoint>& points) {
+        const double left = 1 - fraction * direction.drive;
+        if (!workspace_.rows->put_on_rows(problem_, workspace_.dofs, left, points)) return false;
+        const std::vector<PathSegment> segments = segments_to(points);
+        cover(segments);
+        const auto span = workspace_.clock.charge(SolvePhase::ccd);
+        return contact::longest_safe_step(model_, workspace_.candidates, segments).fraction == 1;
+    }
+
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.
     double search(const Direction& direction) {
         limiting_ = safe_step(direction);
@@ -319,6 +331,7 @@ private:
         double fraction = 2 * limiting_.fraction;
         while ((fraction *= 0.5) > smallest_step) {
             Iterate trial{moved_by(direction, fraction), {}, {}};
+            if (workspace_.rows && !reach_by_rows(direction, fraction, trial.points)) continue;
             trial.poses = poses_of(problem_, trial.points);
             find_contacts(trial);
             const double value = potential(trial);

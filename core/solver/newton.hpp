@@ -46,6 +46,7 @@ struct NewtonResult {
     int friction_rounds = 0;
     contact::ContactSet contacts;   ///< at the end of the path
     contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
+    VectorX multipliers;            ///< per row of the mechanism, of the potential times its weight
     double shift = 0;     ///< largest that made a Hessian definite, in units of the bodies' inertia (newton_direction.hpp); 0: none needed
     double residual = 0;  ///< where derivatives were taken last: |gradient over free DOFs| (rotations divided by the body's radius) / sum
                           ///< of the forces' magnitudes

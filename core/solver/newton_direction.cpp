@@ -32,7 +32,16 @@ Vector6 coordinates(const ChartPoint& p) {
 
 ChartDerivatives derivatives(const StepProblem& problem, const Iterate& at, HessianKind kind, NewtonWorkspace& workspace) {
     const auto span = workspace.clock.charge(SolvePhase::derivatives);
-    return energy::chart_derivatives(problem, at.points, at.poses, at.contacts, kind);
+    ChartDerivatives d = energy::chart_derivatives(problem, at.points, at.poses, at.contacts, kind);
+    if (workspace.rows) workspace.rows->linearise(problem, at.points, at.poses, kind, d.hessian);
+    return d;
+}
+
+// Of the Lagrangian, with the multipliers of the last solve.
+void add_row_forces(const model::Model& model, const NewtonWorkspace& workspace, ChartDerivatives& d) {
+    if (!workspace.rows) return;
+    const std::vector<double> magnitude = workspace.rows->add_forces(model, d.gradient);
+    for (std::size_t i = 0; i < magnitude.size(); ++i) d.force_magnitude[i] += magnitude[i];
 }
 
 double residual_of(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs) {
@@ -99,7 +108,7 @@ std::optional<double> factorise(const StepProblem& problem, const Iterate& at, N
                                 HessianKind& kind) {
     const auto is_definite = [&] {
         const auto span = workspace.clock.charge(SolvePhase::linear_solve);
-        return workspace.linear.factorise(d.hessian);
+        return workspace.factorise(d.hessian);
     };
     if (!is_finite(d, workspace.dofs)) return std::nullopt;
     if (workspace.dofs.count == 0 || is_definite()) return 0;
@@ -135,7 +144,7 @@ std::optional<double> factorise_shifted(const StepProblem& problem, const Iterat
         if (!is_finite(d, workspace.dofs)) return std::nullopt;
         {
             const auto span = workspace.clock.charge(SolvePhase::linear_solve);
-            if (workspace.linear.factorise(d.hessian)) return shift;
+            if (workspace.factorise(d.hessian)) return shift;
         }
         if (kind == HessianKind::exact && tries == choice.exact_shifts) {
             kind = HessianKind::projected;
@@ -178,6 +187,12 @@ void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direc
     for (Vector6& step : direction.step) step *= direction.drive;
     if (workspace.dofs.count == 0) return;
     VectorX rhs = -gather(workspace.dofs, d.gradient);
+    if (workspace.rows) {
+        if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs, multiply(d.hessian, direction.step));
+        const auto span = workspace.clock.charge(SolvePhase::linear_solve);
+        workspace.rows->solve_for_step(workspace.dofs, rhs, direction.drive, direction.step);
+        return;
+    }
     if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs, multiply(d.hessian, direction.step));
     const auto span = workspace.clock.charge(SolvePhase::linear_solve);
     scatter(workspace.dofs, workspace.linear.solve(rhs), direction.step);
@@ -222,13 +237,15 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     if (!shift) return std::nullopt;
     direction.kind = kind;
     direction.shift = *shift;
-    direction.residual = residual_of(d, model, dofs);
-    direction.rounding = rounding_of(d, model, at.points);
     measure_remaining(targets, at.points, model, dofs, direction);
+    if (workspace.rows) direction.remaining_norm += workspace.rows->unmet_norm();
     direction.drive = direction.remaining_norm > 0 ? drive : 1;
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
     measure_step(d, model, dofs, direction);
+    add_row_forces(model, workspace, d);
+    direction.residual = residual_of(d, model, dofs);
+    direction.rounding = rounding_of(d, model, at.points);
     if (hessian.shift) direction.inertia = inertia_along(problem, at, direction.step);
     if (!std::isfinite(direction.residual + direction.rounding + direction.slope + direction.motion)) return std::nullopt;
     return direction;
@@ -248,7 +265,9 @@ std::vector<ChartPoint> moved(const std::vector<ChartPoint>& points, const Direc
 }
 
 double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
-    return residual_of(derivatives(problem, at, HessianKind::none, workspace), *problem.model, workspace.dofs);
+    ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
+    add_row_forces(*problem.model, workspace, d);
+    return residual_of(d, *problem.model, workspace.dofs);
 }
 
 namespace {

@@ -2,10 +2,13 @@
 /// Scratch memory of the solver (newton.hpp), and the clock of its phases.
 #pragma once
 
+#include <optional>
+
 #include "fettle/core/base/phase_clock.hpp"
 #include "fettle/core/contact/candidates.hpp"
 #include "fettle/core/contact/contact_set.hpp"
 #include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/solver/row_system.hpp"
 
 namespace fettle::core::solver {
 
@@ -33,8 +36,14 @@ struct NewtonWorkspace {
     LinearSolver linear;             ///< its symbolic factor
     contact::Candidates candidates;  ///< near where the last solve ended
     KnownContacts contacts;          ///< where the last step ended
+    std::optional<RowSystem> rows;   ///< of a model with joints or motors; its symbolic factor, and the last multipliers
     base::PhaseClock<SolvePhase> clock;
-    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {}
+    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {
+        if (!model.mechanism.rows.empty()) rows.emplace(dofs);
+    }
+
+    /// Of the Hessian, or of the saddle-point system that the rows make of it. @return false: it is not positive definite (on the rows)
+    bool factorise(const kinematics::BlockHessian& hessian) { return rows ? rows->factorise(hessian) : linear.factorise(hessian); }
 };
 
 }  // namespace fettle::core::solver

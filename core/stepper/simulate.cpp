@@ -68,6 +68,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {
             workspace.candidates = {};
+            if (workspace.rows) workspace.rows->forget_multipliers();
             out.checkpoint = {t, state};
         }
         StepResult result = step(model, state, workspace, options);

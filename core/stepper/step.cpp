@@ -70,9 +70,10 @@ void store_fractions(double end, TrajectoryStep& out) {
     out.fractions.push_back(end);
 }
 
-// Inertia and torques aim at this share of the step's way; an equilibrium knows no way.
+// Inertia, torques and motors aim at this share of the step's way; an equilibrium knows no way.
 energy::StepProblem towards(const energy::StepProblem& problem, double fraction) {
     energy::StepProblem out = problem;
+    set_end_time(out, problem.mechanism.end_time - (1 - fraction) * problem.model->timestep);
     if (is_quasi_static(*problem.model)) return out;
     for (std::size_t i = 0; i < out.pose_hat.size(); ++i) {
         const Matrix34 start = pose_matrix(problem.poses_t0[i]);
@@ -163,6 +164,31 @@ void judge_holding(const energy::StepProblem& problem, const solver::NewtonResul
     result.message = names.str() + ": not held: the proximal term carries more than 1e-6 of the load, which nothing in the scene does";
 }
 
+// Rows that follow from others at the start do so all along, or the step is none.
+bool judge_joints(const energy::StepProblem& problem, const solver::NewtonResult& solved, StepResult& result) {
+    constexpr double largest_gap = 1e-9;  // of the scene's size
+    const model::Model& model = *problem.model;
+    const model::Mechanism& mechanism = model.mechanism;
+    result.report.joint_gap = solver::largest_gap(problem, solved.poses);
+    result.report.path_joint_gap = path_gap_bound(model, problem.poses_t0, result.path);
+    if (mechanism.dependent.empty()) return true;
+    const VectorX values =
+        row_values(mechanism.set, mechanism.dependent, placed(mechanism.set.frames, solved.poses), problem.mechanism.angles);
+    for (std::size_t i = 0; i < mechanism.dependent.size(); ++i) {
+        const constraint::Row& row = mechanism.dependent[i];
+        const double gap = std::abs(values[static_cast<Eigen::Index>(i)] - target_at(row, problem.mechanism.end_time)) * row.length;
+        result.report.joint_gap = std::max(result.report.joint_gap, gap);
+        if (gap <= largest_gap * model.diagonal) continue;
+        std::ostringstream message;
+        message << "joint '" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "' is " << gap
+                << " m from being met: at the start it followed from the others, here it does not";
+        result.status = SimulationStatus::not_converged;
+        result.message = message.str();
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 StepState start_state(const model::Model& model) {
@@ -173,7 +199,8 @@ StepState start_state(const model::Model& model) {
 }
 
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options) {
-    const energy::StepProblem problem = energy::step_problem(model, state.history, options.for_gradient ? model.kappa : state.kappa);
+    energy::StepProblem problem = energy::step_problem(model, state.history, options.for_gradient ? model.kappa : state.kappa);
+    set_end_time(problem, state.time + model.timestep);
     solver::NewtonOptions newton;
     newton.velocity_tolerance = model.velocity_tolerance;
     newton.max_iterations = model.max_newton_iterations;
@@ -187,12 +214,20 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     StepResult result;
     result.status = simulation_status(solved.status);
     result.message = solved.message;
-    result.report = {solved.iterations, solved.friction_rounds, solved.contacts.count, solved.contacts.minimum_distance, solved.residual, 0,
-                     solved.shift};
+    result.report = {solved.iterations,
+                     solved.friction_rounds,
+                     solved.contacts.count,
+                     solved.contacts.minimum_distance,
+                     solved.residual,
+                     0,
+                     solved.shift,
+                     0,
+                     0};
     result.state = state;
     if (result.status == SimulationStatus::ok && is_quasi_static(model)) judge_holding(problem, solved, result);
     if (result.status != SimulationStatus::ok) return result;
     result.path = std::move(driven.path);
+    if (!model.mechanism.rows.empty() && !judge_joints(problem, solved, result)) return result;
     result.state.time = state.time + model.timestep;
     result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     result.state.history = energy::advanced(model, state.history, problem, solved.poses);

@@ -57,6 +57,7 @@ StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& p
     out.time = end.time;
     out.kappa = problem.kappa;
     out.drives = drive_forces(model, last, solved);
+    if (!model.mechanism.empty()) out.joints = joint_forces(last, solved.poses, solved.multipliers);
     return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/solver/newton.hpp"
+#include "fettle/core/stepper/joint_outputs.hpp"
 #include "fettle/core/stepper/step_state.hpp"
 
 namespace fettle::core::stepper {
@@ -23,9 +24,10 @@ struct DriveForce {
 
 /// What the terms of the potential report, and the rest.
 struct StepOutputs : energy::TermReport {
-    double time = 0;                 ///< at the end of the step [s]
-    double kappa = 0;                ///< of the barrier [N/m], or [N/m^3] if area-weighted
-    std::vector<DriveForce> drives;  ///< of the bodies with prescribed coordinates that need any
+    double time = 0;                   ///< at the end of the step [s]
+    double kappa = 0;                  ///< of the barrier [N/m], or [N/m^3] if area-weighted
+    std::vector<DriveForce> drives;    ///< of the bodies with prescribed coordinates that need any
+    std::vector<JointForce> joints{};  ///< of every joint, gear and motor
 };
 
 /// @param problem  as it was handed to the solver; `solved` holds the friction of the last round.

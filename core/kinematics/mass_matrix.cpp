@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 
-namespace fettle::core::energy {
+namespace fettle::core::kinematics {
 
 Matrix6 mass_matrix(const Matrix3& rotation, const Matrix4& moments) {
     const Matrix3 second = rotation * moments.topLeftCorner<3, 3>() * rotation.transpose();
@@ -11,4 +11,4 @@ Matrix6 mass_matrix(const Matrix3& rotation, const Matrix4& moments) {
     return h;
 }
 
-}  // namespace fettle::core::energy
+}  // namespace fettle::core::kinematics

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/constraint/row_adjoint.hpp"
+
+#include "fettle/adjoint/measure/measure_tangent.hpp"
+
+namespace fettle::adjoint::constraint {
+namespace {
+
+using core::constraint::Row;
+using core::constraint::RowPart;
+using core::measure::Measure;
+using core::model::Mechanism;
+
+Vector12 motion_of(const Mechanism& mechanism, const Measure& m, const std::vector<Vector6>& motion) {
+    Vector12 out = Vector12::Zero();
+    const int a = mechanism.set.frames[m.a].body, b = mechanism.set.frames[m.b].body;
+    if (a != core::measure::world) out.head<6>() = motion[a];
+    if (b != core::measure::world) out.tail<6>() = motion[b];
+    return out;
+}
+
+std::vector<Matrix3> rotations_of(const Mechanism& mechanism, const std::vector<core::kinematics::Pose>& poses) {
+    std::vector<Matrix3> out;
+    for (const core::measure::Frame& f : mechanism.set.frames)
+        out.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses[f.body].rotation);
+    return out;
+}
+
+}  // namespace
+
+void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Vector6>>& motion, const std::vector<VectorX>& mu,
+                           std::vector<ModelGradient>& model_bar) {
+    const Mechanism& mechanism = at.problem.model->mechanism;
+    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, at.poses);
+    const std::vector<Matrix3> rotations = rotations_of(mechanism, at.poses);
+    for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
+        const Row& row = mechanism.rows[i];
+        const std::vector<double> weights = core::scene::curve_weights(row.curve, at.problem.mechanism.end_time);
+        for (std::size_t s = 0; s < motion.size(); ++s) {
+            MechanismGradient& bar = model_bar[s].mechanism;
+            bar.row_constant[i] += mu[s][i];
+            for (std::size_t k = 0; k < weights.size(); ++k) bar.row_values[i][k] += weights[k] * mu[s][i];
+        }
+        for (const RowPart& part : row.parts) {
+            const Measure& m = mechanism.set.measures[part.measure];
+            const core::measure::VectorFunction f = vector_function(m, frames);
+            for (std::size_t s = 0; s < motion.size(); ++s) {
+                std::vector<core::measure::FrameGradient>& bars = model_bar[s].mechanism.frames;
+                add_placement_gradient(f, -part.factor * mu[s][i], rotations, bars);
+                add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], frames, rotations,
+                                                 motion_of(mechanism, m, motion[s]), bars);
+            }
+        }
+    }
+}
+
+VectorX add_rows_tangent(const RowsAtEnd& at, const std::vector<Matrix34>& poses_dot, const ModelTangent& direction,
+                         contact::PoseGradientTangent& out) {
+    const Mechanism& mechanism = at.problem.model->mechanism;
+    VectorX change = VectorX::Zero(static_cast<Eigen::Index>(mechanism.rows.size()));
+    for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
+        const Row& row = mechanism.rows[i];
+        for (const RowPart& part : row.parts) {
+            const Measure& m = mechanism.set.measures[part.measure];
+            const measure::MeasureTangent t = measure::measure_tangent(mechanism.set, m, {at.poses, poses_dot, direction.mechanism.frames});
+            const double weight = part.factor * at.multipliers[i];
+            const int a = mechanism.set.frames[m.a].body, b = mechanism.set.frames[m.b].body;
+            if (a != core::measure::world) {
+                out.value[a] += weight * t.gradient_a;
+                out.dot[a] += weight * t.gradient_a_dot;
+            }
+            if (b != core::measure::world) {
+                out.value[b] += weight * t.gradient_b;
+                out.dot[b] += weight * t.gradient_b_dot;
+            }
+            change[i] += part.factor * t.value_dot;
+        }
+        const std::vector<double> weights = core::scene::curve_weights(row.curve, at.problem.mechanism.end_time);
+        change[i] -= direction.mechanism.row_constant[i];
+        for (std::size_t k = 0; k < weights.size(); ++k) change[i] -= weights[k] * direction.mechanism.row_values[i][k];
+    }
+    return change;
+}
+
+}  // namespace fettle::adjoint::constraint

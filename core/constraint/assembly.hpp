@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+/// Puts bodies where their joints are met, moved least: the poses P nearest to P0,
+///   minimise 1/2 sum tr((P - P0) M (P - P0)^T)   subject to   row_i(P) = target_i,
+/// by Newton's method on the Lagrangian. docs/method.md section 9.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/constraint/dependent_rows.hpp"
+#include "fettle/core/constraint/row.hpp"
+
+namespace fettle::core::constraint {
+
+struct AssemblyProblem {
+    const measure::MeasureSet& set;
+    const std::vector<Row>& rows;
+    VectorX targets;                        ///< per row
+    std::vector<Matrix4> moments;           ///< per body: what moving it costs
+    std::vector<std::array<int, 6>> index;  ///< as SaddleSolver takes it: what may be moved
+    int count = 0;
+    double size = 1;  ///< of the scene [m]
+};
+
+/// Gaps at most this share of the scene's size are none.
+inline constexpr double assembled_gap = 1e-12;
+
+struct Assembly {
+    std::vector<kinematics::Pose> poses;
+    std::vector<double> angles;  ///< of the measures there
+    bool is_met = false;
+    bool has_moved = false;               ///< false: the poses are those that were handed in, bit for bit
+    VectorX gaps;                         ///< per row: |row - target| times its length [m]
+    std::vector<DependentRow> dependent;  ///< rows that follow from others; left out, but their gaps count
+    int iterations = 0;
+};
+
+Assembly assemble(const AssemblyProblem& problem, const std::vector<kinematics::Pose>& start);
+
+/// The velocity nearest to `velocities` (6 per body: v, omega) that keeps to the rows, by mass: minimises 1/2 (u - v)^T M (u - v) subject
+/// to C u = rates.
+std::vector<Vector6> compatible_velocities(const AssemblyProblem& problem, const std::vector<kinematics::Pose>& poses,
+                                           const std::vector<DependentRow>& dependent, const VectorX& rates,
+                                           const std::vector<Vector6>& velocities);
+
+}  // namespace fettle::core::constraint

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// Energies of one measure m: springs, dampers, forces, stops, friction of joints. docs/method.md section 9.
+///   spring    1/2 c (m - reference)^2
+///   damper    1/2 c (m - m_slip)^2 / slip_time                              nothing in a quasi-static step
+///   force     -f m, f the curve at the step's end
+///   stop      c b(g), g = sign length (m - reference),  b(g) = -(g - dhat)^2 ln(g/dhat) for 0 < g < dhat, else 0; infinite for g <= 0
+///   friction  c f0(|m - m_slip| length) / length,   f0 of contact/friction.hpp with e = eps_v slip_time
+/// each times the integrator's weight (time_integration.hpp).
+#pragma once
+
+#include "fettle/core/energy/step_problem.hpp"
+
+namespace fettle::core::energy {
+
+struct LawValue {
+    double value = 0, first = 0, second = 0;  ///< and derivatives in m
+    double majorant = 0;                      ///< a second derivative >= 0 that Newton's method may take in its place
+};
+
+/// @param m  the measure, an angle with its turns. Derivatives of a stop are of g > 0 only.
+LawValue measure_law(const StepProblem& problem, const model::MeasureTerm& term, double m);
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/energy/measure_terms.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace fettle::core::energy {
+namespace {
+
+using Frames = std::vector<measure::PlacedFrame>;
+
+double measure_at(const StepProblem& problem, int measure, const Frames& frames) {
+    return constraint::value_at(problem.model->mechanism.set, measure, frames, problem.mechanism.angles);
+}
+
+void add_measures_value(const ValueAt& at, TermValues& values) {
+    const model::Mechanism& mechanism = at.problem.model->mechanism;
+    if (mechanism.terms.empty()) return;
+    const Frames frames = placed(mechanism.set.frames, at.poses);
+    double sum = 0;
+    for (const model::MeasureTerm& term : mechanism.terms)
+        sum += measure_law(at.problem, term, measure_at(at.problem, term.measure, frames)).value;
+    values.couplings.push_back(sum);
+}
+
+Matrix12 positive_part_of(const Matrix12& h) {
+    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(h);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// Of one term in the bodies of its measure.
+struct TermGradient {
+    int a = 0, b = 0;
+    measure::PoseGradients gradient;
+    Matrix12 hessian;
+};
+
+TermGradient derivatives_of(const DerivativesAt& at, const model::MeasureTerm& term, const Frames& frames) {
+    const measure::MeasureSet& set = at.problem.model->mechanism.set;
+    const measure::Measure& m = set.measures[static_cast<std::size_t>(term.measure)];
+    const measure::VectorFunction f = vector_function(m, frames);
+    const LawValue law = measure_law(at.problem, term, measure_at(at.problem, term.measure, frames));
+    TermGradient out;
+    out.a = set.frames[static_cast<std::size_t>(m.a)].body;
+    out.b = set.frames[static_cast<std::size_t>(m.b)].body;
+    out.gradient = pose_gradients(m, f, frames);
+    Vector12 along;
+    along << tangent_gradient(out.gradient.a), tangent_gradient(out.gradient.b);
+    const bool exact = at.kind == contact::HessianKind::exact;
+    out.hessian = (exact ? law.second : law.majorant) * along * along.transpose();
+    if (!f.is_linear() && law.first != 0) out.hessian += law.first * gauss_newton_hessian(m, f, frames);
+    if (!exact && law.first != 0) out.hessian = positive_part_of(out.hessian);
+    for (kinematics::PoseGradient* side : {&out.gradient.a, &out.gradient.b}) {
+        side->force *= law.first;
+        side->arm *= law.first;
+    }
+    return out;
+}
+
+void add_side(int body, const kinematics::PoseGradient& gradient, const Eigen::Ref<const Matrix6>& hessian, TermDerivatives& d) {
+    if (body == measure::world) return;
+    const auto i = static_cast<std::size_t>(body);
+    d.coupling[i].force += gradient.force;
+    d.coupling[i].arm += gradient.arm;
+    d.coupling_hessian.diagonal[i] += hessian;
+}
+
+void add_measures_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+    const model::Mechanism& mechanism = at.problem.model->mechanism;
+    if (mechanism.terms.empty()) return;
+    const Frames frames = placed(mechanism.set.frames, at.poses);
+    std::vector<kinematics::OffDiagonalBlock> blocks;
+    for (const model::MeasureTerm& term : mechanism.terms) {
+        const TermGradient t = derivatives_of(at, term, frames);
+        add_side(t.a, t.gradient.a, t.hessian.topLeftCorner<6, 6>(), d);
+        add_side(t.b, t.gradient.b, t.hessian.bottomRightCorner<6, 6>(), d);
+        if (t.a == measure::world || t.b == measure::world) continue;
+        if (t.a < t.b)
+            blocks.push_back({t.a, t.b, t.hessian.topRightCorner<6, 6>()});
+        else
+            blocks.push_back({t.b, t.a, t.hessian.bottomLeftCorner<6, 6>()});
+    }
+    constraint::add_blocks(std::move(blocks), d.coupling_hessian);
+}
+
+void add_measures_report(const SolvedStep& step, TermReport& report) {
+    const model::Mechanism& mechanism = step.problem.model->mechanism;
+    if (mechanism.terms.empty()) return;
+    const Frames frames = placed(mechanism.set.frames, step.end.poses);
+    for (const model::MeasureTerm& term : mechanism.terms) {
+        const double m = measure_at(step.problem, term.measure, frames);
+        const LawValue law = measure_law(step.problem, term, m);
+        report.measure_forces.push_back(-law.first / step.problem.weight);
+        const bool stores = term.kind == model::LawKind::spring || term.kind == model::LawKind::stop;
+        if (stores) report.spring_energy += law.value / step.problem.weight;
+    }
+}
+
+}  // namespace
+
+const Term measure_terms{"springs, dampers, stops and forces along measures", add_measures_value, add_measures_derivatives,
+                         add_measures_report};
+
+}  // namespace fettle::core::energy

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+/// Joints, springs, motors and loads as the stepper works on them: measures, rows over them, terms of them. docs/method.md section 9.
+/// Made by build_mechanism.hpp.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fettle/core/constraint/row.hpp"
+#include "fettle/core/measure/measure.hpp"
+#include "fettle/core/scene/mechanism.hpp"
+
+namespace fettle::core::model {
+
+enum class LawKind {
+    spring,   ///< 1/2 c (m - reference)^2
+    damper,   ///< the force -c dm/dt
+    force,    ///< -f(t) m, f the curve
+    stop,     ///< the barrier of length sign (m - reference) > 0, c in N/m
+    friction  ///< Coulomb friction of the force c against dm/dt
+};
+
+/// An energy of one measure. Its value: energy/measure_law.hpp.
+struct MeasureTerm {
+    LawKind kind = LawKind::spring;
+    int measure = 0;
+    double coefficient = 0;
+    double reference = 0;
+    double sign = 1;     ///< stop: 1 a lower one, -1 an upper one
+    double length = 1;   ///< [m] that one unit of the measure is worth: 1 of lengths, a lever of angles
+    scene::Curve curve;  ///< force
+    std::string name;    ///< of the joint, spring or motor
+};
+
+struct Joint {
+    std::string name;
+    scene::JointKind kind = scene::JointKind::revolute;
+    int a = measure::world, b = measure::world;  ///< bodies; of gears and racks the world
+    int frame_a = -1, frame_b = -1;              ///< none of gears and racks
+    int coordinate = -1;                         ///< measure; -1: the joint has none
+    bool is_motor = false;                       ///< a row of a motor's: what `name` is
+};
+
+struct Mechanism {
+    measure::MeasureSet set;
+    std::vector<constraint::Row> rows;       ///< independent; Row::owner is a place in `joints`
+    std::vector<constraint::Row> dependent;  ///< what follows from `rows`: looked at after each step, not solved for
+    std::vector<MeasureTerm> terms;
+    std::vector<Joint> joints;                       ///< and the motors that drive coordinates
+    std::vector<std::pair<int, int>> not_colliding;  ///< bodies that joints join, (a < b), sorted
+    std::vector<double> angles_start;                ///< of the measures, at the start
+    bool empty() const { return rows.empty() && terms.empty() && joints.empty(); }
+};
+
+}  // namespace fettle::core::model

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/mechanism_start.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "fettle/core/constraint/assembly.hpp"
+
+namespace fettle::core::model {
+namespace {
+
+using base::ErrorCode;
+using base::Errors;
+using constraint::Assembly;
+using constraint::AssemblyProblem;
+using constraint::Row;
+
+Vector3 axial(const Matrix3& m) { return 0.5 * Vector3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)); }
+
+std::vector<kinematics::Pose> start_poses(const Model& model) {
+    std::vector<kinematics::Pose> out;
+    for (const Body& body : model.bodies) out.push_back(body.pose_start);
+    return out;
+}
+
+AssemblyProblem assembly_problem(const Model& model) {
+    AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
+    out.targets.resize(static_cast<Eigen::Index>(out.rows.size()));
+    for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[static_cast<Eigen::Index>(i)] = target_at(out.rows[i], 0);
+    for (const Body& body : model.bodies) {
+        out.moments.push_back(body.moments);
+        std::array<int, 6> index{};
+        for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? out.count++ : -1;
+        out.index.push_back(index);
+    }
+    return out;
+}
+
+// Names of the joints of these rows, each once.
+std::string names_of(const Mechanism& mechanism, const std::vector<int>& rows) {
+    std::set<std::string> names;
+    for (const int row : rows)
+        names.insert(mechanism.joints[static_cast<std::size_t>(mechanism.rows[static_cast<std::size_t>(row)].owner)].name);
+    std::string out;
+    for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
+    return out;
+}
+
+// What is not met: a row that others determine is contradicted by them; all else are loops that do not close.
+Errors describe_gaps(const scene::Scene& scene, const Model& model, const AssemblyProblem& problem, const Assembly& found) {
+    const double close = constraint::assembled_gap * problem.size;
+    Errors errors;
+    const std::string where = scene.path + "#/joints";
+    for (const constraint::DependentRow& d : found.dependent) {
+        if (!(found.gaps[d.row] > close)) continue;
+        std::ostringstream message;
+        message << names_of(model.mechanism, {d.row}) << " contradicts " << names_of(model.mechanism, d.on) << ": " << found.gaps[d.row]
+                << " m remain between what it asks for and what they leave";
+        errors.push_back({ErrorCode::inconsistent, where, message.str()});
+        break;
+    }
+    if (!errors.empty()) return errors;
+    std::vector<int> open;
+    for (Eigen::Index i = 0; i < found.gaps.size(); ++i)
+        if (found.gaps[i] > close) open.push_back(static_cast<int>(i));
+    std::ostringstream message;
+    message << "the joints cannot be met: at " << names_of(model.mechanism, open) << " " << found.gaps.maxCoeff()
+            << " m remain where the bodies come closest to it; are the lengths of a loop too short, or a limit of a motor's curve out of "
+               "reach?";
+    return {{ErrorCode::inconsistent, where, message.str()}};
+}
+
+void warn_of_dependent(const Assembly& found, Model& model) {
+    std::vector<int> rows;
+    for (const constraint::DependentRow& d : found.dependent) rows.push_back(d.row);
+    if (rows.empty()) return;
+    std::vector<int> on;
+    for (const constraint::DependentRow& d : found.dependent) on.insert(on.end(), d.on.begin(), d.on.end());
+    model.warnings.push_back("joints: " + std::to_string(rows.size()) + " of " + std::to_string(model.mechanism.rows.size()) +
+                             " conditions follow from others (of " + names_of(model.mechanism, rows) + ", determined by " +
+                             names_of(model.mechanism, on) + "); they carry no force of their own");
+}
+
+void set_apart(const std::vector<constraint::DependentRow>& dependent, Mechanism& mechanism) {
+    std::vector<Row> kept;
+    for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
+        const bool apart = std::any_of(dependent.begin(), dependent.end(), [&](const auto& d) { return d.row == static_cast<int>(i); });
+        (apart ? mechanism.dependent : kept).push_back(mechanism.rows[i]);
+    }
+    mechanism.rows = std::move(kept);
+}
+
+void move_bodies(const Assembly& found, Model& model) {
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        Body& body = model.bodies[i];
+        const kinematics::Pose &from = body.pose_start, &to = found.poses[i];
+        const double way = (to.position - from.position).norm();
+        const double turn = kinematics::rotation_vector(to.rotation * from.rotation.transpose()).norm();
+        if (way + turn * body.radius > 1e-9 * model.diagonal) {
+            std::ostringstream message;
+            message << "body `" << body.name << "` was moved by " << way << " m and turned by " << turn << " rad to meet its joints";
+            model.warnings.push_back(message.str());
+        }
+        const Vector3 omega = axial(body.velocity_start.leftCols<3>() * from.rotation.transpose());
+        body.pose_start = to;
+        body.velocity_start.leftCols<3>() = cross_matrix(omega) * to.rotation;
+    }
+}
+
+double rate_at_start(const scene::Curve& curve, double h) {
+    const double step = 1e-6 * h;
+    return (curve_value(curve, step) - curve_value(curve, 0)) / step;
+}
+
+// What the motors' curves do at once is no start velocity of the bodies: it is the first step's.
+void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Model& model) {
+    const std::vector<kinematics::Pose> poses = start_poses(model);
+    std::vector<Vector6> velocities;
+    VectorX rates(problem.targets.size());
+    for (std::size_t i = 0; i < problem.rows.size(); ++i)
+        rates[static_cast<Eigen::Index>(i)] = rate_at_start(problem.rows[i].curve, model.timestep);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const Body& body = model.bodies[i];
+        Vector6 v;
+        v << body.velocity_start.col(3), axial(body.velocity_start.leftCols<3>() * body.pose_start.rotation.transpose());
+        for (int k = 0; k < 6; ++k)  // where a coordinate is prescribed, its curve decides
+            if (!is_free(body, k))
+                v[k] = (motion_value(*body.prescribed[k], 1e-6 * model.timestep) - motion_value(*body.prescribed[k], 0)) /
+                       (1e-6 * model.timestep);
+        velocities.push_back(v);
+    }
+    const std::vector<Vector6> agreed = compatible_velocities(problem, poses, found.dependent, rates, velocities);
+    std::string moved;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        Body& body = model.bodies[i];
+        const Vector6 change = agreed[i] - velocities[i];
+        const double speed = change.head<3>().norm() + change.tail<3>().norm() * body.radius;
+        if (body.type != scene::BodyType::dynamic_body || speed == 0) continue;
+        body.velocity_start << cross_matrix(agreed[i].tail<3>()) * body.pose_start.rotation, agreed[i].head<3>();
+        if (speed > 1e-9 * model.diagonal) moved += (moved.empty() ? "`" : ", `") + body.name + "`";
+    }
+    if (!moved.empty())
+        model.warnings.push_back("start velocities of " + moved +
+                                 " were changed, as little as possible by mass, to agree with the joints and motors");
+}
+
+}  // namespace
+
+Errors settle_start(const scene::Scene& scene, Model& model) {
+    Mechanism& mechanism = model.mechanism;
+    const std::vector<kinematics::Pose> written = start_poses(model);
+    mechanism.angles_start = constraint::angles_at(mechanism.set, written, {});
+    if (mechanism.rows.empty()) return {};
+    const AssemblyProblem problem = assembly_problem(model);
+    const Assembly found = assemble(problem, written);
+    if (!found.is_met) return describe_gaps(scene, model, problem, found);
+    if (found.has_moved) move_bodies(found, model);
+    mechanism.angles_start = found.angles;
+    warn_of_dependent(found, model);
+    if (model.integrator != scene::Integrator::quasi_static) agree_velocities(problem, found, model);
+    set_apart(found.dependent, mechanism);
+    return {};
+}
+
+}  // namespace fettle::core::model

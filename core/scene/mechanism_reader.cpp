@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/mechanism_reader.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "fettle/core/scene/angles.hpp"
+
+namespace fettle::core::scene {
+namespace {
+
+using base::ErrorCode;
+using files::JsonNode;
+
+constexpr std::string_view force_keys[] = {"stiffness", "rest", "preload", "damping", "friction", "limits"};
+
+// Of a coordinate: what its numbers are in.
+struct CoordinateUnit {
+    bool is_angle = false;
+    double length = 1;
+    std::optional<double> read(const JsonNode& node) const {
+        if (!is_angle) return node.length(length);
+        const auto degrees = node.number();
+        return degrees ? std::optional(radians(*degrees)) : std::nullopt;
+    }
+};
+
+class MechanismReader {
+public:
+    MechanismReader(double unit, const std::vector<Body>& bodies) : unit_(unit), bodies_(bodies) {
+        for (const Body& body : bodies) body_names_.push_back(body.name);
+    }
+
+    Mechanism read(const JsonNode& root) {
+        for (const JsonNode& node : root["joints"].elements()) read_joint(node);
+        for (const JsonNode& node : root["springs"].elements()) read_spring(node, true);
+        for (const JsonNode& node : root["dampers"].elements()) read_spring(node, false);
+        for (const JsonNode& node : root["motors"].elements()) read_motor(node);
+        for (const JsonNode& node : root["loads"].elements()) read_load(node);
+        return std::move(out_);
+    }
+
+private:
+    static std::vector<std::string_view> with_forces(std::vector<std::string_view> keys) {
+        keys.insert(keys.end(), std::begin(force_keys), std::end(force_keys));
+        return keys;
+    }
+
+    // One set of names for all, so that a message or a report means one thing.
+    std::string read_name(const JsonNode& node) {
+        const JsonNode name = node.require("name");
+        std::string out = name.string().value_or("");
+        if (!name.is_string()) return out;
+        if (out.empty())
+            name.fail(ErrorCode::out_of_range, "a name is not empty");
+        else if (!names_.insert(out).second)
+            name.fail(ErrorCode::inconsistent, name.shown() + " is the name of another joint, spring, damper, motor or load already");
+        return out;
+    }
+
+    std::string read_choice(const JsonNode& node, const std::vector<std::string>& names, const std::string& what) {
+        std::vector<std::string_view> allowed(names.begin(), names.end());
+        if (allowed.empty() && node.exists()) {
+            node.fail(ErrorCode::inconsistent, "no " + what + " is called " + node.shown() + ": this scene has none");
+            return {};
+        }
+        return node.choice(allowed).value_or("");
+    }
+
+    kinematics::Pose pose_of(const std::string& body) const {
+        for (const Body& b : bodies_)
+            if (b.name == body) return b.pose;
+        return {};
+    }
+
+    // `a` (absent: the world) and `b`; where each end is: in its own frame, or where the other is at the start, or both at a place of the
+    // world.
+    void read_ends(const JsonNode& node, bool with_axis, Attachment& a, Attachment& b) {
+        if (node["a"].exists()) a.body = read_choice(node["a"], body_names_, "body");
+        if (node["b"].exists()) b.body = read_choice(node["b"], body_names_, "body");
+        if (!node["a"].exists() && !node["b"].exists())
+            node.fail(ErrorCode::missing_key, "`a` and `b` are wanted, bodies; or one of them, for the world");
+        if (a.body == b.body && !a.body.empty()) node["b"].fail(ErrorCode::inconsistent, "`a` and `b` are the same body");
+        const kinematics::Pose pose_a = pose_of(a.body), pose_b = pose_of(b.body);
+        const auto place = [&](const JsonNode& from) { return from.length3(unit_); };
+        const auto direction = [&](const JsonNode& from) {
+            const auto v = from.vector3();
+            if (v && !(v->norm() > 0)) from.fail(ErrorCode::out_of_range, "an axis needs a length greater than 0");
+            return v;
+        };
+        const auto to_world = [](const kinematics::Pose& pose, const Vector3& x, double w) {
+            return Vector3(pose.rotation * x + w * pose.position);
+        };
+        const auto from_world = [](const kinematics::Pose& pose, const Vector3& x, double w) {
+            return Vector3(pose.rotation.transpose() * (x - w * pose.position));
+        };
+        const auto read_pair = [&](const std::string& key, double w, const auto& read, Vector3& at_a, Vector3& at_b) {
+            const auto both = read(node[key]), own_a = read(node[key + "_a"]), own_b = read(node[key + "_b"]);
+            if (node[key].exists() && (node[key + "_a"].exists() || node[key + "_b"].exists()))
+                node.fail(ErrorCode::inconsistent,
+                          "either `" + key + "`, in the world at the start, or `" + key + "_a` and `" + key + "_b`, in the bodies' frames");
+            if (!both && !own_a && !own_b) {
+                if (!node[key].exists() && !node[key + "_a"].exists() && !node[key + "_b"].exists())
+                    node.fail(ErrorCode::missing_key, "`" + key + "` is wanted, in the world at the start; or `" + key + "_a` and `" + key +
+                                                          "_b`, in the bodies' frames");
+                return;
+            }
+            const Vector3 world = both ? *both : own_a ? to_world(pose_a, *own_a, w) : to_world(pose_b, *own_b, w);
+            at_a = own_a ? *own_a : from_world(pose_a, world, w);
+            at_b = own_b ? *own_b : from_world(pose_b, world, w);
+        };
+        read_pair("point", 1, place, a.point, b.point);
+        if (with_axis) read_pair("axis", 0, direction, a.axis, b.axis);
+    }
+
+    CoordinateForces read_forces(const JsonNode& node, const CoordinateUnit& unit) {
+        CoordinateForces out;
+        out.stiffness = node["stiffness"].number(files::not_negative).value_or(0);
+        out.rest = unit.read(node["rest"]);
+        out.preload = node["preload"].number().value_or(0);
+        out.damping = node["damping"].number(files::not_negative).value_or(0);
+        out.friction = node["friction"].number(files::not_negative).value_or(0);
+        for (const char* key : {"rest", "preload"})
+            if (node[key].exists() && !(out.stiffness > 0))
+                node[key].fail(ErrorCode::inconsistent,
+                               std::string("`") + key + "` is of a spring: a `stiffness` greater than 0 is wanted");
+        if (out.rest && node["preload"].exists())
+            node["preload"].fail(ErrorCode::inconsistent, "either `rest` or `preload`: one follows from the other");
+        const JsonNode limits = node["limits"];
+        if (!limits.exists()) return out;
+        const std::vector<JsonNode> ends = limits.elements();
+        if (limits.is_array() && ends.size() != 2) limits.fail(ErrorCode::wrong_type, "two numbers are wanted, the least and the greatest");
+        if (ends.size() != 2) return out;
+        const auto low = unit.read(ends[0]), high = unit.read(ends[1]);
+        if (low && high && !(*low < *high)) limits.fail(ErrorCode::out_of_range, "the first limit must be less than the second");
+        if (low && high) out.limits = {*low, *high};
+        return out;
+    }
+
+    void read_joint(const JsonNode& node) {
+        if (!node.is_object()) {
+            node.allow_keys({});
+            return;
+        }
+        Joint joint;
+        joint.where = node.where();
+        joint.name = read_name(node);
+        static const std::vector<std::string_view> kinds{"ball",  "revolute", "prismatic", "cylindrical", "planar",
+                                                         "fixed", "screw",    "gear",      "rack"};
+        const auto kind = node.require("type").choice(kinds);
+        if (!kind) return;
+        joint.kind = static_cast<JointKind>(std::find(kinds.begin(), kinds.end(), *kind) - kinds.begin());
+        if (joint.kind == JointKind::gear || joint.kind == JointKind::rack)
+            read_coupling(node, joint);
+        else
+            read_lower_pair(node, joint);
+        joint_names_.push_back(joint.name);
+        out_.joints.push_back(std::move(joint));
+    }
+
+    static bool has_coordinate(JointKind kind) {
+        return kind == JointKind::revolute || kind == JointKind::screw || kind == JointKind::prismatic || kind == JointKind::cylindrical;
+    }
+
+    CoordinateUnit unit_of(JointKind kind) const { return {kind == JointKind::revolute || kind == JointKind::screw, unit_}; }
+
+    void read_lower_pair(const JsonNode& node, Joint& joint) {
+        std::vector<std::string_view> keys{"name", "type", "a", "b", "point", "point_a", "point_b", "collide"};
+        const bool has_axis = joint.kind != JointKind::ball && joint.kind != JointKind::fixed;
+        if (has_axis) keys.insert(keys.end(), {"axis", "axis_a", "axis_b"});
+        if (joint.kind == JointKind::screw) keys.push_back("pitch");
+        node.allow_keys(has_coordinate(joint.kind) ? with_forces(keys) : keys);
+        read_ends(node, has_axis, joint.a, joint.b);
+        if (!has_axis) joint.b.axis = pose_of(joint.b.body).rotation.transpose() * (pose_of(joint.a.body).rotation * joint.a.axis);
+        if (joint.kind == JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
+        if (has_coordinate(joint.kind)) joint.forces = read_forces(node, unit_of(joint.kind));
+        joint.collide = node["collide"].boolean().value_or(false);
+    }
+
+    void read_coupling(const JsonNode& node, Joint& joint) {
+        const bool gear = joint.kind == JointKind::gear;
+        node.allow_keys(gear ? std::vector<std::string_view>{"name", "type", "of", "ratio", "teeth"}
+                             : std::vector<std::string_view>{"name", "type", "of", "radius"});
+        const std::vector<JsonNode> of = node.require("of").elements();
+        if (of.size() == 2)
+            for (std::size_t k = 0; k < 2; ++k) joint.of[k] = read_choice(of[k], joint_names_, "joint before this one");
+        else if (node["of"].is_array())
+            node["of"].fail(ErrorCode::wrong_type, "the names of two joints are wanted");
+        if (!gear) {
+            joint.ratio = node.require("radius").length(unit_).value_or(1);
+        } else if (node["teeth"].exists()) {
+            read_teeth(node, joint);
+        } else {
+            joint.ratio = node.require("ratio").number().value_or(1);
+        }
+        if (joint.ratio == 0) node.fail(ErrorCode::out_of_range, gear ? "the ratio must not be 0" : "the radius must not be 0");
+    }
+
+    // N_a angle_a + N_b angle_b = constant.
+    static void read_teeth(const JsonNode& node, Joint& joint) {
+        if (node["ratio"].exists()) node["ratio"].fail(ErrorCode::inconsistent, "either `teeth` or `ratio`, not both");
+        const auto teeth = node["teeth"].numbers().value_or(std::vector<double>{});
+        if (teeth.size() != 2 || teeth[0] == 0 || teeth[1] == 0)
+            node["teeth"].fail(ErrorCode::out_of_range, "two numbers of teeth are wanted, not 0; negative of a gear with teeth inside");
+        else
+            joint.ratio = -teeth[0] / teeth[1];
+    }
+
+    const Joint* find_joint(const std::string& name) const {
+        for (const Joint& joint : out_.joints)
+            if (joint.name == name) return &joint;
+        return nullptr;
+    }
+
+    // Of a joint by name; a length where there is none.
+    CoordinateUnit unit_at(const std::string& joint) const {
+        const Joint* found = find_joint(joint);
+        return found ? unit_of(found->kind) : CoordinateUnit{false, unit_};
+    }
+
+    void read_spring(const JsonNode& node, bool is_spring) {
+        Spring spring;
+        spring.where = node.where();
+        std::vector<std::string_view> keys{"name", "joint", "a", "b", "point", "point_a", "point_b", "damping"};
+        node.allow_keys(is_spring ? with_forces(keys) : keys);
+        if (!node.is_object()) return;
+        spring.name = read_name(node);
+        if (node["joint"].exists()) {
+            spring.joint = read_choice(node["joint"], joint_names_, "joint");
+            for (const char* key : {"a", "b", "point", "point_a", "point_b"})
+                if (node[key].exists())
+                    node[key].fail(ErrorCode::inconsistent,
+                                   std::string("either `joint` or `") + key + "`: a spring acts on a joint, or between two points");
+        } else {
+            read_ends(node, false, spring.a, spring.b);
+        }
+        spring.forces = read_forces(node, unit_at(spring.joint));
+        if (is_spring && !(spring.forces.stiffness > 0) && !spring.forces.limits) node.require("stiffness");
+        if (!is_spring) node.require("damping");
+        out_.springs.push_back(std::move(spring));
+    }
+
+    Curve read_curve(const JsonNode& node, const auto& amount) const {
+        Curve curve;
+        if (!node.is_object()) {
+            curve.times = {0};
+            curve.values = {amount(node).value_or(0)};
+            return curve;
+        }
+        node.allow_keys({"rate", "times", "values", "stop_time", "profile"});
+        static const std::vector<std::string_view> kinds{"linear", "cubic", "trapezoid", "control_points"};
+        const std::string kind = node["profile"].choice(kinds).value_or("linear");
+        curve.kind = static_cast<CurveKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+        curve.rate = amount(node["rate"]).value_or(0);
+        curve.stop_time = node["stop_time"].number(files::not_negative);
+        curve.times = node["times"].numbers().value_or(std::vector<double>{});
+        for (const JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value).value_or(0));
+        const bool spline = curve.kind == CurveKind::control_points;
+        if (spline && (curve.times.size() != 2 || curve.values.size() < 4))
+            node.fail(ErrorCode::inconsistent, "`control_points` take two `times`, the first and the last, and at least 4 `values`");
+        else if (!spline && curve.times.size() != curve.values.size())
+            node.fail(ErrorCode::inconsistent, std::to_string(curve.times.size()) + " `times` for " + std::to_string(curve.values.size()) +
+                                                   " `values`; one value for each time is wanted");
+        for (std::size_t i = 1; i < curve.times.size(); ++i)
+            if (!(curve.times[i] > curve.times[i - 1]))
+                node["times"].elements()[i].fail(ErrorCode::out_of_range, "times must increase from entry to entry");
+        return curve;
+    }
+
+    void read_motor(const JsonNode& node) {
+        node.allow_keys({"name", "joint", "angle", "travel", "speed", "torque", "force"});
+        if (!node.is_object()) return;
+        Motor motor;
+        motor.where = node.where();
+        motor.name = read_name(node);
+        motor.joint = read_choice(node.require("joint"), joint_names_, "joint");
+        const CoordinateUnit unit = unit_at(motor.joint);
+        const auto amount = [&](const JsonNode& n) { return unit.read(n); };
+        const auto effort = [&](const JsonNode& n) { return n.number(); };
+        const char *motion = unit.is_angle ? "angle" : "travel", *push = unit.is_angle ? "torque" : "force";
+        int given = 0;
+        for (const char* key : {"angle", "travel", "speed", "torque", "force"}) given += node[key].exists() ? 1 : 0;
+        const bool fits = node[motion].exists() || node["speed"].exists() || node[push].exists();
+        if (given != 1 || !fits) {
+            node.fail(ErrorCode::inconsistent,
+                      std::string("one of `") + motion + "`, `speed` and `" + push + "` is wanted for `" + motor.joint + "`");
+            return;
+        }
+        if (node[motion].exists()) motor.curve = read_curve(node[motion], amount);
+        if (node["speed"].exists()) motor.curve.rate = unit.read(node["speed"]).value_or(0);
+        if (node[push].exists()) {
+            motor.kind = MotorKind::effort;
+            motor.curve = read_curve(node[push], effort);
+        }
+        out_.motors.push_back(std::move(motor));
+    }
+
+    void read_load(const JsonNode& node) {
+        node.allow_keys({"name", "body", "point", "force"});
+        if (!node.is_object()) return;
+        PointLoad load;
+        load.where = node.where();
+        load.name = read_name(node);
+        load.body = read_choice(node.require("body"), body_names_, "body");
+        load.point = node.require("point").length3(unit_).value_or(Vector3::Zero());
+        load.force = node.require("force").vector3().value_or(Vector3::Zero());
+        out_.loads.push_back(std::move(load));
+    }
+
+    double unit_;
+    const std::vector<Body>& bodies_;
+    std::vector<std::string> body_names_, joint_names_;
+    std::set<std::string> names_;
+    Mechanism out_;
+};
+
+}  // namespace
+
+Mechanism read_mechanism(const JsonNode& root, double unit, const std::vector<Body>& bodies) {
+    return MechanismReader(unit, bodies).read(root);
+}
+
+}  // namespace fettle::core::scene

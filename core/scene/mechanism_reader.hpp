@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// `joints`, `springs`, `dampers`, `motors` and `loads` of our own scene files. Keys: scene.schema.json. Faults go to the document; values
+/// read after a fault are never used.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/scene/scene.hpp"
+
+namespace fettle::core::scene {
+
+/// @param root    of the file.
+/// @param unit    of lengths [m].
+/// @param bodies  already read: where they are at the start.
+Mechanism read_mechanism(const files::JsonNode& root, double unit, const std::vector<Body>& bodies);
+
+}  // namespace fettle::core::scene

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/stepper/joint_outputs.hpp"
+
+#include <algorithm>
+
+namespace fettle::core::stepper {
+namespace {
+
+using model::Joint;
+using model::Mechanism;
+
+// B1 of docs/method.md section 7, of a point fixed in the body.
+double deviation(const kinematics::Pose& base, const kinematics::ChartPoint& from, const kinematics::ChartPoint& to, const Vector3& X) {
+    const Vector3 w = to.rotation_vector - from.rotation_vector, Y = base.rotation * X;
+    const double bound = w.cross(Y).norm() + from.rotation_vector.cross(w).norm() * Y.norm() / 3;
+    return w.norm() * std::min(bound, w.norm() * Y.norm()) / 8;
+}
+
+}  // namespace
+
+std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const std::vector<kinematics::Pose>& poses,
+                                     const VectorX& multipliers) {
+    const Mechanism& mechanism = problem.model->mechanism;
+    std::vector<JointForce> out(mechanism.joints.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].joint = static_cast<int>(i);
+    if (multipliers.size() != static_cast<Eigen::Index>(mechanism.rows.size())) return out;
+    const std::vector<measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
+    const constraint::RowJacobian rows = row_jacobian(mechanism.set, mechanism.rows, frames);
+    for (int i = 0; i < rows.count(); ++i) {
+        const int owner = mechanism.rows[static_cast<std::size_t>(i)].owner;
+        const Joint& joint = mechanism.joints[static_cast<std::size_t>(owner)];
+        JointForce& acting = out[static_cast<std::size_t>(owner)];
+        const double force = -multipliers[i] / problem.weight;
+        if (joint.is_motor) acting.effort += force;
+        const int body = joint.b != measure::world ? joint.b : joint.a;
+        for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) {
+            const constraint::RowGradient& e = rows.entries[static_cast<std::size_t>(k)];
+            if (e.body != body || joint.frame_b < 0) continue;
+            const Vector3 f = force * e.gradient.head<3>();
+            acting.force += f;
+            const measure::PlacedFrame& at = frames[static_cast<std::size_t>(joint.b != measure::world ? joint.frame_b : joint.frame_a)];
+            acting.torque += force * e.gradient.tail<3>() - at.arm.cross(f);
+        }
+    }
+    return out;
+}
+
+double path_gap_bound(const model::Model& model, const std::vector<kinematics::Pose>& poses_t0, const TrajectoryStep& path) {
+    double most = 0;
+    for (const Joint& joint : model.mechanism.joints) {
+        if (joint.frame_a < 0 || joint.is_motor) continue;
+        for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
+            double gap = 0;
+            for (const int f : {joint.frame_a, joint.frame_b}) {
+                const measure::Frame& frame = model.mechanism.set.frames[static_cast<std::size_t>(f)];
+                if (frame.body == measure::world) continue;
+                const auto body = static_cast<std::size_t>(frame.body);
+                gap += deviation(poses_t0[body], path.nodes[k][body], path.nodes[k + 1][body], frame.point);
+            }
+            most = std::max(most, gap);
+        }
+    }
+    return most;
+}
+
+}  // namespace fettle::core::stepper

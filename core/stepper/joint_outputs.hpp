@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// What joints and motors carried in a step, and how well they hold along its path. docs/method.md section 9.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/energy/step_problem.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::core::stepper {
+
+/// Of one joint, motor or gear (model::Mechanism::joints, by number).
+struct JointForce {
+    int joint = 0;
+    Vector3 force = Vector3::Zero();   ///< on body b (of a joint with the world alone: on that body), world [N]
+    Vector3 torque = Vector3::Zero();  ///< on it, about the joint's point in b [N m]
+    double effort = 0;  ///< of a motor: along its joint's coordinate, so that effort times speed is its power [N], [N m]; 0 of others
+};
+
+/// @param poses        at the step's end.
+/// @param multipliers  per row, of the potential times its weight.
+std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const std::vector<kinematics::Pose>& poses,
+                                     const VectorX& multipliers);
+
+/// Bound on how far a joint's two points part (or leave the line or plane that they are to keep to) between the nodes of a step's path: the
+/// deviations B1 of both points from their chords (docs/method.md section 7), the largest over the path's segments and the joints that
+/// hold a point [m].
+double path_gap_bound(const model::Model& model, const std::vector<kinematics::Pose>& poses_t0, const TrajectoryStep& path);
+
+}  // namespace fettle::core::stepper
