@@ -16,8 +16,8 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double delta_share = 1e-13;  // of a row's pivot by itself
-constexpr int most_refinements = 4;
-constexpr double refined_enough = 1e-15;
+constexpr int most_refinements = 6;
+constexpr double refined_enough = 1e-15;  // of what rounding is measured by
 
 // What decides which entries the matrix has.
 struct Pattern {
@@ -65,10 +65,15 @@ struct SaddleSolver::Implementation {
     Sparse matrix;                      // upper triangle, permuted
     std::vector<std::size_t> position;  // of each visited entry in the matrix
     std::vector<int> place;             // of each unknown: its column
+    std::vector<bool> is_row;           // of each column: a multiplier's?
     VectorX delta;                      // per row
     VectorX own_pivot;                  // per row: sum_k C_k^2 / H_kk
-    VectorX scale;                      // a residual r counts as scale r: 1 / sqrt(diagonal)
-    Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>> factor;
+    using Factor = Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>>;
+    Factor factor;
+    bool is_augmented = false;  // then the factor in use is that of H + C^T weights C, which is definite where H is so on the rows only
+    Factor augmented_factor;
+    Sparse gradients;  // C, its columns in the matrix's order
+    VectorX weights;   // per row
 
     // Calls entry(unknown, unknown, value) once for each entry of one triangle, in a fixed order.
     template <class Entry>
@@ -98,6 +103,7 @@ struct SaddleSolver::Implementation {
         // Rows after the last of their bodies of which anything is free; those of none are first.
         std::vector<std::vector<int>> after(index.size());
         place.assign(static_cast<std::size_t>(count + rows), -1);
+        is_row.assign(static_cast<std::size_t>(count + rows), false);
         int next = 0;
         for (int row = 0; row < rows; ++row) {
             int last = -1;
@@ -113,6 +119,7 @@ struct SaddleSolver::Implementation {
                 if (unknown >= 0) place[static_cast<std::size_t>(unknown)] = next++;
             for (const int row : after[k]) place[static_cast<std::size_t>(count + row)] = next++;
         }
+        for (int row = 0; row < rows; ++row) is_row[static_cast<std::size_t>(place[static_cast<std::size_t>(count + row)])] = true;
     }
 
     void analyse(const kinematics::BlockHessian& hessian, const RowJacobian& jacobian) {
@@ -152,13 +159,48 @@ struct SaddleSolver::Implementation {
         delta = (delta_share * own_pivot).cwiseMax(delta_share * delta_share * (largest > 0 ? largest : 1));
     }
 
-    void measure_unknowns(const kinematics::BlockHessian& hessian) {
-        const auto inverse_root = [](double x) { return x != 0 ? 1 / std::sqrt(std::abs(x)) : 1; };
-        scale.resize(count + rows);
-        for (std::size_t body = 0; body < index.size(); ++body)
-            for (int i = 0; i < 6; ++i)
-                if (index[body][i] >= 0) scale[place[index[body][i]]] = inverse_root(hessian.diagonal[body](i, i));
-        for (int i = 0; i < rows; ++i) scale[place[count + i]] = inverse_root(own_pivot[i]);
+    const Factor& factor_in_use() const { return is_augmented ? augmented_factor : factor; }
+
+    // Without pivoting, an H that is indefinite across the rows would spoil the factor.
+    void augment(const RowJacobian& jacobian) {
+        constexpr double share = 10;  // of what a row weighs against the diagonal of H
+        std::vector<Eigen::Triplet<double>> entries;
+        for (int row = 0; row < rows; ++row)
+            for (int k = jacobian.first[row]; k < jacobian.first[row + 1]; ++k)
+                for (int i = 0; i < 6; ++i) {
+                    const int unknown = index[jacobian.entries[k].body][i];
+                    if (unknown >= 0) entries.emplace_back(row, place[unknown], jacobian.entries[k].gradient[i]);
+                }
+        gradients.resize(rows, count + rows);
+        gradients.setFromTriplets(entries.begin(), entries.end());
+        weights = share * own_pivot.cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
+        const Sparse squares = gradients.transpose() * weights.asDiagonal() * gradients;
+        const Sparse augmented = matrix + Sparse(squares.triangularView<Eigen::Upper>());
+        augmented_factor.compute(augmented);
+        is_augmented = true;
+    }
+
+    // Of the right-hand side in the matrix's order: the same solution with either factor.
+    VectorX through_factor(VectorX rhs) const {
+        if (!is_augmented) return factor.solve(rhs);
+        VectorX c(rows);
+        for (int i = 0; i < rows; ++i) c[i] = weights[i] * rhs[place[count + i]];
+        rhs += gradients.transpose() * c;
+        return augmented_factor.solve(rhs);
+    }
+
+    bool matrix_is_finite() const { return Eigen::Map<const VectorX>(matrix.valuePtr(), matrix.nonZeros()).allFinite(); }
+
+    static bool is_sound(const Factor& f) { return f.info() == Eigen::Success && f.vectorD().allFinite(); }
+
+    // Every degree of freedom's pivot positive, every row's negative: H is definite as it is.
+    bool is_quasi_definite() const {
+        const VectorX pivots = factor.vectorD();
+        for (int i = 0; i < count; ++i)
+            if (!(pivots[place[i]] > 0)) return false;
+        for (int i = 0; i < rows; ++i)
+            if (!(pivots[place[count + i]] < 0)) return false;
+        return true;
     }
 
     VectorX permuted(const VectorX& r, const VectorX& c) const {
@@ -175,10 +217,39 @@ struct SaddleSolver::Implementation {
         return out;
     }
 
-    // Without delta.
-    VectorX times_matrix(const VectorX& x) const {
-        VectorX out = matrix.selfadjointView<Eigen::Upper>() * x;
-        for (int i = 0; i < rows; ++i) out[place[count + i]] += delta[i] * x[place[count + i]];
+    // b - A x without delta, and |b| + |A| |x|, which rounding is measured by: of forces and of rows each for themselves, for one may be
+    // far smaller than the other.
+    struct Residual {
+        VectorX value;
+        std::array<double, 2> largest{0, 0}, magnitude{0, 0};
+        double relative() const {
+            double most = 0;
+            for (int k = 0; k < 2; ++k) most = std::max(most, largest[k] > 0 ? largest[k] / magnitude[k] : 0.0);
+            return most;
+        }
+        bool is_half_of(const Residual& before) const {
+            return largest[0] < 0.5 * before.largest[0] || largest[1] < 0.5 * before.largest[1];
+        }
+    };
+    Residual residual(const VectorX& b, const VectorX& x) const {
+        Residual out{b};
+        VectorX magnitude = b.cwiseAbs();
+        for (int j = 0; j < matrix.outerSize(); ++j)
+            for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
+                const auto i = entry.row();
+                if (i == j && is_row[static_cast<std::size_t>(i)]) continue;
+                const double forth = entry.value() * x[j], back = entry.value() * x[i];
+                out.value[i] -= forth;
+                magnitude[i] += std::abs(forth);
+                if (i == j) continue;
+                out.value[j] -= back;
+                magnitude[j] += std::abs(back);
+            }
+        for (Eigen::Index i = 0; i < b.size(); ++i) {
+            const int kind = is_row[static_cast<std::size_t>(i)] ? 1 : 0;
+            out.largest[kind] = std::max(out.largest[kind], std::abs(out.value[i]));
+            out.magnitude[kind] = std::max(out.magnitude[kind], magnitude[i]);
+        }
         return out;
     }
 };
@@ -200,16 +271,15 @@ bool SaddleSolver::factorise(const kinematics::BlockHessian& hessian, const RowJ
     std::fill(values, values + self.matrix.nonZeros(), 0.0);
     std::size_t k = 0;
     self.for_each_entry(hessian, rows, [&](int, int, double value) { values[self.position[k++]] += value; });
-    self.measure_unknowns(hessian);
     self.factor.factorize(self.matrix);
-    self.usable = self.factor.info() == Eigen::Success && self.factor.vectorD().allFinite();
-    if (!self.usable) return false;
-    const VectorX pivots = self.factor.vectorD();
-    for (int i = 0; i < self.count; ++i)
-        if (!(pivots[self.place[i]] > 0)) return false;
-    for (int i = 0; i < self.rows; ++i)
-        if (!(pivots[self.place[self.count + i]] < 0)) return false;
-    return true;
+    self.is_augmented = false;
+    self.usable = Implementation::is_sound(self.factor);
+    if (self.usable && self.is_quasi_definite()) return true;
+    if (!self.matrix_is_finite()) return self.usable = false;
+    self.augment(rows);
+    self.usable = Implementation::is_sound(self.augmented_factor);
+    // As many positive pivots as degrees of freedom: H is definite on the rows (Sylvester).
+    return self.usable && (self.augmented_factor.vectorD().array() > 0).count() == self.count;
 }
 
 bool SaddleSolver::is_usable() const { return implementation_->usable; }
@@ -217,34 +287,30 @@ bool SaddleSolver::is_usable() const { return implementation_->usable; }
 SaddleSolver::Solution SaddleSolver::solve_roughly(const VectorX& r, const VectorX& c) const {
     const Implementation& self = *implementation_;
     FETTLE_ASSERT(self.usable, "solve without a factorisation");
-    return self.split(self.factor.solve(self.permuted(r, c)));
+    return self.split(self.through_factor(self.permuted(r, c)));
 }
 
 SaddleSolver::Solution SaddleSolver::solve(const VectorX& r, const VectorX& c) const {
     const Implementation& self = *implementation_;
     FETTLE_ASSERT(self.usable, "solve without a factorisation");
     const VectorX rhs = self.permuted(r, c);
-    const double size = rhs.cwiseProduct(self.scale).norm();
-    VectorX x = self.factor.solve(rhs), best = x;
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0;; ++k) {
-        const VectorX residual = rhs - self.times_matrix(x);
-        const double error = size > 0 ? residual.cwiseProduct(self.scale).norm() / size : 0;
-        if (!(error < least)) break;
-        const bool gaining = error < 0.5 * least;
-        least = error;
-        best = x;
-        if (k == most_refinements || error <= refined_enough || !gaining) break;
-        x += self.factor.solve(residual);
+    VectorX x = self.through_factor(rhs);
+    Implementation::Residual residual = self.residual(rhs, x);
+    for (int k = 0; k < most_refinements && residual.relative() > refined_enough; ++k) {
+        const VectorX refined = x + self.through_factor(residual.value);
+        Implementation::Residual left = self.residual(rhs, refined);
+        if (!left.is_half_of(residual)) break;
+        x = refined;
+        residual = std::move(left);
     }
-    Solution out = self.split(best);
-    out.error = least;
+    Solution out = self.split(x);
+    out.error = residual.relative();
     return out;
 }
 
 VectorX SaddleSolver::relative_pivots() const {
     const Implementation& self = *implementation_;
-    const VectorX pivots = self.factor.vectorD();
+    const VectorX pivots = self.factor_in_use().vectorD();
     VectorX out(self.rows);
     for (int i = 0; i < self.rows; ++i)
         out[i] = self.own_pivot[i] > 0 ? std::abs(pivots[self.place[self.count + i]]) / self.own_pivot[i] : 0;

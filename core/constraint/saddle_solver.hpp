@@ -32,7 +32,7 @@ public:
     struct Solution {
         VectorX y;            ///< over the free degrees of freedom
         VectorX multipliers;  ///< per row
-        double error = 0;     ///< |residual| / |right-hand side|, each unknown scaled by its diagonal
+        double error = 0;     ///< largest |residual| over the sum of the magnitudes that it is the difference of
     };
     /// Refined.
     Solution solve(const VectorX& r, const VectorX& c) const;

@@ -242,10 +242,14 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     direction.drive = direction.remaining_norm > 0 ? drive : 1;
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
-    measure_step(d, model, dofs, direction);
     add_row_forces(model, workspace, d);
+    measure_step(d, model, dofs, direction);
     direction.residual = residual_of(d, model, dofs);
     direction.rounding = rounding_of(d, model, at.points);
+    if (workspace.rows) {
+        direction.slope -= workspace.rows->work_of_unmet(direction.drive);
+        direction.rounding += workspace.rows->work_of_rounding();
+    }
     if (hessian.shift) direction.inertia = inertia_along(problem, at, direction.step);
     if (!std::isfinite(direction.residual + direction.rounding + direction.slope + direction.motion)) return std::nullopt;
     return direction;

@@ -42,6 +42,11 @@ public:
     /// gradient units per metre.
     std::vector<double> add_forces(const model::Model& model, std::vector<Vector6>& gradient) const;
 
+    /// multipliers . (drive unmet): what a step that takes this share of the rows costs the potential, beside the Lagrangian's slope.
+    double work_of_unmet(double drive) const { return drive * multipliers_.dot(unmet_); }
+    /// What the potential may be wrong by, as rows are met to rounding only.
+    double work_of_rounding() const { return multipliers_.cwiseAbs().dot((remaining_ - unmet_).cwiseAbs()); }
+
     /// Moves the free coordinates of `points` to where each row has `share` left of what was unmet where it was linearised last, by solves
     /// with the last factor. @return false: too far for that.
     bool put_on_rows(const energy::StepProblem& problem, const FreeDofs& dofs, double share,

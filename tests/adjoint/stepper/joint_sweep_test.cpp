@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Joints, springs, motors backwards and forwards: the two sweeps against each other, and against central differences of simulations.
+#include <catch2/catch.hpp>
+
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+#include "fettle/tests/core/stepper/mechanism_models.hpp"
+
+namespace fettle::adjoint::stepper::joint_sweep_test {
+
+using namespace fettle::tests::adjoint;
+using namespace fettle::tests::mechanisms;
+using core::scene::Integrator;
+using core::scene::JointKind;
+
+namespace {
+
+const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
+
+core::scene::Curve values(core::scene::CurveKind kind, std::vector<double> times, std::vector<double> at) {
+    core::scene::Curve curve;
+    curve.kind = kind;
+    curve.times = std::move(times);
+    curve.values = std::move(at);
+    return curve;
+}
+
+SweepScene sweep(const std::string& name, const core::scene::Scene& scene, int steps) { return {name, built(scene), steps}; }
+
+// Two links, a hinge with everything that acts on one, a ball joint, a spring across, a load, a torque.
+SweepScene arm() {
+    core::scene::Scene scene = scene_of({bar("upper", 0.3), bar("lower", 0.25, Vector3(0.3, 0, 0), Vector3(0, 0.3, 0.4))}, 0.01);
+    scene.gravity = Vector3(0, 0.4, -9.81);
+    scene.bodies[1].angular_velocity = Vector3(1, 2, 3);
+    core::scene::Joint hinge = joint("hinge", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis});
+    hinge.forces = {3, 0.2, 0, 0.05, 0.03, std::array<double, 2>{-1.0, 0.004}};  // the stop acts from the start
+    scene.dhat = 2e-3;
+    scene.mechanism.joints = {hinge,
+                              joint("ball", JointKind::ball, {"upper", Vector3(0.3, 0, 0), z_axis}, {"lower", Vector3::Zero(), z_axis})};
+    core::scene::Spring across;
+    across.name = "across";
+    across.a = {"", Vector3(0.1, 0.2, 0.4), z_axis};
+    across.b = {"lower", Vector3(0.2, 0, 0), z_axis};
+    across.forces.stiffness = 40;
+    across.forces.rest = 0.2;
+    across.forces.damping = 0.6;
+    scene.mechanism.springs = {across};
+    scene.mechanism.loads = {{"load", "", "lower", Vector3(0.25, 0, 0), Vector3(1, -2, 0.5)}};
+    core::scene::Motor torque =
+        motor("torque", "hinge", values(core::scene::CurveKind::control_points, {0, 0.2}, {0.1, -0.4, 0.7, 0.2, -0.3}));
+    torque.kind = core::scene::MotorKind::effort;
+    scene.mechanism.motors = {torque};
+    return sweep("arm", scene, 12);
+}
+
+// A spatial four-bar: hinge, two balls, hinge; its crank driven by a curve.
+SweepScene spatial_four_bar() {
+    const Vector3 a(0.1, 0, 0), b(0.35, 0.2, 0.05), o(0.35, -0.05, 0.05);
+    core::scene::Scene scene =
+        scene_of({bar("crank", 0.1), bar("coupler", 0.33, a, Vector3(0, -0.15, 0.68)), bar("rocker", 0.25, o, Vector3(0, 0, 1.57))}, 0.01);
+    scene.gravity = Vector3(0.3, -9.81, 0.2);
+    const double coupler = (b - a).norm();
+    scene.mechanism.joints = {
+        joint("O", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
+        joint("A", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"coupler", Vector3::Zero(), z_axis}),
+        joint("B", JointKind::ball, {"coupler", Vector3(coupler, 0, 0), z_axis}, {"rocker", Vector3(0.25, 0, 0), z_axis}),
+        joint("C", JointKind::revolute, {"", o, Vector3(0.1, 0, 1)}, {"rocker", Vector3::Zero(), Vector3(0.1, 0, 1)})};
+    scene.mechanism.motors = {motor("drive", "O", values(core::scene::CurveKind::cubic, {0, 0.1, 0.2}, {0, 0.9, 2.2}))};
+    return sweep("spatial four-bar", scene, 15);
+}
+
+// Crank, rod between balls, slider; quasi-static, with a load and a spring.
+SweepScene slider_crank() {
+    const double start = 0.4, tilt = std::asin(0.1 * std::sin(start) / 0.3);
+    const Vector3 pin(0.1 * std::cos(start), 0.1 * std::sin(start), 0), wrist(pin.x() + 0.3 * std::cos(tilt), 0, 0);
+    core::scene::Scene scene = scene_of(
+        {bar("crank", 0.1, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", 0.3, pin, Vector3(0, 0, -tilt)), bar("slider", 0.05, wrist)},
+        0.02);
+    scene.integrator = Integrator::quasi_static;
+    scene.gravity = Vector3(0, -9.81, 0);
+    scene.mechanism.joints = {
+        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
+        joint("pin", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
+        joint("wrist", JointKind::cylindrical, {"rod", Vector3(0.3, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
+        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
+    core::scene::Spring back;
+    back.name = "back";
+    back.joint = "guide";
+    back.forces.stiffness = 500;
+    back.forces.rest = 0.03;
+    back.forces.friction = 0.4;
+    scene.mechanism.springs = {back};
+    scene.mechanism.loads = {{"push", "", "slider", Vector3(0.02, 0.01, 0), Vector3(-12, 1, 0.3)}};
+    scene.mechanism.motors = {motor("drive", "main", values(core::scene::CurveKind::trapezoid, {0, 0.2}, {0, 1.9}))};
+    scene.mechanism.motors[0].curve.rate = 0.7;
+    return sweep("slider-crank", scene, 9);
+}
+
+// Gears, rack, screw, prismatic and planar joints; one of the wheels is on a body that is driven about the world.
+SweepScene wheels() {
+    core::scene::Scene scene =
+        scene_of({bar("carrier", 0.4), bar("first", 0.1, Vector3(0.05, 0, 0.05)), bar("second", 0.1, Vector3(0.3, 0, 0.05)),
+                  bar("rack", 0.1, Vector3(0, 0.2, 0)), bar("nut", 0.1, Vector3(0, 0, 0.3)), bar("puck", 0.1, Vector3(0.1, 0.1, 0.3))},
+                 0.01);
+    scene.bodies[0].type = core::scene::BodyType::kinematic_body;
+    for (auto& dof : scene.bodies[0].prescribed) dof = core::scene::MotionCurve{};
+    scene.bodies[0].prescribed[5]->rate = 3;
+    scene.bodies[0].prescribed[0]->rate = 0.2;
+    scene.gravity = Vector3(1, 0, -9.81);
+    scene.mechanism.joints = {
+        joint("one", JointKind::revolute, {"carrier", Vector3(0.05, 0, 0.05), z_axis}, {"first", Vector3::Zero(), z_axis}),
+        joint("two", JointKind::revolute, {"carrier", Vector3(0.3, 0, 0.05), z_axis}, {"second", Vector3::Zero(), z_axis}),
+        joint("slide", JointKind::prismatic, {"", Vector3(0, 0.2, 0), x_axis}, {"rack", Vector3::Zero(), x_axis}),
+        joint("thread", JointKind::screw, {"", Vector3(0, 0, 0.3), x_axis}, {"nut", Vector3::Zero(), x_axis}),
+        joint("table", JointKind::planar, {"nut", Vector3(0, 0, 0), z_axis}, {"puck", Vector3(-0.1, -0.1, 0), z_axis})};
+    scene.mechanism.joints[3].pitch = 0.05;
+    for (const auto& [name, kind, first, second, ratio] :
+         {std::tuple("gear", JointKind::gear, "one", "two", -0.6), std::tuple("pinion", JointKind::rack, "one", "slide", 0.03)}) {
+        core::scene::Joint coupling = joint(name, kind, {}, {});
+        coupling.of = {first, second};
+        coupling.ratio = ratio;
+        scene.mechanism.joints.push_back(coupling);
+    }
+    scene.mechanism.joints[1].forces.damping = 0.01;
+    return sweep("wheels", scene, 10);
+}
+
+// A hinged bar falls on a block that lies on the plate.
+SweepScene hinged_contact() {
+    core::scene::Scene scene =
+        scene_of({bar("bar", 0.3, Vector3(0, 0, 0.08)), bar("block", 0.08, Vector3(0.2, 0.02, 0.036), Vector3(0, 0, 0.6)),
+                  bar("floor", 1, Vector3(-0.5, 0, -0.5), Vector3::Zero(), 0.5)},
+                 0.005);
+    for (core::scene::Body& body : scene.bodies) body.group = -1;
+    scene.bodies[1].mesh = fettle::tests::support::box_mesh(Vector3(-0.04, -0.04, -0.03), Vector3(0.04, 0.04, 0.03));
+    scene.bodies[2].type = core::scene::BodyType::static_body;
+    scene.gravity = Vector3(0, 0.1, -9.81);
+    scene.dhat = 0.01;
+    scene.mechanism.joints = {joint("hinge", JointKind::revolute, {"", Vector3(0, 0, 0.08), y_axis}, {"bar", Vector3::Zero(), y_axis})};
+    return sweep("hinged contact", scene, 20);
+}
+
+std::vector<SweepScene> joint_scenes() { return {arm(), spatial_four_bar(), slider_crank(), wheels(), hinged_contact()}; }
+
+core::stepper::Trajectory trajectory_of(const SweepScene& scene) { return run(scene.model, scene.steps, true).trajectory; }
+
+// A random direction in everything that the mechanism has.
+ModelTangent mechanism_direction(const SweepScene& scene, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    MechanismTangent& m = d.mechanism;
+    for (auto& frame : m.frames) {
+        for (int k = 0; k < 3; ++k) frame.point[k] = 0.02 * unit(random);
+        for (int k = 0; k < 9; ++k) frame.axes.reshaped()[k] = 0.05 * unit(random);
+    }
+    for (std::size_t k = 0; k < m.term_coefficient.size(); ++k) {
+        const core::model::MeasureTerm& term = scene.model.mechanism.terms[k];
+        m.term_coefficient[k] = 0.3 * term.coefficient * unit(random);
+        if (term.kind == core::model::LawKind::spring) m.term_reference[k] = 0.05 * unit(random);
+        if (term.kind == core::model::LawKind::stop) m.term_reference[k] = 1e-3 * unit(random);
+        for (double& v : m.term_values[k]) v = 0.3 * unit(random);
+    }
+    for (std::size_t i = 0; i < m.row_constant.size(); ++i) {
+        m.row_constant[i] = 0.01 * unit(random);
+        for (double& v : m.row_values[i]) v = 0.1 * unit(random);
+    }
+    return d;
+}
+
+core::model::Model with_mechanism(core::model::Model model, const MechanismTangent& d, double s) {
+    core::model::Mechanism& m = model.mechanism;
+    for (std::size_t i = 0; i < m.set.frames.size(); ++i) {
+        m.set.frames[i].point += s * d.frames[i].point;
+        m.set.frames[i].axes += s * d.frames[i].axes;
+    }
+    for (std::size_t k = 0; k < m.terms.size(); ++k) {
+        m.terms[k].coefficient += s * d.term_coefficient[k];
+        m.terms[k].reference += s * d.term_reference[k];
+        for (std::size_t i = 0; i < m.terms[k].curve.values.size(); ++i) m.terms[k].curve.values[i] += s * d.term_values[k][i];
+    }
+    for (std::size_t i = 0; i < m.rows.size(); ++i) {
+        m.rows[i].constant += s * d.row_constant[i];
+        for (std::size_t k = 0; k < m.rows[i].curve.values.size(); ++k) m.rows[i].curve.values[k] += s * d.row_values[i][k];
+    }
+    return model;
+}
+
+double mechanism_pairing(const MechanismGradient& bar, const MechanismTangent& dot) {
+    double sum = 0;
+    for (std::size_t i = 0; i < dot.frames.size(); ++i)
+        sum += bar.frames[i].point.dot(dot.frames[i].point) + bar.frames[i].axes.cwiseProduct(dot.frames[i].axes).sum();
+    for (std::size_t k = 0; k < dot.term_coefficient.size(); ++k) {
+        sum += bar.term_coefficient[k] * dot.term_coefficient[k] + bar.term_reference[k] * dot.term_reference[k];
+        for (std::size_t i = 0; i < dot.term_values[k].size(); ++i) sum += bar.term_values[k][i] * dot.term_values[k][i];
+    }
+    for (std::size_t i = 0; i < dot.row_constant.size(); ++i) {
+        sum += bar.row_constant[i] * dot.row_constant[i];
+        for (std::size_t k = 0; k < dot.row_values[i].size(); ++k) sum += bar.row_values[i][k] * dot.row_values[i][k];
+    }
+    return sum;
+}
+
+// The least relative error over steps of differences.
+template <class At>
+double difference_error(const At& at, double derivative) {
+    double least = INFINITY;
+    for (const double s : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
+        const double difference = (at(s) - at(-s)) / (2 * s), finer = (at(s / 2) - at(-s / 2)) / s;
+        const double extrapolated = (4 * finer - difference) / 3;
+        least = std::min(least, std::abs(extrapolated - derivative) / std::abs(derivative));
+    }
+    return least;
+}
+
+}  // namespace
+
+TEST_CASE("joints, springs and motors: backwards and forwards agree", "[adjoint][joints]") {
+    for (const SweepScene& scene : joint_scenes()) {
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        REQUIRE(scene.model.mechanism.dependent.empty());
+        std::mt19937_64 random(23);
+        const std::vector<TrajectoryGradient> seeds{random_seed(scene, random), random_seed(scene, random)};
+        const auto gradients = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(gradients);
+        constexpr double nothing = 1e-12;  // of what a driven linkage does not hang on: objectives are of size 1
+        const auto compare = [&](const ModelTangent& direction, const std::string& what) {
+            const auto tangents = tangent_sweep(scene.model, trajectory, direction);
+            REQUIRE(tangents);
+            for (int s = 0; s < 2; ++s) {
+                const double backwards =
+                    pairing(scene, (*gradients)[s], direction) + mechanism_pairing((*gradients)[s].mechanism, direction.mechanism);
+                const double forwards = pairing(seeds[s], trajectory, *tangents);
+                CAPTURE(scene.name, what, backwards, forwards);
+                CHECK(std::abs(backwards - forwards) <= 1e-9 * std::abs(forwards) + nothing);
+            }
+        };
+        for (const ParameterKind kind : all_kinds) compare(random_direction(scene, kind, random), to_string(kind));
+        for (int trial = 0; trial < 3; ++trial) compare(mechanism_direction(scene, random), "mechanism");
+    }
+}
+
+TEST_CASE("joints, springs and motors: gradients agree with differences of simulations", "[adjoint][joints]") {
+    for (const SweepScene& scene : joint_scenes()) {
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        std::mt19937_64 random(29);
+        const TrajectoryGradient seed = random_seed(scene, random);
+        const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
+        REQUIRE(gradients);
+        for (int trial = 0; trial < 2; ++trial) {
+            const ModelTangent direction = mechanism_direction(scene, random);
+            const double derivative = mechanism_pairing((*gradients)[0].mechanism, direction.mechanism);
+            const auto at = [&](double s) {
+                return objective(seed, run(with_mechanism(scene.model, direction.mechanism, s), scene.steps, true).trajectory);
+            };
+            const double error = difference_error(at, derivative);
+            CAPTURE(scene.name, trial, derivative);
+            CHECK(error < 1e-6);
+        }
+        for (const ParameterKind kind :
+             {ParameterKind::vertices, ParameterKind::pose_start, ParameterKind::gravity, ParameterKind::density}) {
+            const ModelTangent direction = random_direction(scene, kind, random);
+            const double derivative = pairing(scene, (*gradients)[0], direction);
+            if (std::abs(derivative) < 1e-9) continue;
+            const auto at = [&](double s) { return objective(seed, run(moved(scene, direction, s), scene.steps, true).trajectory); };
+            const double error = difference_error(at, derivative);
+            CAPTURE(scene.name, to_string(kind), derivative);
+            CHECK(error < 1e-6);
+        }
+    }
+}
+
+}  // namespace fettle::adjoint::stepper::joint_sweep_test
