@@ -10,7 +10,6 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/leaf_search.hpp"
 #include "fettle/core/contact/swept_pair.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -101,23 +100,37 @@ geometry::Box swept_box(const SweptBody& s, double margin) {
     return box;
 }
 
-// Pairs of bodies whose swept boxes meet, in order.
-std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const std::vector<geometry::Box>& boxes) {
-    constexpr int few = 12;
-    const int n = static_cast<int>(boxes.size());
-    std::vector<std::pair<int, int>> pairs;
-    const auto visit = [&](int a, int b) {
-        if (model::may_collide(model, a, b)) pairs.emplace_back(a, b);
+// With room for the body to move in.
+geometry::Box roomy(const geometry::Box& box, double allowance) {
+    constexpr double share = 0.1;  // of its least extent
+    const double room = allowance + share * (box.high - box.low).minCoeff();
+    return {box.low.array() - room, box.high.array() + room};
+}
+
+// The lists of NearBodies, from the beginning.
+void find_near_bodies(const model::Model& model, const std::vector<geometry::Box>& boxes, double allowance, NearBodies& near) {
+    near.boxes.clear();
+    for (const geometry::Box& box : boxes) near.boxes.push_back(roomy(box, allowance));
+    near.pairs.clear();
+    geometry::visit_overlapping_pairs(near.boxes, [&](int a, int b) {
+        if (model::may_collide(model, a, b)) near.pairs.emplace_back(a, b);
         return true;
+    });
+    std::sort(near.pairs.begin(), near.pairs.end());
+}
+
+// Pairs of bodies whose swept boxes meet, in order: whatever was known before.
+std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const std::vector<geometry::Box>& boxes, double allowance,
+                                              NearBodies& near) {
+    const auto holds = [](const geometry::Box& room, const geometry::Box& box) {
+        return room.contains(box.low) && room.contains(box.high);
     };
-    if (n <= few) {
-        for (int a = 0; a < n; ++a)
-            for (int b = a + 1; b < n; ++b)
-                if (boxes[a].overlaps(boxes[b])) visit(a, b);
-        return pairs;
-    }
-    geometry::visit_overlapping_pairs(boxes, visit);
-    std::sort(pairs.begin(), pairs.end());
+    if (!std::equal(near.boxes.begin(), near.boxes.end(), boxes.begin(), boxes.end(), holds))
+        find_near_bodies(model, boxes, allowance, near);
+    std::vector<std::pair<int, int>> pairs;
+    pairs.reserve(near.pairs.size());
+    for (const auto& [a, b] : near.pairs)
+        if (boxes[static_cast<std::size_t>(a)].overlaps(boxes[static_cast<std::size_t>(b)])) pairs.emplace_back(a, b);
     return pairs;
 }
 
@@ -212,7 +225,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
         swept[i] = swept_body(model.bodies[i], segments[i]);
         boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
     });
-    candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes));
+    candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes, allowance, candidates.near));
 
     base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];

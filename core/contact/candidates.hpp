@@ -7,9 +7,11 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/contact/primitive_pair.hpp"
+#include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
 
@@ -24,8 +26,15 @@ struct BodyPairCandidates : PrimitivePairs {
     std::array<kinematics::Pose, 2> at;            ///< where on them the bodies went
 };
 
+/// Pairs of bodies, (a, b) in order, whose boxes overlap: known as long as the bodies stay in them.
+struct NearBodies {
+    std::vector<geometry::Box> boxes;  ///< [body], with room to move; empty: nothing is known
+    std::vector<std::pair<int, int>> pairs;
+};
+
 struct Candidates {
     std::vector<BodyPairCandidates> pairs;  ///< sorted by (a, b). Pairs of bodies that are near but have no candidates are listed too
+    NearBodies near;
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
