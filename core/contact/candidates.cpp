@@ -102,8 +102,8 @@ geometry::Box swept_box(const SweptBody& s, double margin) {
 
 // With room for the body to move in.
 geometry::Box roomy(const geometry::Box& box, double allowance) {
-    constexpr double share = 0.1;  // of its least extent
-    const double room = allowance + share * (box.high - box.low).minCoeff();
+    constexpr double share = 0.05, most = 64;  // of its diagonal; of the allowance: a wide floor need not be near everything
+    const double room = allowance + std::min(share * (box.high - box.low).norm(), most * allowance);
     return {box.low.array() - room, box.high.array() + room};
 }
 
