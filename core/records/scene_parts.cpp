@@ -58,6 +58,35 @@ void add_loads(Part& part, const model::Body& body) {
     if (body.damping.linear > 0 || body.damping.angular > 0) part.add(body.damping.linear).add(body.damping.angular);
 }
 
+void add_curve(Part& part, const scene::Curve& curve) {
+    part.add(static_cast<double>(curve.kind)).add(curve.rate).add(curve.times).add(curve.values);
+    part.add(curve.stop_time ? 1 : 0).add(curve.stop_time.value_or(0));
+}
+
+std::string mechanism_hash(const model::Mechanism& mechanism) {
+    Part part;
+    for (const measure::Frame& f : mechanism.set.frames) part.add(f.body).add(f.point).add(f.axes);
+    for (const measure::Measure& m : mechanism.set.measures) {
+        for (const int number : {static_cast<int>(m.kind), m.a, m.b, m.axis_a, m.axis_b, static_cast<int>(m.offset_axis)}) part.add(number);
+    }
+    for (const constraint::Row& row : mechanism.rows) {
+        for (const constraint::RowPart& p : row.parts) part.add(p.measure).add(p.factor);
+        part.add(row.constant).add(row.length);
+        add_curve(part, row.curve);
+    }
+    for (const model::MeasureTerm& term : mechanism.terms) {
+        part.add(static_cast<double>(term.kind))
+            .add(term.measure)
+            .add(term.coefficient)
+            .add(term.reference)
+            .add(term.sign)
+            .add(term.length);
+        add_curve(part, term.curve);
+    }
+    for (const auto& [a, b] : mechanism.not_colliding) part.add(a).add(b);
+    return part.value();
+}
+
 std::string integrator_hash(const model::Model& model) {
     Part part;
     part.add(static_cast<double>(model.integrator));
@@ -75,7 +104,7 @@ std::string contact_model(const model::Model& model) {
 }  // namespace
 
 std::vector<ScenePart> scene_parts(const model::Model& model) {
-    return {
+    std::vector<ScenePart> parts{
         {"time step", Part().add(model.timestep).value()},
         {"integrator", integrator_hash(model)},
         {"gravity", Part().add(model.gravity).value()},
@@ -90,6 +119,8 @@ std::vector<ScenePart> scene_parts(const model::Model& model) {
         {"motors and scripts", of_bodies(model, add_motion)},
         {"loads", of_bodies(model, add_loads)},
     };
+    if (!model.mechanism.empty()) parts.push_back({"joints, springs and motors", mechanism_hash(model.mechanism)});
+    return parts;
 }
 
 }  // namespace fettle::core::records

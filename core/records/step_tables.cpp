@@ -105,6 +105,14 @@ std::string drives_csv(const stepper::Simulation& simulation, const std::vector<
     return text;
 }
 
+std::string joints_csv(const stepper::Simulation& simulation, const model::Mechanism& mechanism) {
+    std::string text = "time,name,fx,fy,fz,tx,ty,tz,effort\n";
+    for (const stepper::StepOutputs& o : simulation.outputs)
+        for (const stepper::JointForce& f : o.joints)
+            Row(text).add(o.time).add(mechanism.joints[static_cast<std::size_t>(f.joint)].name).add(f.force).add(f.torque).add(f.effort);
+    return text;
+}
+
 std::string joined_table(const std::string& earlier, const std::string& later, double until) {
     const std::size_t header = later.find('\n') + 1;
     if (earlier.compare(0, header, later, 0, header) != 0) return later;

@@ -138,8 +138,8 @@ std::vector<Pose> read_pose_list(const JsonNode& node, std::size_t count) {
 }
 
 void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
-    root.allow_keys(
-        {format_key, "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies", "time", "poses"});
+    root.allow_keys({format_key, "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies", "joined",
+                     "time", "poses"});
     const auto version = root.require(format_key).integer(1, format_version);
     if (version && *version != format_version)
         root[format_key].fail(ErrorCode::out_of_range, "version " + std::to_string(format_version) + " is wanted");
@@ -152,6 +152,10 @@ void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
     }
     if (std::set<std::string>(out.trajectory.body_names.begin(), out.trajectory.body_names.end()).size() < out.model.bodies.size())
         bodies.fail(ErrorCode::inconsistent, "two bodies have the same name");
+    // Bodies that joints join, which do not collide.
+    const std::vector<int> pairs = indices(root["joined"], 2, static_cast<Eigen::Index>(out.model.bodies.size()));
+    for (std::size_t i = 0; i < pairs.size(); i += 2) out.model.mechanism.not_colliding.emplace_back(std::minmax(pairs[i], pairs[i + 1]));
+    std::sort(out.model.mechanism.not_colliding.begin(), out.model.mechanism.not_colliding.end());
     out.trajectory.poses.push_back(read_pose_list(root.require("poses"), out.model.bodies.size()));
     if (out.trajectory.poses[0].size() != out.model.bodies.size()) return;
     for (std::size_t b = 0; b < out.model.bodies.size(); ++b) out.model.bodies[b].pose_start = out.trajectory.poses[0][b];

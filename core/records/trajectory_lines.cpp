@@ -103,6 +103,12 @@ std::string TrajectoryLines::header(const std::string& scene_path) const {
     }
     out.key("bodies");
     out.list(model_.bodies.size(), ",", [&](std::size_t b) { write_body(out, model_.bodies[b]); });
+    const auto& joined = model_.mechanism.not_colliding;
+    if (!joined.empty()) {
+        out.key("joined");
+        out.list(2 * joined.size(), ",",
+                 [&](std::size_t i) { out.text += std::to_string(i % 2 == 0 ? joined[i / 2].first : joined[i / 2].second); });
+    }
     if (!trajectory_.times.empty()) {
         out.key("time");
         out.number(trajectory_.times.front());

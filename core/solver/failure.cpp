@@ -31,6 +31,29 @@ double sufficient_kappa(const FailedStep& step) {
     return step.problem.kappa * slope(d) / slope(half);
 }
 
+// The joint or motor that is farthest from where it should be, and what it pushes with.
+void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
+    const model::Mechanism& mechanism = step.problem.model->mechanism;
+    const VectorX& unmet = step.rows->unmet();
+    Eigen::Index worst = -1;
+    double most = 0;
+    for (Eigen::Index i = 0; i < unmet.size(); ++i) {
+        const double gap = std::abs(unmet[i]) * mechanism.rows[static_cast<std::size_t>(i)].length;
+        if (gap <= most) continue;
+        most = gap;
+        worst = i;
+    }
+    if (worst < 0) return;
+    const model::Joint& joint = mechanism.joints[static_cast<std::size_t>(mechanism.rows[static_cast<std::size_t>(worst)].owner)];
+    if (!joint.is_motor) {
+        out << "joint '" << joint.name << "' is not met (" << most << " m short): ";
+        return;
+    }
+    const bool turns = mechanism.set.measures[static_cast<std::size_t>(joint.coordinate)].kind == measure::MeasureKind::angle;
+    out << "motor '" << joint.name << "' cannot follow its curve (" << std::abs(unmet[worst]) << (turns ? " rad" : " m") << " short, with ";
+    out << std::abs(step.rows->multipliers()[worst]) / step.problem.weight << (turns ? " N m): " : " N): ");
+}
+
 }  // namespace
 
 std::string describe_failure(const FailedStep& step) {
@@ -46,6 +69,7 @@ std::string describe_failure(const FailedStep& step) {
         held = static_cast<int>(i);
     }
     if (held >= 0) out << "body '" << bodies[held].name << "' cannot follow its script (" << most << " m short): ";
+    if (held < 0 && step.rows) describe_unmet_row(step, out);
     out << step.cause;
     if (step.limiting.limiting_a >= 0)
         out << "; '" << bodies[step.limiting.limiting_a].name << "' against '" << bodies[step.limiting.limiting_b].name << "'";

@@ -7,6 +7,7 @@
 
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
+#include "fettle/core/solver/row_system.hpp"
 
 namespace fettle::core::solver {
 
@@ -18,6 +19,7 @@ struct FailedStep {
     double residual = 0;
     double shift = 0;  ///< of the last Hessian (newton_direction.hpp)
     const std::string& cause;
+    const RowSystem* rows = nullptr;  ///< of a model with joints
 };
 
 std::string describe_failure(const FailedStep& step);

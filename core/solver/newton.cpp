@@ -366,7 +366,8 @@ private:
     }
 
     std::string failure_message(const Direction& direction, const std::string& cause) const {
-        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, direction.shift, cause});
+        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, direction.shift, cause,
+                                 workspace_.rows ? &*workspace_.rows : nullptr});
     }
 
     energy::StepProblem problem_;  // the friction lag changes from round to round

@@ -53,6 +53,10 @@ Simulation taken_up(const model::Model& model, const SimulationOptions& options)
     take(out.report.steps, earlier.report.steps);
     take(out.outputs, earlier.outputs);
     for (const StepReport& report : out.report.steps) out.report.newton_iterations += report.newton_iterations;
+    // Files hold no turns: they are counted along the motion.
+    std::vector<double>& angles = out.checkpoint.state.history.angles;
+    angles = model.mechanism.angles_start;
+    for (int t = 1; t <= done && !angles.empty(); ++t) angles = constraint::angles_at(model.mechanism.set, out.trajectory.poses[t], angles);
     return out;
 }
 

@@ -44,6 +44,31 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
     return list;
 }
 
+// Forces at the end, and how well the joints are met over the whole run.
+Json joints_at_end(const core::model::Model& model, const Simulation& simulation) {
+    Json list = Json::array();
+    if (simulation.outputs.empty()) return list;
+    for (const core::stepper::JointForce& f : simulation.outputs.back().joints) {
+        const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
+        Json entry{{"name", joint.name}, {"force", vector_json(f.force)}, {"torque", vector_json(f.torque)}};
+        if (joint.is_motor) entry["effort"] = f.effort;
+        list.push_back(entry);
+    }
+    return list;
+}
+
+void add_joints(const core::model::Model& model, const Simulation& simulation, Json& json) {
+    if (model.mechanism.joints.empty()) return;
+    double gap = 0, path_gap = 0;
+    for (const core::stepper::StepReport& step : simulation.report.steps) {
+        gap = std::max(gap, step.joint_gap);
+        path_gap = std::max(path_gap, step.path_joint_gap);
+    }
+    json["joints"] = joints_at_end(model, simulation);
+    json["joint_gap"] = gap;
+    json["path_joint_gap"] = path_gap;
+}
+
 // With the rows of the run that this one goes on with, if its tables are beside its trajectory.
 std::string whole_table(const std::string& name, const std::string& text, const SimulateArguments& options, const Simulation& earlier) {
     if (options.earlier.empty()) return text;
@@ -60,8 +85,10 @@ Errors write_motion(const SimulateArguments& options, const core::model::Model& 
     const std::vector<std::string> names = body_names(model);
     for (const auto& [name, text] : {std::pair{"steps.csv", core::records::steps_csv(simulation)},
                                      {"contacts.csv", core::records::contacts_csv(simulation, names)},
-                                     {"drives.csv", core::records::drives_csv(simulation, names)}})
-        tables.emplace_back(name, whole_table(name, text, options, earlier));
+                                     {"drives.csv", core::records::drives_csv(simulation, names)},
+                                     {"joints.csv", core::records::joints_csv(simulation, model.mechanism)}})
+        if (std::string_view(name) != "joints.csv" || !model.mechanism.joints.empty())
+            tables.emplace_back(name, whole_table(name, text, options, earlier));
     const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", simulation.trajectory.steps.size());
     if (!kept) return kept.errors();
     if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
@@ -164,6 +191,7 @@ int finish(const SimulateArguments& options, const LoadedModel& loaded, const Si
     json["minimum_distance"] = proof.lower ? Json(*proof.lower) : Json();
     json["certification"] = to_string(proof.state);
     json["bodies"] = bodies_at_end(model, simulation.trajectory);
+    add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
     if (writes_out) {
         json["out"] = options.out;
@@ -187,7 +215,7 @@ int run_simulate(const SimulateArguments& options, const CommonOptions& common, 
                                                  : loaded->steps;
     simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     simulate_options.should_stop = interrupted;
-    simulate_options.outputs = !options.out.empty();
+    simulate_options.outputs = !options.out.empty() || !model.mechanism.joints.empty();
     Simulation earlier;
     if (!options.earlier.empty()) {
         Result<Simulation> read = read_earlier(options, model, core::stepper::step_count(model, simulate_options), console);

@@ -17,6 +17,12 @@ namespace {
 const Vector3 y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ(), x_axis = Vector3::UnitX();
 constexpr double pi = std::numbers::pi;
 
+SimulationOptions first_steps(int steps) {
+    SimulationOptions options;
+    options.steps = steps;
+    return options;
+}
+
 // A bar on a hinge along y at the origin, turned down by pi/2 - `amplitude` from x.
 scene::Scene pendulum(double length, double amplitude, double h) {
     scene::Scene scene = scene_of({bar("bar", length, Vector3::Zero(), Vector3(0, pi / 2 - amplitude, 0))}, h);
@@ -309,6 +315,48 @@ TEST_CASE("friction of a joint holds below its torque and brakes above it", "[jo
             CHECK(std::abs(angle) < 1e-5);
         else
             CHECK(angle == Approx((torque - 0.02) / inertia * 0.5 * time * (time + 0.005)).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a motor that contact stops is blocked: joint, torque and what is in the way are named", "[joints]") {
+    // The bar comes round against a post after a quarter turn.
+    scene::Scene scene = scene_of({bar("arm", 0.3), bar("post", 0.05, Vector3(-0.025, 0.2, 0))}, 0.01);
+    for (scene::Body& body : scene.bodies) body.group = -1;
+    scene.bodies[1].type = scene::BodyType::static_body;
+    scene.dhat = 1e-3;
+    scene.mechanism.joints = {joint("hinge", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"arm", Vector3::Zero(), z_axis})};
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(2 * pi))};
+    const Simulation out = simulate(built(scene), first_steps(60));
+    CHECK(out.report.status == SimulationStatus::blocked);
+    const std::string& message = out.report.message;
+    CAPTURE(message);
+    CHECK(tests::support::contains(message, "motor 'drive' cannot follow its curve"));
+    CHECK(tests::support::contains(message, "N m"));
+    CHECK(tests::support::contains(message, "'arm'"));
+    CHECK(tests::support::contains(message, "'post'"));
+    CHECK(out.report.steps.size() > 15);
+    CHECK(out.report.steps.size() < 25);
+}
+
+TEST_CASE("turns are counted in a run that is taken up again as in one", "[joints]") {
+    scene::Scene scene = scene_of({bar("first", 0.1), bar("second", 0.1, Vector3(0.3, 0, 0))}, 0.01);
+    scene.mechanism.joints = {joint("one", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"first", Vector3::Zero(), z_axis}),
+                              joint("two", JointKind::revolute, {"", Vector3(0.3, 0, 0), z_axis}, {"second", Vector3::Zero(), z_axis})};
+    scene::Joint gear = joint("gear", JointKind::gear, {}, {});
+    gear.of = {"one", "two"};
+    gear.ratio = 0.37;
+    scene.mechanism.joints.push_back(gear);
+    scene.mechanism.motors = {motor("drive", "one", at_rate(30))};
+    const model::Model model = built(scene);
+    const Simulation whole = simulate(model, first_steps(100)), part = simulate(model, first_steps(70));
+    SimulationOptions options;
+    options.steps = 100;
+    options.resume = &part;
+    const Simulation joined = simulate(model, options);
+    REQUIRE(joined.trajectory.poses.size() == 101);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(joined.trajectory.poses[100][i].rotation == whole.trajectory.poses[100][i].rotation);
+        CHECK(joined.trajectory.poses[100][i].position == whole.trajectory.poses[100][i].position);
     }
 }
 

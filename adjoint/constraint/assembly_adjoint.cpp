@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/constraint/assembly_adjoint.hpp"
+
+#include <algorithm>
+
+#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
+
+namespace fettle::adjoint::constraint {
+namespace {
+
+using core::constraint::AssemblyProblem;
+using core::constraint::DependentRow;
+using core::constraint::Row;
+using core::kinematics::Pose;
+using core::measure::PlacedFrame;
+
+Vector6 tangent_of(const Matrix34& bar, const Matrix3& rotation) {
+    return core::kinematics::tangent_gradient({bar.col(3), bar.leftCols<3>() * rotation.transpose()});
+}
+
+class Assembled {
+public:
+    Assembled(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent, const std::vector<Pose>& written,
+              const std::vector<Pose>& poses)
+        : problem_(problem),
+          written_(written),
+          poses_(poses),
+          frames_(placed(problem.set.frames, poses)),
+          solver_(problem.index, problem.count) {
+        for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+            const auto is_this = [&](const DependentRow& d) { return d.row == static_cast<int>(i); };
+            if (std::any_of(dependent.begin(), dependent.end(), is_this)) continue;
+            kept_.push_back(static_cast<int>(i));
+            rows_.push_back(problem.rows[i]);
+        }
+        jacobian_ = row_jacobian(problem.set, rows_, frames_);
+        find_multipliers();
+    }
+
+    AssemblyGradient reverse(const std::vector<Matrix34>& pose_bar) {
+        const std::size_t n = poses_.size();
+        std::vector<Vector6> y_bar(n), lambda(n, Vector6::Zero());
+        for (std::size_t i = 0; i < n; ++i) y_bar[i] = tangent_of(pose_bar[i], poses_[i].rotation);
+        solver_.factorise(hessian_, jacobian_);
+        const auto solution = solver_.solve(gathered(y_bar), VectorX::Zero(jacobian_.count()));
+        for (std::size_t i = 0; i < n; ++i)
+            for (int k = 0; k < 6; ++k)
+                if (problem_.index[i][k] >= 0) lambda[i][k] = solution.y[problem_.index[i][k]];
+        AssemblyGradient out;
+        out.written_bar = held_back(y_bar, lambda, solution.multipliers);
+        out.moments_bar.assign(n, Matrix4::Zero());
+        for (std::size_t i = 0; i < n; ++i) {
+            Matrix34 v;
+            v << cross_matrix(lambda[i].tail<3>()) * poses_[i].rotation, lambda[i].head<3>();
+            out.written_bar[i] += tangent_of(v * problem_.moments[i], written_[i].rotation);
+            const Matrix4 m = v.transpose() * (pose_matrix(poses_[i]) - pose_matrix(written_[i]));
+            out.moments_bar[i] -= 0.5 * (m + m.transpose());
+        }
+        add_rows(lambda, solution.multipliers, out);
+        return out;
+    }
+
+private:
+    VectorX gathered(const std::vector<Vector6>& values) const {
+        VectorX out(problem_.count);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            for (int k = 0; k < 6; ++k)
+                if (problem_.index[i][k] >= 0) out[problem_.index[i][k]] = values[i][k];
+        return out;
+    }
+
+    // Those of the inertia's gradient; then the Lagrangian's Hessian.
+    void find_multipliers() {
+        std::vector<Vector6> gradient;
+        std::vector<Matrix3> arms;
+        for (std::size_t i = 0; i < poses_.size(); ++i) {
+            const Matrix34 g = (pose_matrix(poses_[i]) - pose_matrix(written_[i])) * problem_.moments[i];
+            gradient.push_back(tangent_of(g, poses_[i].rotation));
+            arms.push_back(g.leftCols<3>() * poses_[i].rotation.transpose());
+            hessian_.diagonal.push_back(core::kinematics::mass_matrix(poses_[i].rotation, problem_.moments[i]));
+        }
+        const std::vector<Vector3> no_turn(poses_.size(), Vector3::Zero());
+        add_row_curvature(problem_.set, rows_, VectorX::Zero(jacobian_.count()), frames_, no_turn, hessian_);  // the pattern
+        solver_.factorise(hessian_, jacobian_);
+        multipliers_ = solver_.solve(-gathered(gradient), VectorX::Zero(jacobian_.count())).multipliers;
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+            hessian_.diagonal[i].bottomRightCorner<3, 3>() += core::kinematics::tangent_curvature(arms[i]);
+        add_row_curvature(problem_.set, rows_, multipliers_, frames_, no_turn, hessian_);
+    }
+
+    // Of coordinates that may not move.
+    std::vector<Vector6> held_back(const std::vector<Vector6>& y_bar, const std::vector<Vector6>& lambda, const VectorX& mu) const {
+        std::vector<Vector6> out(y_bar.size(), Vector6::Zero()), taken(y_bar.size(), Vector6::Zero());
+        for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += hessian_.diagonal[i] * lambda[i];
+        for (const core::kinematics::OffDiagonalBlock& b : hessian_.off_diagonal) {
+            taken[b.a] += b.block * lambda[b.b];
+            taken[b.b] += b.block.transpose() * lambda[b.a];
+        }
+        add_transposed(jacobian_, mu, taken);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            for (int k = 0; k < 6; ++k)
+                if (problem_.index[i][k] < 0) out[i][k] = y_bar[i][k] - taken[i][k];
+        return out;
+    }
+
+    void add_rows(const std::vector<Vector6>& lambda, const VectorX& mu, AssemblyGradient& out) const {
+        std::vector<Matrix3> rotations;
+        for (const core::measure::Frame& f : problem_.set.frames)
+            rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses_[f.body].rotation);
+        out.frames.resize(problem_.set.frames.size());
+        out.targets_bar = VectorX::Zero(static_cast<Eigen::Index>(problem_.rows.size()));
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            out.targets_bar[kept_[i]] += mu[i];
+            for (const core::constraint::RowPart& part : rows_[i].parts) {
+                const core::measure::Measure& m = problem_.set.measures[part.measure];
+                const core::measure::VectorFunction f = vector_function(m, frames_);
+                Vector12 motion = Vector12::Zero();
+                const int a = problem_.set.frames[m.a].body, b = problem_.set.frames[m.b].body;
+                if (a != core::measure::world) motion.head<6>() = lambda[a];
+                if (b != core::measure::world) motion.tail<6>() = lambda[b];
+                add_placement_gradient(f, -part.factor * mu[i], rotations, out.frames);
+                add_placement_gradient_of_change(m, f, -part.factor * multipliers_[i], frames_, rotations, motion, out.frames);
+            }
+        }
+    }
+
+    const AssemblyProblem& problem_;
+    const std::vector<Pose>&written_, &poses_;
+    const std::vector<PlacedFrame> frames_;
+    std::vector<int> kept_;  // places in the problem's rows
+    std::vector<Row> rows_;
+    core::constraint::RowJacobian jacobian_;
+    core::constraint::SaddleSolver solver_;
+    core::kinematics::BlockHessian hessian_;
+    VectorX multipliers_;
+};
+
+}  // namespace
+
+AssemblyGradient assembly_adjoint(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent,
+                                  const std::vector<Pose>& written, const std::vector<Pose>& assembled,
+                                  const std::vector<Matrix34>& pose_bar) {
+    return Assembled(problem, dependent, written, assembled).reverse(pose_bar);
+}
+
+}  // namespace fettle::adjoint::constraint
