@@ -305,7 +305,8 @@ void report_pair(const Model& model, std::pair<int, int> pair, const std::vector
     const auto [i, j] = pair;
     const PlacedBody &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
     const bool grouped = a.body->group >= 0 && a.body->group == b.body->group, collide = may_collide(model, i, j);
-    if (!collide && grouped) return;
+    const bool dynamic = a.body->type == scene::BodyType::dynamic_body || b.body->type == scene::BodyType::dynamic_body;
+    if (!collide && (grouped || dynamic)) return;  // one group, or joined: they may overlap
     auto error = check_pair(a, b, collide ? model.dmin : 0, messages);
     if (collide) {
         const auto doubt = error ? std::nullopt : containment_doubt(a, b);

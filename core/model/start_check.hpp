@@ -21,9 +21,8 @@ struct StartReport {
 ///   errors: one bodies_intersect error per pair at fault, which names the bodies, two elements (the first intersecting ones found, else
 ///           the closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
 ///   warnings: pairs that contact never acts on, because neither is dynamic, and that intersect or lie one in the other (bodies of one
-///   group
-///           are meant to); and pairs of which one may lie inside the other, which cannot be verified where the outer mesh is not closed
-///           though meant to be (geometry::is_nearly_closed). At most 20, then a count.
+///           group, and dynamic bodies that a joint joins, are meant to); and pairs of which one may lie inside the other, which cannot be
+///           verified where the outer mesh is not closed though meant to be (geometry::is_nearly_closed). At most 20, then a count.
 /// Contract: hierarchies built.
 StartReport report_start(const Model& model);
 
