@@ -13,10 +13,8 @@
 namespace fettle::core::model {
 namespace {
 
-using base::Error;
 using base::ErrorCode;
 using base::Errors;
-using constraint::Row;
 using measure::Measure;
 using measure::MeasureKind;
 using measure::OffsetAxis;
