@@ -120,7 +120,7 @@ private:
                 if (a != core::measure::world) motion.head<6>() = lambda[a];
                 if (b != core::measure::world) motion.tail<6>() = lambda[b];
                 add_placement_gradient(f, -part.factor * mu[i], rotations, out.frames);
-                add_placement_gradient_of_change(m, f, -part.factor * multipliers_[i], frames_, rotations, motion, out.frames);
+                add_placement_gradient_of_change(m, f, -part.factor * multipliers_[i], {frames_, rotations}, motion, out.frames);
             }
         }
     }

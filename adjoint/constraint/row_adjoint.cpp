@@ -47,7 +47,7 @@ void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Ve
             for (std::size_t s = 0; s < motion.size(); ++s) {
                 std::vector<core::measure::FrameGradient>& bars = model_bar[s].mechanism.frames;
                 add_placement_gradient(f, -part.factor * mu[s][i], rotations, bars);
-                add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], frames, rotations,
+                add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], {frames, rotations},
                                                  motion_of(mechanism, m, motion[s]), bars);
             }
         }

@@ -59,7 +59,7 @@ public:
             const double change = tangent_gradient(g.a).dot(v.head<6>()) + tangent_gradient(g.b).dot(v.tail<6>());
             MechanismGradient& bar = model_bar_[s].mechanism;
             add_placement_gradient(f, -law.second * change, end_.rotations, bar.frames);
-            add_placement_gradient_of_change(m, f, -law.first, end_.frames, end_.rotations, v, bar.frames);
+            add_placement_gradient_of_change(m, f, -law.first, {end_.frames, end_.rotations}, v, bar.frames);
             bar.term_coefficient[k] -= law.first / term.coefficient * change;
             if (looks_back(term))
                 add_at_start(m, law.second * change, s);

@@ -220,18 +220,17 @@ void add_placement_gradient(const VectorFunction& f, double weight, const std::v
 }
 
 // With z = R X: d(f_z . dz)/dX = R^T (f'' dz + f_z x phi), for dz holds phi x z.
-void add_placement_gradient_of_change(const Measure& m, const VectorFunction& f, double weight, const Frames& frames,
-                                      const std::vector<Matrix3>& rotations, const Vector12& motion,
-                                      std::vector<FrameGradient>& gradients) {
+void add_placement_gradient_of_change(const Measure& m, const VectorFunction& f, double weight, const PlacedAndTurned& at,
+                                      const Vector12& motion, std::vector<FrameGradient>& gradients) {
     std::array<Vector3, 3> changes;
     for (int i = 0; i < f.count; ++i)
-        changes[static_cast<std::size_t>(i)] = change_of(m, f.vectors[static_cast<std::size_t>(i)], frames, motion);
+        changes[static_cast<std::size_t>(i)] = change_of(m, f.vectors[static_cast<std::size_t>(i)], at.frames, motion);
     for (int i = 0; i < f.count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const FrameVector& v = f.vectors[at];
+        const auto k = static_cast<std::size_t>(i);
+        const FrameVector& v = f.vectors[k];
         const Vector3 phi = motion.segment<3>(is_of_b(v, m) ? 9 : 3);
-        const Vector3 bar = times_hessian(f, i, changes) + f.gradient[at].cross(phi);
-        add_to(v, weight * (rotations[static_cast<std::size_t>(v.frame)].transpose() * bar), gradients);
+        const Vector3 bar = times_hessian(f, i, changes) + f.gradient[k].cross(phi);
+        add_to(v, weight * (at.rotations[static_cast<std::size_t>(v.frame)].transpose() * bar), gradients);
     }
 }
 

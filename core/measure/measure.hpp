@@ -97,10 +97,15 @@ struct FrameGradient {
 void add_placement_gradient(const VectorFunction& f, double weight, const std::vector<Matrix3>& rotations,
                             std::vector<FrameGradient>& gradients);
 
+/// Where frames are, and how their bodies are turned.
+struct PlacedAndTurned {
+    const std::vector<PlacedFrame>& frames;
+    const std::vector<Matrix3>& rotations;  ///< per frame, as above
+};
+
 /// Adds weight d(dm . v)/d(placement), where dm . v is the measure's change along a motion (dq, phi) of both bodies.
 /// @param motion  of a, then of b.
-void add_placement_gradient_of_change(const Measure& measure, const VectorFunction& f, double weight,
-                                      const std::vector<PlacedFrame>& frames, const std::vector<Matrix3>& rotations, const Vector12& motion,
-                                      std::vector<FrameGradient>& gradients);
+void add_placement_gradient_of_change(const Measure& measure, const VectorFunction& f, double weight, const PlacedAndTurned& at,
+                                      const Vector12& motion, std::vector<FrameGradient>& gradients);
 
 }  // namespace fettle::core::measure

@@ -13,10 +13,8 @@
 namespace fettle::core::model {
 namespace {
 
-using base::Error;
 using base::ErrorCode;
 using base::Errors;
-using constraint::Row;
 using measure::Measure;
 using measure::MeasureKind;
 using measure::OffsetAxis;
@@ -252,6 +250,20 @@ private:
         add_forces(from.forces, length, 1, from.name);
     }
 
+    // Of a curve in one time step, while its table runs and after.
+    double largest_stride(const scene::Curve& curve) const {
+        constexpr int most_steps = 100000;
+        const double h = model_.timestep, end = curve.times.empty() ? 0 : curve.times.back();
+        const int steps = static_cast<int>(std::min<double>(most_steps, std::max(0.0, std::ceil(end / h)))) + 1;
+        double most = 0, before = curve_value(curve, 0);
+        for (int k = 1; k <= steps; ++k) {
+            const double after = curve_value(curve, k * h);
+            most = std::max(most, std::abs(after - before));
+            before = after;
+        }
+        return most;
+    }
+
     void add_motor(const scene::Motor& from) {
         const Joint* joint = find_joint(from.joint, from.where);
         if (!joint) return;
@@ -261,6 +273,11 @@ private:
             out_.terms.push_back({LawKind::force, coordinate, 1, 0, 1, length, from.curve, from.name});
             return;
         }
+        if (turns(joint->kind) && largest_stride(from.curve) > 0.9 * std::numbers::pi)
+            return fail(ErrorCode::out_of_range, from.where,
+                        "`" + from.name +
+                            "` turns by half a turn or more in one time step, so that its turns cannot be counted: use a "
+                            "shorter time step");
         Joint motor = *joint;
         motor.name = from.name;
         motor.is_motor = true;

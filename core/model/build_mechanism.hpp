@@ -11,8 +11,9 @@ namespace fettle::core::model {
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
 /// body that had to. Rows that follow from others are told in a warning and left out.
 /// Contract: bodies, masses, dhat, kappa and diagonal of the model are set.
-/// Errors: names that are not there, joints of a body with itself, axes of length 0 (inconsistent, out_of_range); loops that cannot be
-/// closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which has no rows (unsupported).
+/// Errors: names that are not there, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step
+/// (inconsistent, out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another;
+/// Newmark, which has no rows (unsupported).
 base::Errors build_mechanism(const scene::Scene& scene, Model& model);
 
 }  // namespace fettle::core::model

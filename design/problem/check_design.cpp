@@ -9,6 +9,7 @@ namespace fettle::design::problem {
 
 namespace {
 
+namespace model = core::model;
 using description::Design;
 using description::Move;
 using description::MoveTarget;
@@ -47,10 +48,54 @@ public:
                 add(ErrorCode::out_of_range, where, "its bounds are in order, its margin is not negative, its unit is above 0");
             check_quantity(constraint.quantity.get(), where);
         }
+        if (!model_.mechanism.empty() && !design_.parameters.empty()) check_joints();
         return errors_;
     }
 
 private:
+    // What follows from the start as written through the assembly is not chained to parameters yet: refused, never left out.
+    void check_joints() {
+        for (size_t i = 0; i < design_.scene.bodies.size() && i < model_.bodies.size(); ++i) {
+            const core::scene::Body& written = design_.scene.bodies[i];
+            const core::model::Body& body = model_.bodies[i];
+            const Vector3 place = core::kinematics::world_position(written.pose, body.reference_point);
+            Matrix34 velocity;
+            velocity << cross_matrix(written.angular_velocity) * written.pose.rotation, written.linear_velocity;
+            if (body.pose_start.position != place || body.pose_start.rotation != written.pose.rotation)
+                add(ErrorCode::unsupported, "body `" + body.name + "`",
+                    "it was moved to meet its joints, which cannot be differentiated in a design yet; write it where they are met");
+            else if (body.velocity_start != velocity)
+                add(ErrorCode::unsupported, "body `" + body.name + "`",
+                    "its start velocity was changed to agree with joints and motors, which cannot be differentiated in a design yet; "
+                    "write it as it must be, or let motors start from rest");
+        }
+        for (const Parameter& parameter : design_.parameters)
+            for (const Move& move : parameter.moves)
+                if (has_body(move.body)) check_joined_move(parameter, move);
+    }
+
+    void check_joined_move(const Parameter& parameter, const Move& move) {
+        const core::scene::Mechanism& mechanism = design_.scene.mechanism;
+        const std::string& body = design_.scene.bodies[static_cast<size_t>(move.body)].name;
+        const auto joins = [&](const core::scene::Joint& j) { return j.a.body == body || j.b.body == body; };
+        const auto stretches = [&](const core::scene::Spring& s) { return s.joint.empty() && (s.a.body == body || s.b.body == body); };
+        const bool is_joined = std::any_of(mechanism.joints.begin(), mechanism.joints.end(), joins);
+        const bool is_sprung = std::any_of(mechanism.springs.begin(), mechanism.springs.end(), stretches);
+        if (move.target == MoveTarget::position && (is_joined || is_sprung))
+            add(ErrorCode::unsupported, place(parameter),
+                "it moves the start of body `" + body + "`, which joints or springs hold: that cannot be differentiated yet");
+        // Stops and friction of angles act at the radius of the bodies.
+        const auto acts = [](const model::MeasureTerm& term) {
+            return term.length != 1 && (term.kind == model::LawKind::stop || term.kind == model::LawKind::friction);
+        };
+        const auto& terms = model_.mechanism.terms;
+        if (move.target == MoveTarget::dimension && is_joined && std::any_of(terms.begin(), terms.end(), acts))
+            add(ErrorCode::unsupported, place(parameter),
+                "it changes the size of body `" + body +
+                    "`, by which stops and friction of turning joints are measured: that cannot be "
+                    "differentiated yet");
+    }
+
     static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
 
     void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }

@@ -159,7 +159,7 @@ TEST_CASE("derivatives of measures in the frames' placement agree with differenc
         Vector12 sides = Vector12::Zero();  // of a's body, then of b's
         for (const auto& [side, at] : {std::pair(m.a, 0), std::pair(m.b, 6)})
             if (set.frames[side].body != world) sides.segment<6>(at) = motion.segment<6>(6 * set.frames[side].body);
-        add_placement_gradient_of_change(m, f, 1.7, frames, rotations, sides, of_change);
+        add_placement_gradient_of_change(m, f, 1.7, {frames, rotations}, sides, of_change);
         for (const int side : {m.a, m.b}) {
             const auto value = [&](const VectorX& x) { return 1.7 * value_of(m, placed(with_placement(set, side, x).frames, poses)); };
             const auto change = [&](const VectorX& x) { return 1.7 * gradient_at(with_placement(set, side, x), m, poses).dot(motion); };

@@ -130,6 +130,11 @@ TEST_CASE("names that are not there are refused", "[mechanism]") {
     scene.mechanism.motors = {motor("drive", "hing", at_rate(1))};
     CHECK(contains(errors_of(scene), "no joint is called `hing`"));
     scene = hinged_bar();
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(300))};  // 3 rad in a time step
+    CHECK(contains(errors_of(scene), "half a turn or more in one time step"));
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(250))};
+    CHECK(build_model(scene));
+    scene = hinged_bar();
     scene.integrator = scene::Integrator::newmark;
     CHECK(contains(errors_of(scene), "newmark"));
 }
