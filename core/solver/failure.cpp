@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "fettle/core/energy/mass_matrix.hpp"
+
 namespace fettle::core::solver {
 namespace {
 
@@ -31,6 +33,47 @@ double sufficient_kappa(const FailedStep& step) {
     return step.problem.kappa * slope(d) / slope(half);
 }
 
+// What the rows would carry here if nothing were driven any further: C^T m = -dE as well as it can be met, by mass.
+VectorX holding_multipliers(const FailedStep& step) {
+    const model::Model& model = *step.problem.model;
+    const energy::ChartDerivatives d =
+        energy::chart_derivatives(step.problem, *step.points, *step.poses, step.contacts, contact::HessianKind::projected);
+    constraint::RowJacobian rows = row_jacobian(model.mechanism.set, model.mechanism.rows, placed(model.mechanism.set.frames, *step.poses));
+    std::vector<Matrix3> left_jacobians;
+    kinematics::BlockHessian masses;
+    for (std::size_t i = 0; i < step.points->size(); ++i) {
+        left_jacobians.push_back(kinematics::left_jacobian((*step.points)[i].rotation_vector));
+        Matrix6 to_tangent = Matrix6::Identity();
+        to_tangent.bottomRightCorner<3, 3>() = left_jacobians.back();
+        masses.diagonal.push_back(to_tangent.transpose() * energy::mass_matrix((*step.poses)[i].rotation, model.bodies[i].moments) *
+                                  to_tangent);
+    }
+    to_chart(left_jacobians, rows);
+    const FreeDofs dofs = free_dofs(model);
+    constraint::SaddleSolver solver(dofs.index, dofs.count);
+    solver.factorise(masses, rows);
+    if (!solver.is_usable()) return step.rows->multipliers();
+    return solver.solve(-gather(dofs, d.gradient), VectorX::Zero(rows.count())).multipliers;
+}
+
+// The stop that is pressed most.
+void describe_stop(const FailedStep& step, std::ostringstream& out) {
+    if (!step.rows) return;
+    const model::Mechanism& mechanism = step.problem.model->mechanism;
+    const std::vector<measure::PlacedFrame> frames = placed(mechanism.set.frames, *step.poses);
+    const model::MeasureTerm* nearest = nullptr;
+    double least = step.problem.model->dhat;
+    for (const model::MeasureTerm& term : mechanism.terms) {
+        if (term.kind != model::LawKind::stop) continue;
+        const double m = constraint::value_at(mechanism.set, term.measure, frames, step.problem.mechanism.angles);
+        const double gap = term.sign * term.length * (m - term.reference);
+        if (!(gap < least)) continue;
+        least = gap;
+        nearest = &term;
+    }
+    if (nearest) out << "; '" << nearest->name << "' is at its " << (nearest->sign > 0 ? "lower" : "upper") << " limit";
+}
+
 // The joint or motor that is farthest from where it should be, and what it pushes with.
 void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
     const model::Mechanism& mechanism = step.problem.model->mechanism;
@@ -51,7 +94,7 @@ void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
     }
     const bool turns = mechanism.set.measures[static_cast<std::size_t>(joint.coordinate)].kind == measure::MeasureKind::angle;
     out << "motor '" << joint.name << "' cannot follow its curve (" << std::abs(unmet[worst]) << (turns ? " rad" : " m") << " short, with ";
-    out << std::abs(step.rows->multipliers()[worst]) / step.problem.weight << (turns ? " N m): " : " N): ");
+    out << std::abs(holding_multipliers(step)[worst]) / step.problem.weight << (turns ? " N m): " : " N): ");
 }
 
 }  // namespace
@@ -73,6 +116,7 @@ std::string describe_failure(const FailedStep& step) {
     out << step.cause;
     if (step.limiting.limiting_a >= 0)
         out << "; '" << bodies[step.limiting.limiting_a].name << "' against '" << bodies[step.limiting.limiting_b].name << "'";
+    describe_stop(step, out);
     if (const Closest closest = closest_of(step.contacts); closest.pair)
         out << "; closest pair '" << bodies[closest.pair->first].name << "' and '" << bodies[closest.pair->second].name << "' at "
             << std::sqrt(closest.distance_squared) << " m";

@@ -19,7 +19,9 @@ struct FailedStep {
     double residual = 0;
     double shift = 0;  ///< of the last Hessian (newton_direction.hpp)
     const std::string& cause;
-    const RowSystem* rows = nullptr;  ///< of a model with joints
+    const RowSystem* rows = nullptr;                              ///< of a model with joints; then the next two as well
+    const std::vector<kinematics::ChartPoint>* points = nullptr;  ///< where the solver gave up
+    const std::vector<kinematics::Pose>* poses = nullptr;
 };
 
 std::string describe_failure(const FailedStep& step);

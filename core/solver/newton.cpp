@@ -367,7 +367,7 @@ private:
 
     std::string failure_message(const Direction& direction, const std::string& cause) const {
         return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, direction.shift, cause,
-                                 workspace_.rows ? &*workspace_.rows : nullptr});
+                                 workspace_.rows ? &*workspace_.rows : nullptr, &at_.points, &at_.poses});
     }
 
     energy::StepProblem problem_;  // the friction lag changes from round to round

@@ -115,6 +115,15 @@ TEST_CASE("measures of a hinge's frames are what they are called", "[measure]") 
     CHECK(value_of({MeasureKind::distance, 0, 1, 0, 0, {}}, frames) == Approx(std::sqrt(4.0 + 9.0)));
 }
 
+TEST_CASE("a measure without a derivative has none that passes for a number", "[measure]") {
+    MeasureSet set;
+    set.frames = {{world, Vector3(1, 0, 3), Matrix3::Identity()}, {0, Vector3::Zero(), Matrix3::Identity()}};
+    const auto frames = placed(set.frames, {make_pose(Vector3::Zero(), Vector3(1, 0, 3))});
+    const VectorFunction f = vector_function({MeasureKind::distance, 0, 1, 0, 0, {}}, frames);
+    CHECK(f.value == 0);
+    CHECK(!f.gradient[0].allFinite());
+}
+
 TEST_CASE("turns are counted by the reference", "[measure]") {
     const double turn = 2 * std::numbers::pi;
     CHECK(nearest_turn(3.0, 3.2) == 3.0);

@@ -338,6 +338,23 @@ TEST_CASE("a motor that contact stops is blocked: joint, torque and what is in t
     CHECK(out.report.steps.size() < 25);
 }
 
+TEST_CASE("a motor that a stop blocks names the stop", "[joints]") {
+    // The arm is turned up against gravity, to a stop at half a radian.
+    scene::Scene scene = scene_of({bar("arm", 0.3)}, 0.01);
+    scene.gravity = Vector3(0, -gravity, 0);
+    scene.mechanism.joints = {joint("hinge", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"arm", Vector3::Zero(), z_axis})};
+    scene.mechanism.joints[0].forces.limits = {-1.0, 0.5};
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(1))};
+    const Simulation out = simulate(built(scene), first_steps(60));
+    CHECK(out.report.status == SimulationStatus::blocked);
+    const std::string& message = out.report.message;
+    CAPTURE(message);
+    CHECK(tests::support::contains(message, "motor 'drive' cannot follow its curve"));
+    CHECK(tests::support::contains(message, "'hinge' is at its upper limit"));
+    CHECK(out.report.steps.size() >= 48);
+    CHECK(out.report.steps.size() <= 50);
+}
+
 TEST_CASE("turns are counted in a run that is taken up again as in one", "[joints]") {
     scene::Scene scene = scene_of({bar("first", 0.1), bar("second", 0.1, Vector3(0.3, 0, 0))}, 0.01);
     scene.mechanism.joints = {joint("one", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"first", Vector3::Zero(), z_axis}),
