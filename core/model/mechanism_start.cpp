@@ -77,9 +77,10 @@ void warn_of_dependent(const Assembly& found, Model& model) {
     if (rows.empty()) return;
     std::vector<int> on;
     for (const constraint::DependentRow& d : found.dependent) on.insert(on.end(), d.on.begin(), d.on.end());
+    const std::string by = on.empty() ? "bodies that cannot move" : names_of(model.mechanism, on);
     model.warnings.push_back("joints: " + std::to_string(rows.size()) + " of " + std::to_string(model.mechanism.rows.size()) +
-                             " conditions follow from others (of " + names_of(model.mechanism, rows) + ", determined by " +
-                             names_of(model.mechanism, on) + "); they carry no force of their own");
+                             " conditions follow from others (of " + names_of(model.mechanism, rows) + ", determined by " + by +
+                             "); they carry no force of their own");
 }
 
 void set_apart(const std::vector<constraint::DependentRow>& dependent, Mechanism& mechanism) {
