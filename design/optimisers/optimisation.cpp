@@ -27,7 +27,7 @@ const char* to_string(OptimiserStatus status) {
 }
 
 const std::vector<std::string>& optimiser_names() {
-    static const std::vector<std::string> names{"ipopt", "mma", "ccsaq", "slsqp", "cobyla"};
+    static const std::vector<std::string> names{"ipopt", "mma", "ccsaq", "slsqp", "cobyla", "gauss_newton"};
     return names;
 }
 
@@ -37,7 +37,9 @@ Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const
     if (name == "ccsaq") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::ccsaq));
     if (name == "slsqp") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::slsqp));
     if (name == "cobyla") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::cobyla));
-    return Error{ErrorCode::out_of_range, where, "unknown optimiser \"" + name + "\"; known are ipopt, mma, ccsaq, slsqp, cobyla"};
+    if (name == "gauss_newton") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>(Curvature::gauss_newton));
+    return Error{ErrorCode::out_of_range, where,
+                 "unknown optimiser \"" + name + "\"; known are ipopt, mma, ccsaq, slsqp, cobyla, gauss_newton"};
 }
 
 namespace {

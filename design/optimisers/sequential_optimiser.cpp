@@ -17,9 +17,10 @@ constexpr double most_penalty = 1e8;
 
 class SequentialRun {
 public:
-    SequentialRun(Evaluator& evaluator, const OptimiserOptions& options)
+    SequentialRun(Evaluator& evaluator, const OptimiserOptions& options, Curvature curvature)
         : evaluator_(evaluator),
           options_(options),
+          curvature_(curvature),
           rest_(evaluator.variables()),
           point_(evaluator.best_scaled_point()),
           at_(&evaluator.at(point_)),
@@ -44,10 +45,26 @@ private:
     double least_radius() const { return 0.03 * std::sqrt(options_.tolerance); }
     NativeOutcome end(const char* words) const { return {iterations_, words}; }
 
+    bool is_sum_of_squares() const { return std::abs(at_->residuals.squaredNorm() - at_->objective) <= 1e-9 * std::abs(at_->objective); }
+
+    // Steps are solved to 1e-9 of the numbers in them: where f is nearly nothing, it and the penalty are counted in larger units.
+    QuadraticSolution step_at_penalty() {
+        if (curvature_ == Curvature::estimated || !is_sum_of_squares())
+            return best_step(evaluator_, point_, telling_, &rest_.matrix(), radius_, penalty_);
+        Evaluation large = telling_;
+        const double size = radius_ * large.gradient.lpNorm<Eigen::Infinity>(), factor = size > 0 ? std::max(1.0, 1 / size) : 1.0;
+        large.gradient *= factor;
+        large.residual_jacobian *= std::sqrt(factor);
+        QuadraticSolution step = best_step(evaluator_, point_, large, nullptr, radius_, factor * penalty_);
+        step.decrease /= factor;
+        step.multipliers /= factor;
+        return step;
+    }
+
     // Raises the penalty until a tenth of what could be gained in feasibility is.
     QuadraticSolution steered_step() {
         const double now = target_violation(evaluator_, *at_);
-        QuadraticSolution step = best_step(evaluator_, point_, telling_, &rest_.matrix(), radius_, penalty_);
+        QuadraticSolution step = step_at_penalty();
         if (!step.solved || step.violation <= 1e-9) return step;
         Evaluation feasibility = telling_;
         feasibility.gradient.setZero();
@@ -57,7 +74,7 @@ private:
         if (!least.solved) return step;
         while (now - step.violation < accepted_share * (now - least.violation) - 1e-9 && penalty_ < most_penalty) {
             penalty_ *= 10;
-            const QuadraticSolution steered = best_step(evaluator_, point_, telling_, &rest_.matrix(), radius_, penalty_);
+            const QuadraticSolution steered = step_at_penalty();
             if (!steered.solved) return step;
             step = steered;
         }
@@ -92,6 +109,7 @@ private:
 
     Evaluator& evaluator_;
     const OptimiserOptions& options_;
+    Curvature curvature_;
     RestCurvature rest_;
     VectorX point_;
     const Evaluation* at_;  // in the evaluator's records, which stay
@@ -105,7 +123,7 @@ private:
 
 NativeOutcome SequentialOptimiser::minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
     if (evaluator.variables() == 0) return {0, "no variables"};
-    return SequentialRun(evaluator, options).minimise();
+    return SequentialRun(evaluator, options, curvature_).minimise();
 }
 
 }  // namespace fettle::design::optimisers

@@ -20,11 +20,21 @@
 
 namespace fettle::design::optimisers {
 
-/// Called "ipopt", which solves its steps.
+/// Which curvature B has.
+enum class Curvature {
+    estimated,    ///< all of the above
+    gauss_newton  ///< where f is nothing but its residuals' squares, those alone: best where they can become nearly nothing
+};
+
+/// Called "ipopt", which solves its steps, and "gauss_newton".
 class SequentialOptimiser : public Optimiser {
 public:
-    std::string name() const override { return "ipopt"; }
+    explicit SequentialOptimiser(Curvature curvature = Curvature::estimated) : curvature_(curvature) {}
+    std::string name() const override { return curvature_ == Curvature::gauss_newton ? "gauss_newton" : "ipopt"; }
     NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions& options) const override;
+
+private:
+    Curvature curvature_;
 };
 
 }  // namespace fettle::design::optimisers
