@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/quantity_reader.hpp"
 
+#include <algorithm>
+
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
@@ -86,6 +91,66 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
     return std::make_shared<quantities::Mass>(context.scene, bodies);
 }
 
+quantities::Over read_over(const JsonNode& node) {
+    static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least"};
+    const std::string name = node.choice(names).value_or("end");
+    return static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+// The name of a joint or motor of the scene.
+template <class Parts>
+const typename Parts::value_type* read_part(const JsonNode& node, const Parts& parts, const std::string& what) {
+    const auto name = node.string();
+    if (!name) return nullptr;
+    std::vector<std::string_view> known;
+    for (const auto& part : parts) {
+        if (part.name == *name) return &part;
+        known.push_back(part.name);
+    }
+    node.fail(ErrorCode::out_of_range,
+              "the scene has no " + what + " " + node.shown() + (known.empty() ? "" : "; " + core::files::did_you_mean(*name, known)));
+    return nullptr;
+}
+
+std::shared_ptr<const Quantity> read_joint_load(const JsonNode& node, const ReadContext& context, quantities::JointLoadKind kind) {
+    const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
+    const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
+    const quantities::Over over = read_over(node["over"]);
+    if (joint == nullptr || !axis) return nullptr;
+    return std::make_shared<quantities::JointLoad>(quantities::JointLoad::Of{kind, joint->name, *axis}, over);
+}
+
+std::shared_ptr<const Quantity> read_joint_force(const JsonNode& node, const ReadContext& context) {
+    return read_joint_load(node, context, quantities::JointLoadKind::force);
+}
+
+std::shared_ptr<const Quantity> read_joint_torque(const JsonNode& node, const ReadContext& context) {
+    return read_joint_load(node, context, quantities::JointLoadKind::torque);
+}
+
+std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const ReadContext& context) {
+    const core::scene::Mechanism& mechanism = context.scene.mechanism;
+    const core::scene::Motor* motor = read_part(node.require("motor"), mechanism.motors, "motor");
+    const quantities::Over over = read_over(node["over"]);
+    if (motor == nullptr) return nullptr;
+    bool turns = false;
+    for (const core::scene::Joint& joint : mechanism.joints)
+        if (joint.name == motor->joint)
+            turns = joint.kind == core::scene::JointKind::revolute || joint.kind == core::scene::JointKind::screw;
+    quantities::JointLoad::Of of{quantities::JointLoadKind::effort, motor->name};
+    of.effort_dimension = turns ? Dimension::torque : Dimension::force;
+    return std::make_shared<quantities::JointLoad>(of, over);
+}
+
+std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadContext&) {
+    static const std::vector<std::string_view> names{"kinetic", "potential", "spring", "total"};
+    const auto name = node.require("of").choice(names);
+    const quantities::Over over = read_over(node["over"]);
+    if (!name) return nullptr;
+    return std::make_shared<quantities::Energy>(
+        static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), over);
+}
+
 std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
 std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
@@ -100,6 +165,11 @@ std::string mass_name(const JsonNode& node) {
     return name;
 }
 
+std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
+std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
+std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
+std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
+
 }  // namespace
 
 const std::vector<QuantityType>& quantity_table() {
@@ -107,7 +177,11 @@ const std::vector<QuantityType>& quantity_table() {
                                                  {"marker_path", {"body", "point", "points", "times"}, read_marker_path, marker_name},
                                                  {"play", {"a", "b"}, read_clearance, play_name},
                                                  {"clearance", {"a", "b", "motion"}, read_clearance, clearance_name},
-                                                 {"mass", {"bodies"}, read_mass, mass_name}};
+                                                 {"mass", {"bodies"}, read_mass, mass_name},
+                                                 {"joint_force", {"joint", "axis", "over"}, read_joint_force, joint_force_name},
+                                                 {"joint_torque", {"joint", "axis", "over"}, read_joint_torque, joint_torque_name},
+                                                 {"motor_effort", {"motor", "over"}, read_motor_effort, motor_effort_name},
+                                                 {"energy", {"of", "over"}, read_energy, energy_name}};
     return table;
 }
 

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/energy.hpp"
+
+#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "fettle/core/energy/measure_law.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+
+namespace fettle::design::quantities {
+
+namespace {
+
+using core::energy::LawValue;
+using core::kinematics::pose_matrix;
+using core::measure::Measure;
+using core::model::Body;
+using core::model::LawKind;
+using core::model::MeasureTerm;
+using core::model::Mechanism;
+using description::Seeds;
+using description::Simulated;
+
+bool stores(const MeasureTerm& term) { return term.kind == LawKind::spring || term.kind == LawKind::stop; }
+
+bool has_mass(const Body& body) { return body.moments(3, 3) > 0; }
+
+// Springs and stops with the potential's own weight.
+core::energy::StepProblem unweighted(const core::model::Model& model) {
+    core::energy::StepProblem problem;
+    problem.model = &model;
+    problem.weight = 1;
+    return problem;
+}
+
+Matrix34 velocity(const Simulated& s, size_t t, size_t i) {
+    return (pose_matrix(s.trajectory.poses[t + 1][i]) - pose_matrix(s.trajectory.poses[t][i])) / s.model.timestep;
+}
+
+double kinetic(const Simulated& s, size_t t) {
+    double sum = 0;
+    for (size_t i = 0; i < s.model.bodies.size(); ++i) {
+        if (!has_mass(s.model.bodies[i])) continue;
+        const Matrix34 v = velocity(s, t, i);
+        sum += 0.5 * (v * s.model.bodies[i].moments).cwiseProduct(v).sum();
+    }
+    return sum;
+}
+
+double potential(const Simulated& s, size_t t) {
+    double sum = 0;
+    for (size_t i = 0; i < s.model.bodies.size(); ++i) {
+        const Body& body = s.model.bodies[i];
+        if (!has_mass(body)) continue;
+        const Matrix34 pose = pose_matrix(s.trajectory.poses[t + 1][i]);
+        sum -= s.model.gravity.dot(pose * body.moments.col(3)) + body.force.dot(pose.col(3));
+    }
+    return sum;
+}
+
+double spring(const Simulated& s, size_t t, const std::vector<double>& angles) {
+    const Mechanism& mechanism = s.model.mechanism;
+    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, s.trajectory.poses[t + 1]);
+    const core::energy::StepProblem problem = unweighted(s.model);
+    double sum = 0;
+    for (const MeasureTerm& term : mechanism.terms)
+        if (stores(term)) sum += measure_law(problem, term, core::constraint::value_at(mechanism.set, term.measure, frames, angles)).value;
+    return sum;
+}
+
+// Adds the seeds of scale times each, of one step.
+class EnergySeeds {
+public:
+    EnergySeeds(const Simulated& s, size_t t, double scale, Seeds& seeds)
+        : s_(s), t_(t), scale_(scale), seeds_(seeds), moments_bar_(s.model.bodies.size(), Matrix4::Zero()) {}
+
+    void add_kinetic() {
+        for (size_t i = 0; i < s_.model.bodies.size(); ++i) {
+            if (!has_mass(s_.model.bodies[i])) continue;
+            const Matrix34 v = velocity(s_, t_, i), bar = scale_ / s_.model.timestep * v * s_.model.bodies[i].moments;
+            seeds_.trajectory_bar.pose_bar[t_ + 1][i] += bar;
+            seeds_.trajectory_bar.pose_bar[t_][i] -= bar;
+            moments_bar_[i] += 0.5 * scale_ * v.transpose() * v;
+        }
+    }
+
+    void add_potential() {
+        for (size_t i = 0; i < s_.model.bodies.size(); ++i) {
+            const Body& body = s_.model.bodies[i];
+            if (!has_mass(body)) continue;
+            const Matrix34 pose = pose_matrix(s_.trajectory.poses[t_ + 1][i]);
+            Matrix34& bar = seeds_.trajectory_bar.pose_bar[t_ + 1][i];
+            bar -= scale_ * s_.model.gravity * body.moments.col(3).transpose();
+            bar.col(3) -= scale_ * body.force;
+            seeds_.model_bar.gravity_bar -= scale_ * pose * body.moments.col(3);
+            seeds_.model_bar.bodies[i].force_bar -= scale_ * pose.col(3);
+            const Eigen::Vector4d first = -0.5 * scale_ * pose.transpose() * s_.model.gravity;
+            moments_bar_[i].col(3) += first;
+            moments_bar_[i].row(3) += first.transpose();
+        }
+    }
+
+    void add_spring(const std::vector<double>& angles) {
+        const Mechanism& mechanism = s_.model.mechanism;
+        const std::vector<core::kinematics::Pose>& poses = s_.trajectory.poses[t_ + 1];
+        const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
+        std::vector<Matrix3> rotations;
+        for (const core::measure::Frame& f : mechanism.set.frames)
+            rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity())
+                                                               : poses[static_cast<size_t>(f.body)].rotation);
+        adjoint::MechanismGradient& bar = seeds_.model_bar.mechanism;
+        for (size_t k = 0; k < mechanism.terms.size(); ++k) {
+            const MeasureTerm& term = mechanism.terms[k];
+            if (!stores(term)) continue;
+            const Measure& m = mechanism.set.measures[static_cast<size_t>(term.measure)];
+            const core::measure::VectorFunction f = vector_function(m, frames);
+            const LawValue law =
+                measure_law(unweighted(s_.model), term, core::constraint::value_at(mechanism.set, term.measure, frames, angles));
+            const core::measure::PoseGradients g = pose_gradients(m, f, frames);
+            add_pose(mechanism, m.a, scale_ * law.first * tangent_gradient(g.a));
+            add_pose(mechanism, m.b, scale_ * law.first * tangent_gradient(g.b));
+            add_placement_gradient(f, scale_ * law.first, rotations, bar.frames);
+            bar.term_coefficient[k] += scale_ * law.value / term.coefficient;
+            bar.term_reference[k] -= scale_ * law.first;
+        }
+    }
+
+    // Moments = density times the solid's.
+    void finish() {
+        for (size_t i = 0; i < moments_bar_.size(); ++i) {
+            if (moments_bar_[i].isZero(0)) continue;
+            const Body& body = s_.model.bodies[i];
+            adjoint::BodyGradient& bar = seeds_.model_bar.bodies[i];
+            const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+            bar.density_bar += moments_bar_[i].cwiseProduct(solid).sum();
+            adjoint::geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[i],
+                                                     bar.vertices_bar);
+        }
+    }
+
+private:
+    void add_pose(const Mechanism& mechanism, int frame, const Vector6& gradient) {
+        const int body = mechanism.set.frames[static_cast<size_t>(frame)].body;
+        if (body == core::measure::world) return;
+        const auto i = static_cast<size_t>(body);
+        seeds_.trajectory_bar.pose_bar[t_ + 1][i] += pose_entries(gradient, s_.trajectory.poses[t_ + 1][i].rotation);
+    }
+
+    const Simulated& s_;
+    size_t t_;
+    double scale_;
+    Seeds& seeds_;
+    std::vector<Matrix4> moments_bar_;
+};
+
+}  // namespace
+
+std::vector<double> Energy::series(const Simulated& s) const {
+    const std::vector<std::vector<double>> angles = adjoint::stepper::angles_along(s.model, s.trajectory);
+    std::vector<double> out;
+    for (size_t t = 0; t < s.trajectory.steps.size(); ++t) {
+        double sum = 0;
+        if (has(EnergyKind::kinetic) && s.model.integrator != core::scene::Integrator::quasi_static) sum += kinetic(s, t);
+        if (has(EnergyKind::potential)) sum += potential(s, t);
+        if (has(EnergyKind::spring)) sum += spring(s, t, angles[t + 1]);
+        out.push_back(sum);
+    }
+    return out;
+}
+
+void Energy::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
+    const std::vector<std::vector<double>> angles = adjoint::stepper::angles_along(s.model, s.trajectory);
+    for (size_t t = 0; t < weights.size(); ++t) {
+        if (weights[t] == 0) continue;
+        EnergySeeds step(s, t, weights[t], seeds);
+        if (has(EnergyKind::kinetic) && s.model.integrator != core::scene::Integrator::quasi_static) step.add_kinetic();
+        if (has(EnergyKind::potential)) step.add_potential();
+        if (has(EnergyKind::spring)) step.add_spring(angles[t + 1]);
+        step.finish();
+    }
+}
+
+Errors Energy::check(const core::model::Model& model, int steps) const {
+    Errors errors = StepSeries::check(model, steps);
+    if (kind_ == EnergyKind::kinetic && model.integrator == core::scene::Integrator::quasi_static)
+        errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation knows no velocities, so no kinetic energy"});
+    for (const Body& body : model.bodies) {
+        const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+        if (kind_ == EnergyKind::spring || !has_mass(body) || (body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
+        errors.push_back(
+            {ErrorCode::unsupported, "",
+             "the mass of body \"" + body.name + "\" is not that of a solid of its density: its energy cannot be differentiated"});
+    }
+    return errors;
+}
+
+}  // namespace fettle::design::quantities

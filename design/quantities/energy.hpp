@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// Energies at each step's end, of all bodies with mass, joints and springs [J]:
+///   kinetic     sum 1/2 tr(V M V^T),   V = (P' - P)/h                                           (none in quasi-statics)
+///   potential   - sum a . (P' M e4) + f . q'              gravity a and constant forces f, zero at the world's origin
+///   spring      sum g(m')                                 of springs and stops (core/energy/measure_law.hpp)
+///   total       their sum
+#pragma once
+
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+enum class EnergyKind { kinetic, potential, spring, total };
+
+class Energy : public StepSeries {
+public:
+    Energy(EnergyKind kind, Over over) : StepSeries(over), kind_(kind) {}
+
+    Dimension dimension() const override { return Dimension::energy; }
+    /// Kinetic energy in quasi-statics; masses that are not those of solids of their density.
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    bool has(EnergyKind kind) const { return kind_ == kind || kind_ == EnergyKind::total; }
+
+    EnergyKind kind_;
+};
+
+}  // namespace fettle::design::quantities

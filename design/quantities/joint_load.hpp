@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// What a joint or motor carries at each step's end (core/stepper/joint_outputs.hpp): with m_i the multipliers of its rows c_i, of the
+/// potential times `weight`,
+///   force     F = - sum m_i dc_i/dq / weight                 on body b (of a joint with the world alone: on that body), world [N]
+///   torque    T = - sum m_i dc_i/dphi / weight - arm x F     on it, about the joint's point in b [N m]
+///   effort    - m / weight                                   of a motor, along its joint's coordinate [N], [N m]
+/// For a direction n of the world, F . n is the rows' change along the translation n of the body, times -m_i / weight, and T . n that along
+/// the turn n about the joint's point, so that derivatives are those of a measure's change along a motion. Conditions of a joint that
+/// follow from others carry nothing.
+#pragma once
+
+#include <string>
+
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+enum class JointLoadKind { force, torque, effort };
+
+class JointLoad : public StepSeries {
+public:
+    struct Of {
+        JointLoadKind kind = JointLoadKind::force;
+        std::string name;                                ///< of the joint; of the motor (effort)
+        Vector3 axis = Vector3::Zero();                  ///< the component along this unit vector, world; 0: the magnitude
+        Dimension effort_dimension = Dimension::torque;  ///< of the motor's coordinate: torque or force
+    };
+    JointLoad(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
+
+    Dimension dimension() const override;
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    Of of_;
+};
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/step_series.hpp"
+
+#include <numeric>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/design/quantities/stroke.hpp"
+
+namespace fettle::design::quantities {
+
+using description::Measurement;
+using description::Seeds;
+using description::Simulated;
+
+namespace {
+
+std::vector<double> negated(std::vector<double> y) {
+    for (double& v : y) v = -v;
+    return y;
+}
+
+double number(Over over, const std::vector<double>& y) {
+    FETTLE_ASSERT(!y.empty(), "a number of each step needs a step");
+    const double sum = std::accumulate(y.begin(), y.end(), 0.0);
+    switch (over) {
+        case Over::end:
+            return y.back();
+        case Over::sum:
+            return sum;
+        case Over::mean:
+            return sum / static_cast<double>(y.size());
+        case Over::largest:
+            return smooth_maximum(y).value;
+        case Over::least:
+            return -smooth_maximum(negated(y)).value;
+    }
+    return 0;
+}
+
+std::vector<double> weights_of(Over over, const std::vector<double>& y) {
+    std::vector<double> out(y.size(), over == Over::sum ? 1.0 : over == Over::mean ? 1 / static_cast<double>(y.size()) : 0.0);
+    if (over == Over::end) out.back() = 1;
+    if (over != Over::largest && over != Over::least) return out;
+    const Extreme extreme = smooth_maximum(over == Over::largest ? y : negated(y));
+    for (size_t k = 0; k < 3; ++k)
+        if (extreme.weights[k] != 0) out[static_cast<size_t>(extreme.first) + k] = extreme.weights[k];
+    return out;
+}
+
+}  // namespace
+
+Measurement StepSeries::value(const Simulated& simulated) const { return description::exact(number(over_, series(simulated))); }
+
+void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
+    std::vector<double> weights = weights_of(over_, series(simulated));
+    for (double& weight : weights) weight *= scale;
+    add_series_seeds(simulated, weights, seeds);
+}
+
+Errors StepSeries::check(const core::model::Model& model, int steps) const {
+    Errors errors;
+    if (steps < 1) errors.push_back({ErrorCode::out_of_range, "", "what a step reports needs a step"});
+    const core::scene::Integrator integrator = model.integrator;
+    if (integrator != core::scene::Integrator::implicit_euler && integrator != core::scene::Integrator::quasi_static)
+        errors.push_back({ErrorCode::unsupported, "", "what steps of bdf2 and newmark report is no quantity of a design yet"});
+    return errors;
+}
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them, and its derivative in each. Kinds:
+/// joint_load.hpp, energy.hpp.
+#pragma once
+
+#include <vector>
+
+#include "fettle/design/description/quantity.hpp"
+
+namespace fettle::design::quantities {
+
+/// What a series comes to. The extremes are those of stroke.hpp: of the parabola through three steps, smooth in the parameters.
+enum class Over { end, sum, mean, largest, least };
+
+class StepSeries : public description::Quantity {
+public:
+    explicit StepSeries(Over over) : over_(over) {}
+
+    description::Measurement value(const description::Simulated& simulated) const override;
+    void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
+                   description::Seeds& seeds) const override;
+    /// No step; bdf2 and newmark, whose steps are not differentiated.
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    /// y_1 .. y_T. Contract: at least one step.
+    virtual std::vector<double> series(const description::Simulated& simulated) const = 0;
+    /// Adds the seeds of sum_t weights[t] y_t+1.
+    virtual void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                                  description::Seeds& seeds) const = 0;
+
+private:
+    Over over_;
+};
+
+/// The matrix whose product, entry by entry, with the change [[phi] R, dq] of a pose is that of a gradient in (q, phi).
+inline Matrix34 pose_entries(const Vector6& gradient, const Matrix3& rotation) {
+    Matrix34 out;
+    out << 0.5 * cross_matrix(gradient.tail<3>()) * rotation, gradient.head<3>();
+    return out;
+}
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// What joints, motors and springs carry and store, as quantities of a design: values against what the simulation reports, derivatives
+// against differences of designs.
+#include "fettle/design/quantities/step_series.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/tests/core/stepper/mechanism_models.hpp"
+
+namespace fettle::design::quantities::step_series_test {
+
+namespace {
+
+using namespace fettle::tests::mechanisms;
+using core::model::Origin;
+using core::scene::JointKind;
+using description::Design;
+using description::Move;
+using description::MoveTarget;
+using problem::DesignProblem;
+
+const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
+
+// A slider-crank with a spring that has stops, in space: the rod between balls. `is_static`: by equilibria.
+Design slider_crank(bool is_static) {
+    const double start = 0.4, tilt = std::asin(0.1 * std::sin(start) / 0.3);
+    const Vector3 pin(0.1 * std::cos(start), 0.1 * std::sin(start), 0), wrist(pin.x() + 0.3 * std::cos(tilt), 0, 0);
+    core::scene::Scene scene = scene_of(
+        {bar("crank", 0.1, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", 0.3, pin, Vector3(0, 0, -tilt)), bar("slider", 0.05, wrist)},
+        0.02);
+    scene.integrator = is_static ? core::scene::Integrator::quasi_static : core::scene::Integrator::implicit_euler;
+    scene.gravity = Vector3(0.2, -9.81, 0.4);
+    scene.mechanism.joints = {
+        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
+        joint("pin", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
+        joint("wrist", JointKind::cylindrical, {"rod", Vector3(0.3, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
+        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
+    core::scene::Spring back;
+    back.name = "back";
+    back.joint = "guide";
+    back.forces.stiffness = 500;
+    back.forces.rest = 0.03;
+    back.forces.damping = 3;
+    back.forces.limits = {-0.3, 1e-5};
+    scene.mechanism.springs = {back};
+    scene.mechanism.loads = {{"push", "", "slider", Vector3(0.02, 0.01, 0), Vector3(-12, 1, 0.3)}};
+    core::scene::Curve curve;
+    curve.kind = core::scene::CurveKind::control_points;
+    curve.times = {0, 0.2};
+    curve.values = {0, 0.2, 0.7, 1.4, 1.9};
+    curve.rate = 0.7;
+    scene.mechanism.motors = {motor("drive", "main", curve)};
+    scene.dhat = 1e-3;
+    Design design;
+    design.scene = scene;
+    design.steps = 9;
+    return design;
+}
+
+void add_parameter(Design& design, Move move) {
+    description::Parameter p;
+    p.name = "p" + std::to_string(design.parameters.size());
+    p.lower = -1;
+    p.upper = 1;
+    p.moves = {std::move(move)};
+    design.parameters.push_back(std::move(p));
+}
+
+// At 0 the design as it is.
+void add_parameters(Design& design) {
+    const auto of = [](MoveTarget target, Origin::List list, int index, double scale, double offset, int entry = 0) {
+        Move move;
+        move.target = target;
+        move.part = {list, index};
+        move.scale = scale;
+        move.offset = offset;
+        move.entry = entry;
+        return move;
+    };
+    const auto along = [](Move move, const Vector3& direction, const Vector3& at) {
+        move.direction = direction;
+        move.position_offset = at;
+        return move;
+    };
+    using List = Origin::List;
+    add_parameter(design, along(of(MoveTarget::point_a, List::joint, 1, 0.01, 0), x_axis, Vector3(0.1, 0, 0)));  // the crank's radius
+    add_parameter(design, along(of(MoveTarget::point_b, List::joint, 3, 0.01, 0), y_axis, Vector3::Zero()));
+    add_parameter(design, along(of(MoveTarget::axis_a, List::joint, 3, 0.1, 0), Vector3(0, 1, 0.5), Vector3::Zero()));
+    add_parameter(design, of(MoveTarget::stiffness, List::spring, 0, 100, 500));
+    add_parameter(design, of(MoveTarget::rest, List::spring, 0, 0.01, 0.03));
+    add_parameter(design, of(MoveTarget::upper_limit, List::spring, 0, 1e-4, 1e-5));
+    add_parameter(design, of(MoveTarget::damping, List::spring, 0, 1, 3));
+    add_parameter(design, along(of(MoveTarget::load_force, List::load, 0, 3, 0), Vector3(1, 1, 0), Vector3(-12, 1, 0)));
+    add_parameter(design, along(of(MoveTarget::load_point, List::load, 0, 0.01, 0), y_axis, Vector3(0, 0.01, 0)));
+    add_parameter(design, of(MoveTarget::curve_value, List::motor, 0, 0.1, 1.4, 3));
+    add_parameter(design, of(MoveTarget::curve_rate, List::motor, 0, 0.1, 0.7));
+    add_parameter(design, {.target = MoveTarget::density, .body = 1, .scale = 300, .offset = 1000});
+    add_parameter(design, {.target = MoveTarget::gravity, .direction = y_axis, .position_offset = Vector3(0, -9.81, 0)});
+    add_parameter(design, {.target = MoveTarget::force, .body = 1, .direction = Vector3(1, 0, 1)});
+}
+
+std::vector<std::pair<std::string, std::shared_ptr<const description::Quantity>>> quantities_of(bool is_static) {
+    std::vector<std::pair<std::string, std::shared_ptr<const description::Quantity>>> out;
+    const auto load = [&](JointLoadKind kind, const std::string& name, const Vector3& axis, Over over) {
+        out.emplace_back(name + " load " + std::to_string(static_cast<int>(kind)),
+                         std::make_shared<JointLoad>(JointLoad::Of{kind, name, axis}, over));
+    };
+    load(JointLoadKind::effort, "drive", Vector3::Zero(), Over::mean);
+    load(JointLoadKind::effort, "drive", Vector3::Zero(), Over::largest);
+    load(JointLoadKind::force, "wrist", Vector3::Zero(), Over::end);
+    load(JointLoadKind::force, "main", Vector3(0.6, 0.8, 0), Over::sum);
+    load(JointLoadKind::torque, "guide", Vector3::Zero(), Over::mean);
+    load(JointLoadKind::torque, "main", Vector3(0, 0.6, 0.8), Over::end);
+    load(JointLoadKind::force, "pin", Vector3::Zero(), Over::least);
+    for (const EnergyKind kind : {EnergyKind::kinetic, EnergyKind::potential, EnergyKind::spring, EnergyKind::total})
+        if (!is_static || kind != EnergyKind::kinetic)
+            out.emplace_back("energy " + std::to_string(static_cast<int>(kind)), std::make_shared<Energy>(kind, Over::mean));
+    return out;
+}
+
+DesignProblem problem_of(bool is_static) {
+    Design design = slider_crank(is_static);
+    add_parameters(design);
+    for (const auto& [name, quantity] : quantities_of(is_static))
+        design.constraints.push_back({name + std::to_string(design.constraints.size()), {}, quantity});
+    auto problem = DesignProblem::create(std::move(design));
+    if (!problem) UNSCOPED_INFO(problem.errors()[0].where << ": " << problem.errors()[0].message);
+    REQUIRE(problem);
+    return std::move(problem).value();
+}
+
+}  // namespace
+
+TEST_CASE("joint loads, efforts and energies are those that the simulation reports", "[joints]") {
+    for (const bool is_static : {false, true}) {
+        const core::model::Model model = built(slider_crank(is_static).scene);
+        const core::stepper::Simulation done = run(model, 9, true);
+        const description::Simulated simulated{model, done.trajectory};
+        const auto ends = [&](std::shared_ptr<const description::Quantity> quantity) { return quantity->value(simulated).value; };
+        const core::stepper::StepOutputs& last = done.outputs.back();
+        const auto reported = [&](const std::string& name) {
+            for (const core::stepper::JointForce& force : last.joints)
+                if (model.mechanism.joints[static_cast<size_t>(force.joint)].name == name) return force;
+            FAIL(name);
+            return core::stepper::JointForce{};
+        };
+        const auto load = [&](JointLoadKind kind, const std::string& name, const Vector3& axis) {
+            return ends(std::make_shared<JointLoad>(JointLoad::Of{kind, name, axis}, Over::end));
+        };
+        CAPTURE(is_static);
+        for (const std::string name : {"main", "pin", "wrist", "guide"}) {
+            const core::stepper::JointForce force = reported(name);
+            CHECK(load(JointLoadKind::force, name, Vector3::Zero()) == Approx(force.force.norm()).epsilon(1e-8));
+            CHECK(load(JointLoadKind::torque, name, Vector3::Zero()) == Approx(force.torque.norm()).epsilon(1e-7).margin(1e-9));
+            CHECK(load(JointLoadKind::force, name, y_axis) == Approx(force.force.y()).epsilon(1e-8).margin(1e-9));
+        }
+        CHECK(load(JointLoadKind::effort, "drive", Vector3::Zero()) == Approx(reported("drive").effort).epsilon(1e-8));
+        CHECK(std::abs(reported("drive").effort) > 1e-3);
+        const auto energy = [&](EnergyKind kind) { return ends(std::make_shared<Energy>(kind, Over::end)); };
+        CHECK(energy(EnergyKind::potential) == Approx(last.potential_energy).epsilon(1e-12));
+        CHECK(energy(EnergyKind::spring) == Approx(last.spring_energy).epsilon(1e-9));
+        if (!is_static) CHECK(energy(EnergyKind::kinetic) == Approx(last.kinetic_energy).epsilon(1e-12));
+        const double kinetic = is_static ? 0 : last.kinetic_energy;
+        CHECK(energy(EnergyKind::total) == Approx(kinetic + last.potential_energy + last.spring_energy).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("joint loads, efforts and energies have the derivatives of their differences", "[joints]") {
+    for (const bool is_static : {false, true}) {
+        const DesignProblem problem = problem_of(is_static);
+        const VectorX start = VectorX::Zero(problem.parameter_count());
+        const problem::DesignEvaluation at = problem.evaluate(start);
+        INFO(at.reason);
+        REQUIRE(at.usable);
+        const auto values = [&](const VectorX& p) {
+            const problem::DesignEvaluation there = problem.evaluate(p, {false, {}, {}});
+            INFO(there.reason);
+            REQUIRE(there.usable);
+            VectorX out(static_cast<Eigen::Index>(there.constraints.size()));
+            for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = there.constraints[static_cast<size_t>(i)].value;
+            return out;
+        };
+        for (Eigen::Index k = 0; k < start.size(); ++k) {
+            VectorX least = VectorX::Constant(at.jacobian.rows(), INFINITY);
+            for (const double s : {1e-2, 3e-3, 1e-3}) {
+                const auto central = [&](double step) {
+                    VectorX up = start, down = start;
+                    up[k] = step;
+                    down[k] = -step;
+                    return VectorX((values(up) - values(down)) / (2 * step));
+                };
+                const VectorX coarse = central(s), fine = central(s / 2);
+                least = least.cwiseMin(((4 * fine - coarse) / 3 - at.jacobian.col(k)).cwiseAbs());
+            }
+            for (Eigen::Index i = 0; i < least.size(); ++i) {
+                const double size = std::max(std::abs(at.jacobian(i, k)), 1e-3 * at.jacobian.row(i).lpNorm<Eigen::Infinity>());
+                CAPTURE(is_static, problem.design().constraints[static_cast<size_t>(i)].name, k, at.jacobian(i, k), least[i]);
+                CHECK(least[i] <= 1e-6 * size);
+            }
+        }
+    }
+}
+
+TEST_CASE("quantities of steps that cannot be are refused by name", "[joints]") {
+    const core::model::Model model = built(slider_crank(true).scene);
+    const auto message = [&](const description::Quantity& quantity, int steps) {
+        const Errors errors = quantity.check(model, steps);
+        return errors.empty() ? std::string() : errors[0].message;
+    };
+    CHECK(message(Energy(EnergyKind::kinetic, Over::end), 3).find("no kinetic energy") != std::string::npos);
+    CHECK(message(Energy(EnergyKind::total, Over::end), 0).find("needs a step") != std::string::npos);
+    CHECK(message(JointLoad({JointLoadKind::force, "nothing"}, Over::end), 3).find("no joint `nothing`") != std::string::npos);
+    CHECK(message(JointLoad({JointLoadKind::effort, "main"}, Over::end), 3).find("no motor `main`") != std::string::npos);
+    CHECK(message(JointLoad({JointLoadKind::effort, "drive"}, Over::end), 3).empty());
+}
+
+}  // namespace fettle::design::quantities::step_series_test
