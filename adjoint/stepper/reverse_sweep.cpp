@@ -76,7 +76,7 @@ private:
     Errors step_back(int t) {
         const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
         if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
-        solve(t, step);
+        if (!solve(t, step)) return StepSolver::unsolved(trajectory_, t);
         for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
             for (auto& bodies : *bars)
                 for (Matrix34& bar : bodies) bar.setZero();
@@ -94,7 +94,8 @@ private:
     }
 
     // y_bar, lambda, and lambda's motion (dq, phi) of each body.
-    void solve(int t, const LinearisedStep& step) {
+    // @return whether there is a solution.
+    bool solve(int t, const LinearisedStep& step) {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i)
             left_jacobian_[i] = core::kinematics::left_jacobian(step.points[i].rotation_vector);
         MatrixX rhs(dofs_.count, static_cast<Eigen::Index>(seeds_.size()));
@@ -109,7 +110,8 @@ private:
             if (const auto& bar = seeds_[s].multiplier_bar; !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
                 of_rows.col(static_cast<Eigen::Index>(s)) = bar[static_cast<std::size_t>(t)];
         }
-        const auto [lambda, mu] = solver_.solve(step, rhs, of_rows);
+        const StepSolver::Solution solution = solver_.solve(step, rhs, of_rows);
+        const MatrixX &lambda = solution.y, &mu = solution.mu;
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             if (step.rows.count() > 0) mu_[s] = mu.col(static_cast<Eigen::Index>(s));
             core::solver::scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
@@ -118,6 +120,7 @@ private:
                 motion_[s][i].tail<3>() = left_jacobian_[i] * lambda_[s][i].tail<3>();
             }
         }
+        return solution.is_one;
     }
 
     // Prescribed coordinates' increments, and what they are measured from: the start's position and the chart's base.

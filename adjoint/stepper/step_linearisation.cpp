@@ -110,16 +110,32 @@ StepSolver::StepSolver(const core::model::Model& model) : dofs_(core::solver::fr
     if (!model.mechanism.rows.empty()) saddle_.emplace(dofs_.index, dofs_.count);
 }
 
-Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
-    indefinite_.reset();
-    if (!saddle_) {
-        if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
-    } else {
-        if (saddle_->factorise(step.derivatives.hessian, step.rows)) return {};
-        indefinite_ = std::make_shared<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
-        indefinite_->compute(saddle_matrix(step, dofs_));
-        if (indefinite_->info() == Eigen::Success) return {};
+Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const {
+    const core::model::Model& model = *step.problem.model;
+    std::vector<double> magnitude = step.derivatives.force_magnitude;
+    for (int row = 0; row < step.rows.count(); ++row)
+        for (int k = step.rows.first[row]; k < step.rows.first[row + 1]; ++k) {
+            const core::constraint::RowGradient& e = step.rows.entries[k];
+            const double arm = std::max(model.bodies[e.body].radius, model.dhat);
+            magnitude[e.body] += std::abs(step.multipliers[row]) * (e.gradient.head<3>().norm() + e.gradient.tail<3>().norm() / arm);
+        }
+    for (std::size_t i = 0; i < magnitude.size(); ++i) {
+        const core::model::Body& body = model.bodies[i];
+        Vector6 g = step.derivatives.gradient[i];
+        g.tail<3>() /= std::max(body.radius, model.dhat);
+        for (int k = 0; k < 6; ++k)
+            if (dofs_.index[i][k] < 0) g[k] = 0;
+        const double size = magnitude[i] + body.moments(3, 3) * model.velocity_tolerance * model.timestep;
+        if (g.norm() <= balanced * size) continue;
+        return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
+                 "the step at t = " + std::to_string(trajectory.time_start + t * trajectory.timestep) + " s has no derivative: '" +
+                     body.name + "' is out of balance by " + std::to_string(g.norm() / size) +
+                     " of the forces on it. Was the trajectory simulated for gradients, from this model?"}};
     }
+    return {};
+}
+
+Errors StepSolver::unsolved(const core::stepper::Trajectory& trajectory, int t) {
     const double time = trajectory.time_start + t * trajectory.timestep;
     return {
         {core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
@@ -128,7 +144,41 @@ Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t,
              "the trajectory simulated from another model?"}};
 }
 
+Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
+    indefinite_.reset();
+    if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
+    if (!saddle_) {
+        if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
+    } else {
+        if (saddle_->factorise(step.derivatives.hessian, step.rows)) return {};
+        indefinite_ = std::make_shared<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+        indefinite_->compute(saddle_matrix(step, dofs_));
+        if (indefinite_->info() == Eigen::Success) return {};
+    }
+    return unsolved(trajectory, t);
+}
+
+// Rounding leaves a part that grows with the stiffness of contact; a singular matrix leaves all of the right-hand side, or no number.
 StepSolver::Solution StepSolver::solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
+    constexpr double solved = 1e-2;
+    Solution out = solve_once(step, rhs, of_rows);
+    for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
+        std::vector<Vector6> y(dofs_.index.size(), Vector6::Zero());
+        core::solver::scatter(dofs_, out.y.col(k), y);
+        std::vector<Vector6> taken = core::solver::multiply(step.derivatives.hessian, y);
+        double left = 0, all = rhs.col(k).norm();
+        if (step.rows.count() > 0) {
+            add_transposed(step.rows, out.mu.col(k), taken);
+            left += (multiply(step.rows, y) - of_rows.col(k)).norm();
+            all += of_rows.col(k).norm();
+        }
+        left += (core::solver::gather(dofs_, taken) - rhs.col(k)).norm();
+        out.is_one = out.is_one && left <= solved * all;
+    }
+    return out;
+}
+
+StepSolver::Solution StepSolver::solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
     if (!saddle_) return {refined_solve(linear_, dofs_, step.derivatives.hessian, rhs), {}};
     Solution out{MatrixX(rhs.rows(), rhs.cols()), MatrixX(of_rows.rows(), rhs.cols())};
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) {

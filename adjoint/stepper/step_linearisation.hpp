@@ -35,11 +35,13 @@ public:
 
     const core::solver::FreeDofs& dofs() const { return dofs_; }
 
-    /// Error (inconsistent): the matrix is singular; names the step and the time.
+    /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
+    /// was not solved for gradients, or with another kappa; the matrix is singular.
     Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
 
     struct Solution {
-        MatrixX y, mu;  ///< one column per right-hand side
+        MatrixX y, mu;       ///< one column per right-hand side
+        bool is_one = true;  ///< false: it does not solve the system, which is singular up to rounding; see unsolved()
     };
     /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows of no matter.
     Solution solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
@@ -47,7 +49,16 @@ public:
     /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free.
     VectorX multipliers(const LinearisedStep& step);
 
+    /// Of the whole step, where a solution is none.
+    static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
+
+    /// Largest share of its forces by which a body may be out of balance.
+    static constexpr double balanced = 1e-6;
+
 private:
+    Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
+    Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
+
     core::solver::FreeDofs dofs_;
     core::solver::LinearSolver linear_;
     std::optional<core::constraint::SaddleSolver> saddle_;

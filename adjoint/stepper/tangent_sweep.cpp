@@ -143,6 +143,7 @@ private:
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);
         const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
         const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
+        if (!solution.is_one) return StepSolver::unsolved(trajectory_, t);
         core::solver::scatter(dofs_, solution.y.col(0), y_dot);
         multipliers_.push_back(step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX());
         for (std::size_t i = 0; i < n; ++i)

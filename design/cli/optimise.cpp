@@ -150,7 +150,8 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     app.also_called("optimize");
     auto options = std::make_shared<OptimiseArguments>();
     app.option("DESIGN", options->path, "Design to start from").required();
-    app.option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: what the design says)")
+    app.option("--optimiser,--optimizer", options->optimiser,
+               "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: what the design says)")
         .one_of(optimisers::optimiser_names());
     app.option("--out", options->out, "Folder for the result (default: the design's `output`)");
     app.option("--starts", options->starts, "From so many starts: the file's values, and random ones; the best is kept").between(1, 1000);

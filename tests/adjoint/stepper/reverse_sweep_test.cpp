@@ -257,7 +257,7 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         REQUIRE(result.errors().size() == 1);
         CHECK(result.errors()[0].where == "friction");
         for (core::model::Body& body : two.model.bodies) body.group = 1;
-        CHECK(reverse_sweep(two.model, path, end));
+        CHECK(reverse_sweep(two.model, trajectory_of(two), end));
     }
     SECTION("a full turn in one step") {
         core::stepper::Trajectory fast = trajectory;
@@ -267,8 +267,51 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         CHECK(result.errors()[0].code == core::base::ErrorCode::out_of_range);
         CHECK(result.errors()[0].where == "step 3");
     }
+    SECTION("another stiffness of contact than the trajectory was solved with, and a solve that is no gradient's") {
+        SweepScene two = stack();
+        core::stepper::Trajectory path = trajectory_of(two);
+        const std::vector<TrajectoryGradient> end{end_position(two, 0, 0)};
+        const auto out_of_balance = [&] {
+            const auto result = reverse_sweep(two.model, path, end);
+            REQUIRE(result.errors().size() == 1);
+            CAPTURE(result.errors()[0].message);
+            CHECK(result.errors()[0].where.find("step ") == 0);
+            CHECK(result.errors()[0].message.find("out of balance") != std::string::npos);
+            CHECK_FALSE(tangent_sweep(two.model, path, fettle::adjoint::zero_model_tangent(two.model, two.steps)));
+        };
+        const double kappa = two.model.kappa;
+        two.model.kappa *= 1.1;
+        out_of_balance();
+        two.model.kappa = kappa;
+        core::stepper::SimulationOptions options;
+        options.steps = two.steps;
+        two.model.velocity_tolerance = 0.1;
+        path = core::stepper::simulate(two.model, options).trajectory;
+        out_of_balance();
+    }
+    SECTION("a light body out of balance, which a norm over all would not show") {
+        SweepScene pair = free_flight();
+        core::model::Body light = pair.model.bodies[0];
+        light.name = "feather";
+        light.density *= 1e-3;
+        light.force *= 1e-3;
+        tests::support::refresh(light);
+        pair.model.bodies.push_back(light);
+        for (core::model::Body& body : pair.model.bodies) body.group = 0;
+        core::stepper::Trajectory path = trajectory_of(pair);
+        const std::vector<TrajectoryGradient> end{end_position(pair, 0, 0)};
+        const auto before = reverse_sweep(pair.model, path, end);
+        CAPTURE(before ? "" : before.errors()[0].message);
+        REQUIRE(before);
+        path.poses[3][1].position.x() += 1e-3;
+        path.steps[2].nodes.back()[1].position.x() += 1e-3;
+        const auto result = reverse_sweep(pair.model, path, end);
+        REQUIRE_FALSE(result);
+        CHECK(result.errors()[0].message.find("'feather' is out of balance") != std::string::npos);
+    }
     SECTION("a body without mass") {
         scene.model.bodies[0].density = 0;
+        scene.model.bodies[0].force.setZero();
         tests::support::refresh(scene.model.bodies[0]);
         const auto result = reverse_sweep(scene.model, trajectory, seeds);
         REQUIRE_FALSE(result);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// One table: every sort of contact, minimum separation and integrator that can be differentiated, with every kind of parameter: the two
+// sweeps against each other, central differences and the slope of Taylor's remainder of whole simulations.
+#include <catch2/catch.hpp>
+
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "fettle/core/model/choose_proximal_weight.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+#include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/test_models.hpp"
+
+namespace fettle::adjoint::stepper::sweep_matrix_test {
+
+using namespace fettle::tests::adjoint;
+using core::scene::BodyType;
+using core::scene::Integrator;
+using tests::support::box_mesh;
+using tests::support::make_body;
+using tests::support::make_pose;
+
+namespace {
+
+enum class Sort { face, edge_of_triangle, corner_of_triangle, crossing_edges, parallel_edges, wire, point };
+constexpr std::array sorts{
+    Sort::face, Sort::edge_of_triangle, Sort::corner_of_triangle, Sort::crossing_edges, Sort::parallel_edges, Sort::wire, Sort::point};
+
+const char* to_string(Sort sort) {
+    constexpr std::array names{"face", "edge of a triangle", "corner of a triangle", "crossing edges", "parallel edges", "wire", "point"};
+    return names[static_cast<std::size_t>(sort)];
+}
+
+constexpr double quarter = 0.785398;
+const Vector3 on_edge(quarter, 0, 0);                // an edge along x is lowest, or highest
+const Vector3 on_corner(0.6154797, 0.4636476, 0.1);  // about: a corner is
+
+// The body that stands still, its highest feature near the origin.
+core::model::Body support_body(Sort sort) {
+    const core::geometry::Mesh box = box_mesh({-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06});
+    Vector3 turn = Vector3::Zero();
+    if (sort == Sort::edge_of_triangle || sort == Sort::crossing_edges || sort == Sort::parallel_edges) turn = on_edge;
+    if (sort == Sort::corner_of_triangle) turn = on_corner;
+    core::geometry::Mesh mesh = box;
+    if (sort == Sort::wire) {
+        Matrix3X ends(3, 2);
+        ends << -0.06, 0.06, 0.01, -0.02, 0, 0;
+        mesh = core::geometry::make_mesh("wire", ends, {});
+        core::geometry::build_connectivity(mesh, {{0, 1}});
+    }
+    if (sort == Sort::point) mesh = core::geometry::make_mesh("point", Matrix3X::Zero(3, 1), {});
+    core::model::Body body = make_body("support", mesh, make_pose(turn, Vector3::Zero()), BodyType::static_body);
+    Eigen::Index highest = 0;
+    const Matrix3X world = body.pose_start.rotation * body.mesh.vertices;
+    const double top = world.row(2).maxCoeff(&highest);
+    if (sort == Sort::corner_of_triangle)
+        body.pose_start.position = -world.col(highest);
+    else
+        body.pose_start.position.z() = -top;
+    return body;
+}
+
+// The body that falls, its lowest feature above it.
+core::model::Body falling_body(Sort sort, double gap) {
+    Vector3 turn = on_corner;
+    if (sort == Sort::crossing_edges || sort == Sort::wire) turn = Vector3(0.05, quarter, 0.02);  // an edge along y is lowest
+    if (sort == Sort::parallel_edges)                                                             // crosses the other edge, level with it
+        turn = core::kinematics::rotation_vector(core::kinematics::rotation(Vector3(0, 0, 0.002)) * core::kinematics::rotation(on_edge));
+    if (sort == Sort::point) turn = Vector3(0.03, 0.05, 0.1);
+    core::model::Body body = make_body("falling", box_mesh({-0.04, -0.05, -0.03}, {0.05, 0.04, 0.04}), make_pose(turn, Vector3::Zero()));
+    const Matrix3X world = body.pose_start.rotation * body.mesh.vertices;
+    Eigen::Index lowest = 0;
+    const double bottom = world.row(2).minCoeff(&lowest);
+    const bool by_corner = sort == Sort::face || sort == Sort::edge_of_triangle || sort == Sort::corner_of_triangle;
+    if (by_corner) body.pose_start.position.head<2>() = Vector2(0.0007, -0.0004) - world.col(lowest).head<2>();
+    if (sort == Sort::parallel_edges) body.pose_start.position.y() = -world(1, lowest);
+    body.pose_start.position.z() = gap - bottom;
+    return body;
+}
+
+// Where the height follows from more than the lowest vertex: by bisection on the distance of what is nearest.
+double contact_gap(const core::model::Model& model) {
+    std::vector<core::kinematics::Pose> poses;
+    for (const core::model::Body& body : model.bodies) poses.push_back(body.pose_start);
+    const auto contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
+    double least = INFINITY;
+    for (const auto& list : contacts.pairs)
+        for (const auto& pair : list.contacts) least = std::min(least, std::sqrt(pair.closest.distance_squared));
+    return least;
+}
+
+SweepScene scene_of(Sort sort, Integrator integrator, double dmin) {
+    core::model::Model model;
+    model.gravity = {0.3, -0.2, -9.81};
+    model.timestep = 0.005;
+    model.dhat = 2e-3;
+    model.dmin = dmin;
+    model.kappa = 2e4;
+    model.velocity_tolerance = 1e-6;
+    model.diagonal = 0.3;
+    model.integrator = integrator;
+    model.bodies = {support_body(sort), falling_body(sort, 0.02)};
+    core::model::Body& body = model.bodies[1];
+    tests::support::set_velocity(body, {0.05, -0.03, -0.1}, {0.4, -0.3, 0.7});
+    if (integrator == Integrator::quasi_static) {
+        model.proximal_weight = core::model::choose_proximal_weight(model);
+        body.velocity_start.setZero();
+        for (const int dof : {0, 1, 3, 4, 5})
+            tests::support::prescribe(body, dof, dof < 3 ? 0.004 : sort != Sort::parallel_edges ? 0.05 : dof == 5 ? 0.02 : 0);
+    }
+    while (!(contact_gap(model) < 0.8 * model.dhat + dmin)) body.pose_start.position.z() -= 0.05 * model.dhat;
+    return {std::string(to_string(sort)) + (integrator == Integrator::quasi_static ? ", quasi-static" : ", implicit Euler") +
+                (dmin > 0 ? ", dmin" : ""),
+            std::move(model), 8};
+}
+
+std::vector<SweepScene> table(Sort sort) {
+    std::vector<SweepScene> out;
+    for (const Integrator integrator : {Integrator::implicit_euler, Integrator::quasi_static})
+        for (const double dmin : {0.0, 5e-4}) out.push_back(scene_of(sort, integrator, dmin));
+    return out;
+}
+
+core::stepper::Simulation simulation_of(const SweepScene& scene, const core::model::Model& model) {
+    core::stepper::SimulationOptions options;
+    options.steps = scene.steps;
+    options.for_gradient = true;
+    return core::stepper::simulate(model, options);
+}
+
+void check_reached(Sort sort, const ContactCount& count) {
+    const bool by_edges = sort == Sort::crossing_edges || sort == Sort::parallel_edges || sort == Sort::wire;
+    CHECK((by_edges ? count.edge_edge : count.vertex_face) > 0);
+    if (sort == Sort::parallel_edges) CHECK(count.mollified > 0);
+}
+
+}  // namespace
+
+TEST_CASE("every sort of contact, integrator and minimum separation: backwards and forwards agree", "[adjoint][stepper]") {
+    for (const Sort sort : sorts)
+        for (const SweepScene& scene : table(sort)) {
+            const core::stepper::Simulation done = simulation_of(scene, scene.model);
+            CAPTURE(scene.name, done.report.message);
+            REQUIRE(done.report.status == core::stepper::SimulationStatus::ok);
+            check_reached(sort, count_contacts(scene.model, done.trajectory));
+            std::mt19937_64 random(5);
+            const std::vector<TrajectoryGradient> seeds{random_seed(scene, random), random_seed(scene, random)};
+            const auto gradients = reverse_sweep(scene.model, done.trajectory, seeds);
+            REQUIRE(gradients);
+            for (const ParameterKind kind : all_kinds) {
+                const ModelTangent direction = random_direction(scene, kind, random);
+                const auto tangents = tangent_sweep(scene.model, done.trajectory, direction);
+                REQUIRE(tangents);
+                for (std::size_t s = 0; s < seeds.size(); ++s) {
+                    const double backwards = pairing(scene, (*gradients)[s], direction);
+                    const double forwards = pairing(seeds[s], done.trajectory, *tangents);
+                    CAPTURE(tests::adjoint::to_string(kind), backwards, forwards);
+                    CHECK(std::abs(backwards - forwards) <= 1e-9 * std::abs(forwards) + 1e-14);
+                }
+            }
+        }
+}
+
+TEST_CASE("every sort of contact, integrator and minimum separation: differences and Taylor's remainder", "[adjoint][stepper][slow]") {
+    for (const Sort sort : sorts)
+        for (const SweepScene& scene : table(sort)) {
+            const core::stepper::Simulation done = simulation_of(scene, scene.model);
+            REQUIRE(done.report.status == core::stepper::SimulationStatus::ok);
+            std::mt19937_64 random(7);
+            const TrajectoryGradient seed = random_seed(scene, random);
+            const auto gradients = reverse_sweep(scene.model, done.trajectory, {seed});
+            REQUIRE(gradients);
+            const auto check = [&](const ModelTangent& direction, const std::string& what) {
+                const double derivative = pairing(scene, (*gradients)[0], direction);
+                const auto along = [&](const VectorX& s) {
+                    const core::stepper::Simulation there = simulation_of(scene, moved(scene, direction, s[0]));
+                    const bool ok = there.report.status == core::stepper::SimulationStatus::ok;
+                    return ok ? objective(seed, there.trajectory) : std::numeric_limits<double>::quiet_NaN();
+                };
+                const auto difference =
+                    tests::support::check_directional([&](const VectorX& s) { return VectorX::Constant(1, along(s)); }, VectorX::Zero(1),
+                                                      VectorX::Ones(1), VectorX::Constant(1, derivative), {1e-4, 0.3, 9});
+                const auto taylor = tests::support::check_taylor(along, VectorX::Zero(1), VectorX::Constant(1, derivative),
+                                                                 VectorX::Ones(1), {1e-5, 0.3, 6});
+                CAPTURE(scene.name, what, derivative, difference.relative_error, taylor.slope, taylor.points);
+                CHECK(difference.relative_error < 1e-6);
+                CHECK(taylor.ok());
+            };
+            for (const ParameterKind kind : all_kinds) {
+                const ModelTangent direction = random_direction(scene, kind, random);
+                if (pairing(scene, (*gradients)[0], direction) != 0) check(direction, tests::adjoint::to_string(kind));
+            }
+            check(vertex_gradient_direction(scene, (*gradients)[0]), "along the gradient");
+        }
+}
+
+}  // namespace fettle::adjoint::stepper::sweep_matrix_test

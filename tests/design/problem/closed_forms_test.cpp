@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// Derivatives of mechanisms that have closed forms: oscillators (of the steps as they are made, exactly), crank torque, gears, a hanging
+// chain.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/tests/core/stepper/mechanism_models.hpp"
+
+namespace fettle::design::problem::closed_forms_test {
+
+namespace {
+
+using namespace fettle::tests::mechanisms;
+using namespace fettle::design::description;
+using core::model::Origin;
+using core::scene::JointKind;
+
+const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
+
+// A point of a body's file frame along a direction, at the end.
+class EndPosition : public Quantity {
+public:
+    EndPosition(int body, const Vector3& point, const Vector3& along) : body_(static_cast<size_t>(body)), point_(point), along_(along) {}
+    Dimension dimension() const override { return Dimension::length; }
+    Measurement value(const Simulated& s) const override {
+        return exact(along_.dot(core::kinematics::world_position(s.trajectory.poses.back()[body_], arm(s))));
+    }
+    void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
+        seeds.trajectory_bar.pose_bar.back()[body_] += scale * along_ * arm(s).homogeneous().transpose();
+    }
+
+private:
+    Vector3 arm(const Simulated& s) const { return point_ - s.model.bodies[body_].reference_point; }
+    size_t body_;
+    Vector3 point_, along_;
+};
+
+Parameter parameter(const std::string& name, double value, Move move) {
+    Parameter p;
+    p.name = name;
+    p.value = value;
+    p.lower = value - 10 * std::abs(value);
+    p.upper = value + 10 * std::abs(value);
+    p.moves = {std::move(move)};
+    return p;
+}
+
+Move of(MoveTarget target, Origin::List list, int index) {
+    Move move;
+    move.target = target;
+    move.part = {list, index};
+    return move;
+}
+
+Move along(Move move, const Vector3& direction) {
+    move.direction = direction;
+    return move;
+}
+
+DesignEvaluation evaluated(Design design, const std::vector<std::shared_ptr<const Quantity>>& quantities) {
+    for (size_t k = 0; k < quantities.size(); ++k) design.constraints.push_back({std::to_string(k), {}, quantities[k]});
+    const auto problem = DesignProblem::create(std::move(design));
+    if (!problem) UNSCOPED_INFO(problem.errors()[0].message);
+    REQUIRE(problem);
+    DesignEvaluation at = problem->evaluate(values_of(problem->design().parameters));
+    INFO(at.reason);
+    REQUIRE(at.usable);
+    return at;
+}
+
+struct Dual {
+    double value = 0, slope = 0;
+};
+
+// x of (1 + h^2 w) x_n+1 = 2 x_n - x_n-1, from rest at 1, after n steps; and its derivative in w, the square of the circular frequency.
+Dual oscillator(double w, double h, int n) {
+    Dual before{1, 0}, now{1, 0};
+    for (int k = 0; k < n; ++k) {
+        const double a = 1 + h * h * w, right = 2 * now.value - before.value;
+        const Dual next{right / a, (2 * now.slope - before.slope) / a - right * h * h / (a * a)};
+        before = now;
+        now = next;
+    }
+    return now;
+}
+
+}  // namespace
+
+TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[joints]") {
+    constexpr double h = 0.01, stiffness = 30, start = 0.05;
+    constexpr int steps = 40;
+    Design design;
+    design.scene = scene_of({bar("mass", 0.2)}, h);
+    design.steps = steps;
+    core::scene::Joint slide = joint("slide", JointKind::prismatic, {"", Vector3::Zero(), x_axis}, {"mass", Vector3::Zero(), x_axis});
+    slide.forces.stiffness = stiffness;
+    slide.forces.rest = -start;
+    design.scene.mechanism.joints = {slide};
+    design.parameters = {parameter("stiffness", stiffness, of(MoveTarget::stiffness, Origin::List::joint, 0)),
+                         parameter("density", 1000, {.target = MoveTarget::density, .body = 0}),
+                         parameter("rest", -start, of(MoveTarget::rest, Origin::List::joint, 0))};
+    const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(0, Vector3::Zero(), x_axis)});
+    const double mass = 1000 * 0.2 * 0.02 * 0.02, w = stiffness / mass;
+    const Dual x = oscillator(w, h, steps);
+    CHECK(at.constraints[0].value == Approx(start * (x.value - 1)).epsilon(1e-9));
+    CHECK(at.jacobian(0, 0) == Approx(start * x.slope / mass).epsilon(1e-9));
+    CHECK(at.jacobian(0, 1) == Approx(-start * x.slope * w / 1000).epsilon(1e-9));
+    CHECK(at.jacobian(0, 2) == Approx(1 - x.value).epsilon(1e-9));
+}
+
+TEST_CASE("closed form: a pendulum of small swings, in gravity and length", "[joints]") {
+    constexpr double h = 0.01, length = 0.4, angle = 1e-5, half = 0.005;
+    constexpr int steps = 60;
+    Design design;
+    design.scene = scene_of({bar("rod", 0.02, Vector3(-0.01, 0, -length), Vector3(0, 0, 0), half)}, h);
+    design.steps = steps;
+    design.scene.gravity = Vector3(0, 0, -9.81);
+    // About the y axis through a point `length` above the bob's middle; the pivot is moved, and the bob hangs from it by that length.
+    design.scene.mechanism.joints = {
+        joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"rod", Vector3(0.01, 0, length), y_axis})};
+    design.scene.bodies[0].pose.rotation = core::kinematics::rotation(Vector3(0, -angle, 0));
+    design.scene.bodies[0].pose.position = -(design.scene.bodies[0].pose.rotation * Vector3(0.01, 0, length));
+    Move reach = along(of(MoveTarget::point_b, Origin::List::joint, 0), z_axis);
+    design.parameters = {parameter("gravity", -9.81, along({.target = MoveTarget::gravity}, z_axis)), parameter("length", length, reach)};
+    // Of the direction of the rod's x axis: the swing's angle itself.
+    const auto tip = std::make_shared<EndPosition>(0, Vector3(1, 0, 0), z_axis),
+               foot = std::make_shared<EndPosition>(0, Vector3::Zero(), z_axis);
+    const DesignEvaluation at = evaluated(design, {tip, foot});
+    const double about_middle = (0.02 * 0.02 + 4 * half * half) / 12;
+    const auto square = [&](double g, double l) { return g * l / (about_middle + l * l); };
+    const Dual x = oscillator(square(9.81, length), h, steps);
+    const double swing = at.constraints[0].value - at.constraints[1].value;
+    CHECK(swing == Approx(angle * x.value).epsilon(1e-6));
+    const double by_gravity = -angle * x.slope * square(1, length);
+    CHECK(at.jacobian(0, 0) - at.jacobian(1, 0) == Approx(by_gravity).epsilon(1e-6));
+    constexpr double e = 1e-5;
+    const double by_length = angle * x.slope * (square(9.81, length + e) - square(9.81, length - e)) / (2 * e);
+    // The assembly moves the bob to the pivot's reach without turning it, but for the square of the angle.
+    CHECK(at.jacobian(0, 1) - at.jacobian(1, 1) == Approx(by_length).epsilon(1e-5));
+}
+
+TEST_CASE("closed form: crank torque in load and crank radius", "[joints]") {
+    constexpr double radius = 0.1, rod = 0.3, start = 0.4, load = -12;
+    const double tilt = std::asin(radius * std::sin(start) / rod);
+    const Vector3 pin(radius * std::cos(start), radius * std::sin(start), 0), wrist(pin.x() + rod * std::cos(tilt), 0, 0);
+    Design design;
+    design.scene = scene_of({bar("crank", radius, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", rod, pin, Vector3(0, 0, -tilt)),
+                             bar("slider", 0.05, wrist)},
+                            0.01);
+    design.scene.integrator = core::scene::Integrator::quasi_static;
+    design.steps = 6;
+    design.scene.mechanism.joints = {
+        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
+        joint("pin", JointKind::ball, {"crank", Vector3(radius, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
+        joint("wrist", JointKind::cylindrical, {"rod", Vector3(rod, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
+        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
+    design.scene.mechanism.loads = {{"push", "", "slider", Vector3::Zero(), Vector3(load, 0, 0)}};
+    design.scene.mechanism.motors = {motor("drive", "main", at_rate(2))};
+    design.parameters = {parameter("load", load, along(of(MoveTarget::load_force, Origin::List::load, 0), x_axis)),
+                         parameter("radius", radius, along(of(MoveTarget::point_a, Origin::List::joint, 1), x_axis))};
+    using quantities::JointLoad;
+    const DesignEvaluation at =
+        evaluated(design, {std::make_shared<JointLoad>(JointLoad::Of{quantities::JointLoadKind::effort, "drive"}, quantities::Over::end)});
+    // Virtual work: torque dtheta + load dx = 0.
+    const auto torque = [&](double force, double r) {
+        const double theta = start + 2 * 6 * 0.01, s = std::sin(theta), c = std::cos(theta);
+        return force * (r * s + r * r * s * c / std::sqrt(rod * rod - r * r * s * s));
+    };
+    constexpr double e = 1e-5;
+    CHECK(at.constraints[0].value == Approx(torque(load, radius)).epsilon(1e-5));
+    CHECK(at.jacobian(0, 0) == Approx(torque(1, radius)).epsilon(1e-5));
+    CHECK(at.jacobian(0, 1) == Approx((torque(load, radius + e) - torque(load, radius - e)) / (2 * e)).epsilon(1e-5));
+}
+
+TEST_CASE("closed form: a wheel behind a gear, in the ratio and the motor's speed", "[joints]") {
+    Design design;
+    design.scene = scene_of({bar("first", 0.1), bar("second", 0.1, Vector3(0.3, 0, 0))}, 0.01);
+    design.steps = 10;
+    design.scene.mechanism.joints = {
+        joint("one", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"first", Vector3::Zero(), z_axis}),
+        joint("two", JointKind::revolute, {"", Vector3(0.3, 0, 0), z_axis}, {"second", Vector3::Zero(), z_axis})};
+    core::scene::Joint gear = joint("gear", JointKind::gear, {}, {});
+    gear.of = {"one", "two"};
+    gear.ratio = -0.6;
+    design.scene.mechanism.joints.push_back(gear);
+    design.scene.mechanism.motors = {motor("drive", "one", at_rate(5))};
+    design.parameters = {parameter("ratio", -0.6, of(MoveTarget::ratio, Origin::List::joint, 2)),
+                         parameter("speed", 5, of(MoveTarget::curve_rate, Origin::List::motor, 0))};
+    const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(1, Vector3(0.1, 0, 0), y_axis)});
+    const double angle = 5 * 0.1, turned = -0.6 * angle;
+    CHECK(at.constraints[0].value == Approx(0.1 * std::sin(turned)).epsilon(1e-10));
+    CHECK(at.jacobian(0, 0) == Approx(0.1 * std::cos(turned) * angle).epsilon(1e-9));
+    CHECK(at.jacobian(0, 1) == Approx(0.1 * std::cos(turned) * -0.6 * 0.1).epsilon(1e-9));
+}
+
+TEST_CASE("closed form: what a hanging chain's joints carry, in density and gravity", "[joints]") {
+    Design design;
+    std::vector<core::scene::Body> links;
+    for (int k = 0; k < 3; ++k)
+        links.push_back(bar("link " + std::to_string(k), 0.2, Vector3(0, 0, -0.2 * k), Vector3(0, std::acos(0.0), 0)));
+    design.scene = scene_of(links, 0.01);
+    design.scene.integrator = core::scene::Integrator::quasi_static;
+    design.scene.gravity = Vector3(0, 0, -9.81);
+    design.steps = 2;
+    for (int k = 0; k < 3; ++k)
+        design.scene.mechanism.joints.push_back(
+            joint("joint " + std::to_string(k), JointKind::revolute,
+                  {k == 0 ? "" : "link " + std::to_string(k - 1), k == 0 ? Vector3(Vector3::Zero()) : Vector3(0.2, 0, 0), y_axis},
+                  {"link " + std::to_string(k), Vector3::Zero(), y_axis}));
+    for (int k = 0; k < 3; ++k)
+        design.parameters.push_back(parameter("density " + std::to_string(k), 1000, {.target = MoveTarget::density, .body = k}));
+    design.parameters.push_back(parameter("gravity", -9.81, along({.target = MoveTarget::gravity}, z_axis)));
+    using quantities::JointLoad;
+    std::vector<std::shared_ptr<const Quantity>> loads;
+    for (int k = 0; k < 3; ++k)
+        loads.push_back(std::make_shared<JointLoad>(JointLoad::Of{quantities::JointLoadKind::force, "joint " + std::to_string(k), z_axis},
+                                                    quantities::Over::end));
+    const DesignEvaluation at = evaluated(design, loads);
+    const double volume = 0.2 * 0.02 * 0.02;
+    for (int k = 0; k < 3; ++k) {
+        CAPTURE(k);
+        CHECK(at.constraints[static_cast<size_t>(k)].value == Approx((3 - k) * 1000 * volume * 9.81).epsilon(1e-8));
+        for (int j = 0; j < 3; ++j) CHECK(at.jacobian(k, j) == Approx(j < k ? 0 : volume * 9.81).epsilon(1e-7).margin(1e-10));
+        CHECK(at.jacobian(k, 3) == Approx(-(3 - k) * 1000 * volume).epsilon(1e-7));
+    }
+}
+
+}  // namespace fettle::design::problem::closed_forms_test
