@@ -12,7 +12,8 @@ std::string option_words(const CommandFacts& command) {
     std::string words;
     for (const OptionFacts& option : command.options) {
         if (option.by_place) continue;
-        for (const std::string& name : option.names) words += " " + name;
+        for (const std::string& name : option.names)
+            if (name != "-h" && name != "--help") words += " " + name;
     }
     return words;
 }
@@ -30,9 +31,10 @@ std::string value_cases(const CommandFacts& program) {
         for (const OptionFacts& option : command.options) {
             if (option.words.empty() || option.by_place) continue;
             std::string words;
-            for (const std::string& word : option.words) words += " " + word;
-            cases += "    \"" + command.name + " " + option.names.back() + "\") COMPREPLY=($(compgen -W \"" + words.substr(1) +
-                     "\" -- \"$current\")); return ;;\n";
+            for (const std::string& word : option.words) words += (words.empty() ? "" : " ") + word;
+            for (const std::string& name : option.names)
+                cases +=
+                    "    \"" + command.name + " " + name + "\") COMPREPLY=($(compgen -W \"" + words + "\" -- \"$current\")); return ;;\n";
         }
     }
     return cases;
@@ -46,7 +48,7 @@ std::string bash_script(const CommandFacts& program) {
         "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n    case \"$word\" in -*) ;; *) command=\"$word\"; break ;; esac\n  done\n"
         "  case \"$command $previous\" in\n" +
         value_cases(program) + "  esac\n  case \"$command\" in\n";
-    const std::string common = option_words(program);
+    const std::string common = " --help" + option_words(program);
     for (const CommandFacts& command : program.commands)
         out += "    " + command.name + ") [[ \"$current\" == -* ]] && COMPREPLY=($(compgen -W \"" +
                (option_words(command) + common).substr(1) + "\" -- \"$current\")); return ;;\n";

@@ -6,14 +6,19 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/urdf/urdf_writer.hpp"
 
 namespace fettle::design::cli {
 
@@ -67,6 +72,9 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     const std::vector<std::string> known = all_formats();
     const std::string name = extension == ".pvd" ? "vtu" : extension.substr(extension.empty() ? 0 : 1);
     plan.one_file = std::find(known.begin(), known.end(), name) != known.end() && !fs::is_directory(to);
+    if (!plan.one_file && !extension.empty() && !fs::exists(to))
+        return Error{ErrorCode::unsupported, "--to",
+                     "`" + extension + "` is no format; there are .glb .3mf .stl .obj .vtu .pvd .csv .urdf (a folder's name ends in /)"};
     if (!plan.one_file) {
         const auto formats = wanted_formats(options.formats);
         if (!formats) return formats.errors();
@@ -124,7 +132,32 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
     return core::certificate::write_certificate(shown.certificate, *certificate);
 }
 
+/// Of a scene alone: trajectories have no joints.
+int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    const Result<core::scene::Scene> scene = core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs));
+    if (!scene) return console.input_errors(scene.errors());
+    core::model::BuildOptions build;
+    build.check_start = false;
+    const Result<core::model::Model> model = core::model::build_model(*scene, build);
+    if (!model) return console.input_errors(model.errors());
+    const auto robot = urdf::robot_of_scene(*scene, *model, fs::path(options.to).stem().string());
+    if (!robot) return console.input_errors(robot.errors());
+    tell_warnings(console, robot->warnings);
+    Json files = Json::array();
+    std::string text;
+    for (const auto& [name, bytes] : robot->files) {
+        const fs::path path = fs::path(options.to).parent_path() / name;
+        const Errors errors = core::files::write_file_atomically(path, bytes);
+        if (!errors.empty()) return console.input_errors(errors);
+        files.push_back({{"file", path.string()}, {"format", "urdf"}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
+        text += path.string() + "\n";
+    }
+    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", robot->warnings}}, text);
+    return exit_done;
+}
+
 int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
     Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
     const Result<Plan> plan = plan_of(options, shown->stem);
@@ -173,10 +206,11 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
 }  // namespace
 
 Command add_export(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("export", "Parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv");
+    CommandLine app = program.command("export", "Parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf");
     auto options = std::make_shared<ExportArguments>();
     add_shown_options(app, options->shown);
-    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView), or folder").required();
+    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: of a scene), or folder")
+        .required();
     app.option("--format", options->formats, "Into a folder: which, with commas (default: glb,3mf,stl,obj,vtu,csv)");
     app.option("--arrange", options->arrange,
                "3mf, stl, obj: assembled (default), plate (side by side for printing), parts (a file each, in its own frame)")

@@ -20,9 +20,11 @@ std::string run_to_continue(const std::string& path);
 
 class GrowingTrajectory {
 public:
-    /// A running file that is there, of a run that was killed, is kept under another name (output_folder.hpp) until `remove`.
     /// @param scene_path  for the file's first line.
-    GrowingTrajectory(const std::filesystem::path& folder, const core::model::Model& model, std::string scene_path);
+    /// @param continued   the run that this one goes on with: if that is the folder's running file it is replaced, whose steps are in the
+    /// new one too. Any other running file, of a run that was killed, is kept under another name (output_folder.hpp).
+    GrowingTrajectory(const std::filesystem::path& folder, const core::model::Model& model, std::string scene_path,
+                      const std::filesystem::path& continued);
     ~GrowingTrajectory();
     GrowingTrajectory(const GrowingTrajectory&) = delete;
     GrowingTrajectory& operator=(const GrowingTrajectory&) = delete;
@@ -36,7 +38,10 @@ public:
 private:
     bool put(const std::string& text);
 
-    std::filesystem::path file_, kept_;
+    Errors begin(const std::string& text);
+
+    std::filesystem::path file_;
+    bool replaces_ = false;
     const core::model::Model& model_;
     std::string scene_path_;
     std::unique_ptr<core::records::TrajectoryLines> lines_;

@@ -60,7 +60,7 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
     add("Check what there is", {add_validate(program, common), add_clearance(program, common)});
     add("Move and tune", {add_simulate(program, common), add_optimise(program, common), add_gradient(program, common)});
-    add("See and pass on", {add_draw(program, common), add_export(program, common)});
+    add("See and pass on", {add_draw(program, common), add_export(program, common), add_import(program, common)});
     add("About the program", {add_ccd(program), add_completion(program), add_manual(program)});
     return all;
 }

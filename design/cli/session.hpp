@@ -29,6 +29,7 @@ Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_completion(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);
 Command add_export(CommandLine& program, const CommonOptions& common);
+Command add_import(CommandLine& program, const CommonOptions& common);
 Command add_joints(CommandLine& program);
 Command add_manual(CommandLine& program);
 Command add_new(CommandLine& program);

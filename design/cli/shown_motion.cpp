@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 const std::vector<std::string> up_names{"x", "-x", "y", "-y", "z", "-z"};
 
 /// Of a folder the trajectory in it, of a certificate that beside it.
-Result<std::string> file_to_read(const std::string& path, std::string& certificate) {
+Result<std::string> file_to_read(const ShownOptions& options, std::string& certificate) {
+    const std::string& path = options.path;
     std::error_code code;
     if (fs::is_directory(path, code) && !are_meshes({path})) {
         for (const char* name : {"trajectory.json", "trajectory.running.json"})
@@ -29,7 +30,7 @@ Result<std::string> file_to_read(const std::string& path, std::string& certifica
     }
     if (!fs::is_directory(path, code) && file_kind(path) == FileKind::certificate) {
         certificate = path;
-        return certificate_trajectory(path);
+        return options.trajectory.empty() ? certificate_trajectory(path) : options.trajectory;
     }
     return path;
 }
@@ -62,13 +63,14 @@ void add_shown_options(CommandLine& app, ShownOptions& options) {
                "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: of a run, or with meshes")
         .required();
     app.option("--unit", options.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--trajectory", options.trajectory, "Of a certificate: the path that it speaks of (default: beside it)");
     app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
         .one_of(up_names);
 }
 
 Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions& common, Console& console) {
     ShownMotion shown;
-    const Result<std::string> file = file_to_read(options.path, shown.certificate);
+    const Result<std::string> file = file_to_read(options, shown.certificate);
     if (!file) return file.errors();
     shown.file = *file;
     shown.stem = stem_of(options.path);

@@ -23,9 +23,10 @@ struct ShownOptions {
     std::string path;  ///< scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: trajectory.json of a run,
                        ///< of a killed one trajectory.running.json, else the meshes in it
     std::string unit;  ///< of meshes that state none
-    std::string up;    ///< "x", "-y", ...; empty: against gravity, Z where it is not known
+    std::string trajectory;  ///< of a certificate: its path; empty: beside it
+    std::string up;          ///< "x", "-y", ...; empty: against gravity, Z where it is not known
 };
-/// Adds FILE, --unit and --up.
+/// Adds FILE, --unit, --trajectory and --up.
 void add_shown_options(CommandLine& app, ShownOptions& options);
 
 /// Errors: of the files; file_not_found (a folder with neither).

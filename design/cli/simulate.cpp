@@ -247,7 +247,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     json["status"] = "";
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
-    if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path);
+    if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
     const Simulation simulation = core::stepper::simulate(model, simulate_options);
     return finish(options, {*loaded, simulation, earlier, growing}, std::move(json), console);
 }
