@@ -36,6 +36,24 @@ std::string usage_message(const std::string& fault, const std::vector<Command>& 
     return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
 }
 
+// As it can be typed again: words that a shell would take apart or change are quoted.
+std::string typed(int argc, char** argv) {
+    std::string text = "fettle";
+    for (int k = 1; k < argc; ++k) {
+        const std::string word = argv[k];
+        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+        text += ' ';
+        if (plain) {
+            text += word;
+            continue;
+        }
+        text += '\'';
+        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        text += '\'';
+    }
+    return text;
+}
+
 void add_common_options(CommandLine program, CommonOptions& common) {
     program.version(std::string("fettle ") + core::base::version());
     program.option("--threads", common.threads, "How many threads (default: all of the machine's); changes no bit of a result")
@@ -50,9 +68,15 @@ int run(int argc, char** argv) {
     ProgramLine line("fettle", "fettle: tunes mechanisms of rigid parts under certified clearance");
     CommandLine program = line.options();
     CommonOptions common;
+    common.command = typed(argc, argv);
     add_common_options(program, common);
-    const std::vector<Command> commands{add_validate(program, common), add_simulate(program, common), add_clearance(program, common),
-                                        add_gradient(program, common), add_optimise(program, common), add_ccd(program)};
+    const std::vector<Command> commands{add_validate(program, common),
+                                        add_simulate(program, common),
+                                        add_clearance(program, common),
+                                        add_gradient(program, common),
+                                        add_optimise(program, common),
+                                        add_report(program, common),
+                                        add_ccd(program)};
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
         "Exit codes: 0 done, requirements certified; 1 a requirement is violated; 2 undecided or not converged;\n"

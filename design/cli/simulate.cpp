@@ -15,6 +15,7 @@
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/path_proof.hpp"
+#include "fettle/design/cli/report_made.hpp"
 
 namespace fettle::design::cli {
 
@@ -28,6 +29,7 @@ struct SimulateArguments {
     std::string path, out, poses, earlier;
     int steps = -1;
     double time = -1;
+    bool no_report = false;
 };
 
 // Of the file's frame: its origin is at -c in the body's frame.
@@ -165,8 +167,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
-int finish(const SimulateArguments& options, const LoadedModel& loaded, const Simulation& simulation, const Simulation& earlier, Json json,
-           Console& console) {
+int finish(const SimulateArguments& options, const CommonOptions& common, const LoadedModel& loaded, const Simulation& simulation,
+           const Simulation& earlier, Json json, Console& console) {
     const core::model::Model& model = loaded.model;
     const auto& report = simulation.report;
     // Stopped before it got as far as the run that it goes on with: that run stays.
@@ -193,13 +195,15 @@ int finish(const SimulateArguments& options, const LoadedModel& loaded, const Si
     json["bodies"] = bodies_at_end(model, simulation.trajectory);
     add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
+    std::string told = answer_text(outcome, simulation, proof, writes_out ? options.out : "", console);
     if (writes_out) {
         json["out"] = options.out;
-        const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-        errors = core::files::write_file_atomically(std::filesystem::path(options.out) / "result.json", text);
+        errors = write_result(options.out, json, common);
         if (!errors.empty()) return console.input_errors(errors);
+        if (!options.no_report)
+            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory}, loaded.scene_path);
     }
-    console.result(json, answer_text(outcome, simulation, proof, writes_out ? options.out : "", console));
+    console.result(json, told);
     return outcome.exit_code;
 }
 
@@ -230,7 +234,7 @@ int run_simulate(const SimulateArguments& options, const CommonOptions& common, 
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     const Simulation simulation = core::stepper::simulate(model, simulate_options);
-    return finish(options, *loaded, simulation, earlier, std::move(json), console);
+    return finish(options, common, *loaded, simulation, earlier, std::move(json), console);
 }
 
 }  // namespace
@@ -243,7 +247,8 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);
     app.option("--out", options->out,
                "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
-               "(forces between bodies) and drives.csv (what motors and guides supply)");
+               "(forces between bodies) and drives.csv (what motors and guides supply); and report.html");
+    app.flag("--no-report", options->no_report, "With --out: no report.html");
     app.option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
     app.closing_words(
