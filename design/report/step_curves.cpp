@@ -97,9 +97,9 @@ void add_drives(Json& list, const TableRows& drives, const std::set<std::string>
             forces.add(body + " along " + axis, time, drives.number(i, std::string("f") + axis));
         }
     }
-    append(list, torques.json("Torque that drives", "torque", "N mm", 1e-3));
-    append(list, forces.json("Force that drives and guides", "force", "N", 1e-3));
-    append(list, held.json("Force on what is fixed", "force", "N"));
+    append(list, torques.json("Driving torque", "torque", "N mm", 1e-2));
+    append(list, forces.json("Driving and guiding force", "force", "N", 1e-2));
+    append(list, held.json("Force on fixed parts", "force", "N"));
 }
 
 void add_joints(Json& list, const TableRows& joints, const LinearMotors& linear) {
@@ -116,7 +116,7 @@ void add_joints(Json& list, const TableRows& joints, const LinearMotors& linear)
     }
     append(list, torques.json("Motor torque", "torque", "N mm"));
     append(list, forces.json("Motor force", "force", "N"));
-    append(list, carried.json("Force in joints", "force", "N"));
+    append(list, carried.json("Joint force", "force", "N"));
 }
 
 }  // namespace

@@ -130,12 +130,12 @@ TEST_CASE("report: curves of forces, in the units that are told") {
     CHECK(values(curve("Motor torque")["lines"][0]) == std::vector<double>{2});
     CHECK(curve("Motor torque")["unit"] == "N mm");
     CHECK(values(curve("Motor force")["lines"][0]) == std::vector<double>{7});
-    CHECK(values(curve("Force in joints")["lines"][0]) == std::vector<double>{5});
-    REQUIRE(curve("Torque that drives")["lines"].size() == 1);
-    CHECK(curve("Torque that drives")["lines"][0]["name"] == "crank about z");
-    CHECK(values(curve("Torque that drives")["lines"][0]) == std::vector<double>{-500, 250});
-    CHECK(values(curve("Force on what is fixed")["lines"][0]) == std::vector<double>{5});
-    CHECK(curve("Force that drives and guides").is_null());  // nothing but zeros
+    CHECK(values(curve("Joint force")["lines"][0]) == std::vector<double>{5});
+    REQUIRE(curve("Driving torque")["lines"].size() == 1);
+    CHECK(curve("Driving torque")["lines"][0]["name"] == "crank about z");
+    CHECK(values(curve("Driving torque")["lines"][0]) == std::vector<double>{-500, 250});
+    CHECK(values(curve("Force on fixed parts")["lines"][0]) == std::vector<double>{5});
+    CHECK(curve("Driving and guiding force").is_null());  // nothing but zeros
     REQUIRE(curve("Contact")["lines"].size() == 2);
     CHECK(unpacked<double>(curve("Contact")["time"], "f64") == std::vector<double>{0.1, 0.3});
     CHECK(values(curve("Contact")["lines"][0]) == std::vector<double>{2, 0});  // what does not touch carries nothing
