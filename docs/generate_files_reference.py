@@ -77,7 +77,8 @@ class Reference:
         if kind == "array":
             least, most = schema.get("minItems", 0), schema.get("maxItems")
             count = f"{least} x " if least == most else f"list ({least} or more) of " if least else "list of "
-            return count + self.type_of(schema["items"])
+            item = self.type_of(schema["items"])
+            return count + (f"({item})" if count and " or " in item else item)
         if kind == "object":
             inner = schema.get("additionalProperties")
             return f"by name: {self.type_of(inner)}" if isinstance(inner, dict) else "object" if "properties" in schema else "text"
@@ -105,18 +106,24 @@ class Reference:
         self.lines += ["", heading]
         if text_of(schema):
             self.lines += ["", text_of(schema)]
-        if "properties" in schema and not self.branches(schema):
-            self.more_keys(schema)
-            self.table(schema)
+        if "properties" in schema:
+            self.told(schema)
         for branch in self.branches(schema):
             if "properties" in branch:
                 self.lines += ["", ": ".join(text for text in (self.title(branch), text_of(branch)) if text)]
-                self.more_keys(branch)
-                self.table(branch)
-        if "properties" in schema and self.branches(schema) and any("properties" not in branch for branch in self.branches(schema)):
-            self.lines += ["", "Exactly one of: " + "; ".join(", ".join(f"`{key}`" for key in branch["required"])
-                                                               for branch in self.branches(schema)) + "."]
-            self.table(schema)
+                self.told(branch)
+
+    def told(self, schema):
+        """The keys of an object, and what holds of them together."""
+        self.more_keys(schema)
+        choices = self.choices(schema)
+        if choices:
+            self.lines += ["", f"{'Exactly' if 'oneOf' in schema else 'At least'} one of: " + ", ".join(f"`{key}`" for key in choices) + "."]
+        self.table(schema)
+
+    def choices(self, schema):
+        """Keys of which one is wanted."""
+        return [key for branch in self.branches(schema) if "properties" not in branch for key in branch.get("required", [])]
 
     def more_keys(self, schema):
         """What has the keys of another definition besides says so."""
@@ -128,6 +135,7 @@ class Reference:
         """What tells an alternative from the others: its type, or what is required."""
         kind = branch["properties"].get("type", {})
         values = [kind["const"]] if "const" in kind else kind.get("enum", branch.get("required", []))
+        values = values or self.choices(branch)
         return "**" + ", ".join(f"`{value}`" for value in values) + "**" if values else ""
 
     def chapter(self, file):

@@ -23,6 +23,8 @@ def same(a, b):
 def faults(value, schema, root=None, place=""):
     """Texts, each with its JSON pointer; none: the value is valid. `root` holds the $defs (default: the schema itself)."""
     root = schema if root is None else root
+    if schema is True:
+        return
     for keyword, wanted in schema.items():
         if keyword in ANNOTATIONS:
             continue
@@ -67,8 +69,17 @@ def properties(value, wanted, _, root, place):
         yield from faults(value[key], wanted[key], root, f"{place}/{key}")
 
 
+def patterns(value, wanted, _, root, place):
+    for key in value if isinstance(value, dict) else ():
+        for pattern, schema in wanted.items():
+            if re.search(pattern, key):
+                yield from faults(value[key], schema, root, f"{place}/{key}")
+
+
 def additional(value, wanted, schema, root, place):
     for key in value.keys() - schema.get("properties", {}).keys() if isinstance(value, dict) else ():
+        if any(re.search(pattern, key) for pattern in schema.get("patternProperties", {})):
+            continue
         if wanted is False:
             yield f"{place}/{key} is an unknown key"
         else:
@@ -99,7 +110,7 @@ def number(condition):
 
 RULES = {
     "$ref": reference, "type": kind, "anyOf": any_of, "oneOf": one_of, "allOf": all_of,
-    "properties": properties, "additionalProperties": additional, "propertyNames": names, "items": items,
+    "properties": properties, "patternProperties": patterns, "additionalProperties": additional, "propertyNames": names, "items": items,
     "required": lambda value, wanted, _, __, place: (
         f"{place}/{key} is missing" for key in wanted if isinstance(value, dict) and key not in value),
     "const": holds(same, "equal to"),
