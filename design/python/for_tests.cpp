@@ -54,6 +54,7 @@ py::dict defaults() {
     add_default<fettle::design::description::Measurement>(all);
     add_default<fettle::design::description::Move>(all);
     add_default<fettle::design::description::ObjectiveTerm>(all);
+    add_default<fettle::core::model::Origin>(all);
     add_default<fettle::design::description::OptimiserSettings>(all);
     add_default<fettle::design::description::Parameter>(all);
     add_default<fettle::design::optimisers::Optimality>(all);

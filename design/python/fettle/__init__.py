@@ -59,6 +59,7 @@ from .design import (
     Move,
     ObjectiveTerm,
     OptimiserSettings,
+    Origin,
     Parameter,
     Quantity,
     QuantityGradient,

@@ -134,17 +134,30 @@ AnyShape = Union[Shape, "_fettle.OpaqueShape"]
 
 
 @dataclasses.dataclass(eq=False)
+class Origin(Record):
+    """A place in one of the lists of a scene's mechanism."""
+
+    list: str = "joint"  #: "joint", "spring", "motor", "load"
+    index: int = -1
+
+
+@dataclasses.dataclass(eq=False)
 class Move(Record):
     """One target of a parameter: target = scale p + offset, summed over all moves of that target."""
 
-    target: str = "dimension"  #: "dimension", "position", "density", "motor_rate"
+    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force"; "gravity"; of `part`
+    #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",
+    #: "pitch", "ratio", "curve_value", "curve_rate", "load_point", "load_force"
+    target: str = "dimension"
     body: int = 0
     dimension: str = ""
     dof: int = 0  #: motor_rate: 0 .. 5
     scale: float = 1.0
     offset: float = 0.0
-    direction: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: position
-    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: [m]
+    direction: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of vectors
+    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of vectors
+    part: Origin = dataclasses.field(default_factory=Origin)
+    entry: int = 0  #: curve_value: which
 
 
 @dataclasses.dataclass(eq=False)
