@@ -202,7 +202,8 @@ TEST_CASE("every sort of contact, integrator and minimum separation: differences
                 CAPTURE(scene.name, what, derivative, difference.relative_error, taylor.slope, taylor.points);
                 CHECK(difference.relative_error < 1e-6);
                 CHECK((taylor.ok() || (moves_shape && taylor.points < 3)));
-                if (!taylor.below_rounding && taylor.points >= 3) CHECK(taylor.slope < 2.1);
+                if (!taylor.below_rounding && taylor.points >= 3)  // 3: the second derivative is nearly nothing
+                    CHECK(((taylor.slope > 1.9 && taylor.slope < 2.1) || taylor.slope > 2.9));
             };
             for (const ParameterKind kind : all_kinds) {
                 const ModelTangent direction = random_direction(scene, kind, random);
