@@ -2,6 +2,7 @@
 /// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over a motion. What is judged:
 /// clearance_subject.hpp (motions), clearance_pairs.hpp (pairs and what they require); how it is told: clearance_report.hpp.
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -13,7 +14,9 @@
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_ranges.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
@@ -26,9 +29,10 @@ using core::clearance::PairStatus;
 struct ClearanceArguments {
     SubjectOptions subject;
     PairOptions pairs;
-    std::string minimum, tolerance, csv, baseline, certificate;
+    std::vector<std::string> files;
+    std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
-    bool ranges = false;
+    bool ranges = false, no_report = false;
 };
 
 // 1 um, or 0.1% of the least that is asked for if that is less.
@@ -133,9 +137,14 @@ bool is_finite(const core::stepper::Trajectory& trajectory) {
 }
 
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
-Errors write_proof(const std::string& path, const core::certificate::Certificate& certificate, const Subject& subject) {
+Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
         return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
+    if (!subject.files.empty()) {  // meshes: their files are what the proof is about
+        auto named = named_files(subject.files, path);
+        if (!named) return named.errors();
+        certificate.exports = std::move(*named);
+    }
     const Errors errors = core::certificate::write_certificate(path, certificate);
     if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
     return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
@@ -146,11 +155,36 @@ Json proof_json(const ClearanceArguments& options, const Subject& subject) {
     return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
 }
 
+// The folder of the report: the answer, and the meshes and path that it speaks of.
+Errors write_out(const ClearanceArguments& options, const CommonOptions& common, const Subject& subject, Json& json, std::string& told,
+                 Console& console) {
+    if (options.out.empty()) return {};
+    if (!is_finite(subject.trajectory))
+        return {{ErrorCode::not_finite, options.out, "the path has numbers that are not finite: nothing is written"}};
+    const std::filesystem::path folder = options.out;
+    std::error_code ignored;
+    std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
+    Errors errors;
+    if (!std::filesystem::equivalent(options.subject.path, folder / "trajectory.json", ignored)) {
+        if (const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size()); !kept)
+            return kept.errors();
+        errors = core::records::write_trajectory(folder / "trajectory.json", subject.trajectory, subject.model, subject.scene_path);
+    }
+    json["out"] = options.out;
+    if (errors.empty()) errors = write_result(options.out, json, common);
+    if (errors.empty() && !options.no_report)
+        leave_report(options.out, common, console, json, told, report::Motion{subject.model, subject.trajectory}, subject.scene_path);
+    return errors;
+}
+
 /// What would be found out only after the work: files that cannot be written, an earlier report that cannot be read.
 Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
         if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+    }
+    if (!options.out.empty()) {
+        if (Errors errors = try_output_folder(options.out); !errors.empty()) return errors;
     }
     if (options.baseline.empty()) return {};
     return core::files::read_file(options.baseline).errors();
@@ -161,6 +195,8 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (!lengths) return console.input_errors(lengths.errors());
     if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
     if (options.ranges) {
+        if (!options.subject.more.empty())
+            return console.input_errors({{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}});
         RangeQuestion question{options.subject.path, options.pairs, lengths->tolerance, options.explain, options.certificate};
         question.pairs.minimum = lengths->minimum;
         return clearance_over_ranges(question, common, console);
@@ -188,7 +224,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
         core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection, certify.margin_curve), certify);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
-    certificate.source = subject->source == SubjectSource::trajectory ? "" : options.subject.path;
+    certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     Errors errors;
     if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
@@ -205,12 +241,16 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
                 "; check it with fettle validate " + options.certificate +
                 (subject->source == SubjectSource::trajectory ? " --trajectory " + options.subject.path : "") + "\n";
     }
+    errors = write_out(options, common, *subject, json, text, console);
+    if (!errors.empty()) return console.input_errors(errors);
     console.result(json, text);
     return exit_code(report.status);
 }
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
-    app.option("FILE", options.subject.path, "Scene, design (at its values), or trajectory").required();
+    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, as they lie")
+        .required();
+    app.option("--unit", options.subject.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum,
                "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
     app.option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
@@ -237,6 +277,8 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     Option csv = app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
     app.option("--certificate", options.certificate,
                "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
+    Option out = app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
+    app.flag("--no-report", options.no_report, "With --out: no report.html");
     Option baseline = app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
     app.flag("--ranges", options.ranges, "Over all positions of the joints within their limits, in every combination")
         .excludes(motion)
@@ -245,7 +287,8 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
         .excludes(steps)
         .excludes(time)
         .excludes(csv)
-        .excludes(baseline);
+        .excludes(baseline)
+        .excludes(out);
 }
 
 }  // namespace
@@ -256,9 +299,14 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
     add_options(app, *options);
     app.closing_words(
         quantities::process_table() +
-        "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
+        "Example:  fettle clearance bracket.stl lid.stl --unit mm --minimum 0.3mm     exit code 1: closer than that\n"
+        "          fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
-    return {app, [options, &common](Console& console) { return run_clearance(*options, common, console); }};
+    return {app, [options, &common](Console& console) {
+                options->subject.path = options->files.front();
+                options->subject.more.assign(options->files.begin() + 1, options->files.end());
+                return run_clearance(*options, common, console);
+            }};
 }
 
 }  // namespace fettle::design::cli

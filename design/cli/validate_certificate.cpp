@@ -9,6 +9,8 @@
 #include "fettle/core/certificate/range_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
@@ -39,6 +41,7 @@ struct Checked {
     std::optional<core::certificate::Linkage> linkage;  // of one over ranges of joints
     std::vector<Claim> claims;
     std::vector<std::array<int, 2>> uncovered;
+    std::vector<core::certificate::ExportedFile> exports;
 };
 
 template <class Certificate>
@@ -66,6 +69,7 @@ Result<Checked> read_and_check(const std::string& path, const core::records::Sto
     if (!certificate) return certificate.errors();
     Checked out = checked(*certificate, stored.model, core::certificate::check_certificate(*certificate, stored));
     out.motion = certificate->motion;
+    out.exports = certificate->exports;
     return out;
 }
 
@@ -134,6 +138,33 @@ SourceCheck check_source(const Checked& certificate, const std::string& path, co
     return {true, "stale: the joints of " + certificate.source + ", their limits or the start poses have changed since"};
 }
 
+/// The files that the certificate names: still what they were?
+struct ExportCheck {
+    Json list = Json::array();       // file, status, rounding
+    std::vector<std::string> stale;  // what has changed; empty: nothing
+    std::vector<std::string> notes;
+};
+
+ExportCheck check_exports(const Checked& certificate, const std::string& path) {
+    ExportCheck check;
+    for (const core::certificate::ExportedFile& exported : certificate.exports) {
+        const std::filesystem::path file = std::filesystem::path(path).parent_path() / exported.file;  // an absolute one stays as it is
+        const Result<std::string> bytes = core::files::read_file(file);
+        const char* status = !bytes ? "not there" : core::files::hash_of(*bytes) == exported.hash ? "same" : "changed";
+        check.list.push_back({{"file", exported.file}, {"status", status}, {"rounding", exported.rounding}});
+        if (!bytes) {
+            check.notes.push_back(exported.file + ", a file of its bodies, is not there or cannot be read");
+        } else if (std::string_view(status) == "changed") {
+            check.stale.push_back("stale: " + exported.file + ", a file of its bodies, has changed since");
+        } else if (exported.rounding > 0) {
+            check.notes.push_back(exported.file +
+                                  formatted(": its vertices are rounded by up to %.2g m; between its parts bounds are wider by twice that",
+                                            exported.rounding));
+        }
+    }
+    return check;
+}
+
 Result<std::optional<double>> read_minimum(const std::string& text) {
     if (text.empty()) return std::optional<double>{};
     const Result<double> length = core::base::parse_length(text, "--minimum");
@@ -173,6 +204,12 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
         answer.stale = true;
         answer.add_fault("/source", source.note);
     }
+    const ExportCheck exports = check_exports(certificate, question.path);
+    for (const std::string& stale : exports.stale) {
+        answer.stale = true;
+        answer.add_fault("/exports", stale);
+    }
+    if (!certificate.exports.empty()) answer.json["exports"] = exports.list;
     const bool accepted = answer.faults.empty();
     answer.json["leaves"] = report.leaves;
     answer.json["motion"] = certificate.motion;
@@ -186,6 +223,7 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
     }
     answer.json["notes"] = Json::array();
     if (!source.stale && !source.note.empty()) answer.json["notes"].push_back(source.note);
+    for (const std::string& note : exports.notes) answer.json["notes"].push_back(note);
     if (!accepted) return;
     answer.code = exit_done;
     answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,

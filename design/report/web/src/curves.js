@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// The figures: clearances over time, how the search went, forces.
+import { Plot } from "./plots.js";
+import { element } from "./dom.js";
+import { lowerBound, number, plural, withUnit } from "./numbers.js";
+
+const least = (values) => values.reduce((a, b) => (b !== null && b < a ? b : a), Infinity);
+const most = (values) => values.reduce((a, b) => (b !== null && b > a ? b : a), -Infinity);
+const asList = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
+
+// Steps: of every stretch of the path its bounds, from its start; the last one's again at the end.
+export function marginPlot(parent, data, pick) {
+  const { margins, pairs } = data;
+  const lines = [], bands = [];
+  const ended = (values) => [...asList(values), values.length ? values[values.length - 1] : null];
+  margins.pairs.forEach((margin, k) => {
+    const pair = pairs[margin.pair], upper = lines.length;
+    lines.push({ name: `${pair.a} \u2013 ${pair.b}`, values: ended(margin.upper), style: "step", colour: k });
+    lines.push({ name: "", values: ended(margin.lower), style: "step", colour: k, edge: true, with: upper });
+    bands.push([upper, upper + 1]);
+  });
+  const required = [...new Set(margins.pairs.map((m) => pairs[m.pair].minimum).filter((m) => m > 0))];
+  for (const minimum of required)
+    lines.push({ name: `required ${withUnit(number(minimum), "mm")}`, values: margins.time.length ? asList(margins.time).map(() => minimum) : [], dash: true, muted: required.length > 0, silent: true });
+  const tops = most(lines.flatMap((line) => line.values)), positive = least(lines.flatMap((line) => line.values.filter((v) => v !== null)));
+  const log = positive > 0 && tops / positive > 40;
+  new Plot(parent, asList(margins.time), {
+    title: "Clearance over the motion", note: log ? "certified band, logarithmic" : "certified band: lower to upper bound", unit: "mm", quantity: "distance", x: { label: "time [s]", time: true },
+    lines, bands, log, yRange: log ? undefined : (u, low, high) => [Math.min(0, low), high * 1.08], onPick: pick, height: 260,
+    summary: margins.pairs.map((m) => `${pairs[m.pair].a} and ${pairs[m.pair].b}: at least ${withUnit(lowerBound(least(asList(m.lower))), "mm")}`).join("; ") + ".",
+  });
+}
+
+function bestSoFar(history) {
+  let best = null;
+  return history.objective.map((value, i) => {
+    if (value !== null && history.own[i] && history.violation[i] !== null && history.violation[i] <= 0 && (best === null || value < best)) best = value;
+    return best;
+  });
+}
+
+// Runs of evaluations of one model.
+function stages(history) {
+  const found = [];
+  history.model.forEach((model, i) => {
+    if (found.length === 0 || found[found.length - 1].model !== model) found.push({ model, from: i + 0.5, to: i + 1.5 });
+    else found[found.length - 1].to = i + 1.5;
+  });
+  return found;
+}
+
+export function searchPlots(parent, data) {
+  const { history } = data, xs = history.objective.map((_, i) => i + 1), x = { label: "evaluation" };
+  const stripes = stages(history), shaded = stripes.length > 1 ? "shaded: another model of contact" : undefined;
+  const end = xs.length, span = (u, low, high) => [Math.min(low, 0.5), Math.max(high, end + 0.5)];
+  new Plot(parent, xs, {
+    title: "Objective", note: shaded, quantity: "objective", x, xRange: span, stripes,
+    lines: [{ name: "evaluated", values: history.objective, points: end < 80, colour: 8 }, { name: "best that meets all requirements", values: bestSoFar(history), style: "step", colour: 0 }],
+    summary: `${plural(end, "evaluation")}, from ${number(data.objective.start)} to ${number(data.objective.end)}.`,
+  });
+  new Plot(parent, xs, {
+    title: "Largest violation", note: "of a requirement, in its unit; 0: all met", quantity: "violation", x, xRange: span, stripes,
+    lines: [{ name: "violation", values: history.violation, points: end < 80, colour: 1 }], yRange: (u, low, high) => [0, Math.max(high * 1.08, 1e-6)],
+    summary: `From ${number(history.violation[0])} to ${number(data.violation)}.`,
+  });
+  const requirements = history.constraints ?? [];
+  if (requirements.length)
+    new Plot(parent, xs, {
+      title: "Requirements", note: "spare, in the unit of each; below 0: violated", quantity: "spare", x, xRange: span, stripes,
+      lines: requirements.map((r) => ({ name: r.name, values: r.spare })), height: 260,
+      summary: requirements.map((r) => `${r.name}: ${number(r.spare[r.spare.length - 1])}`).join("; ") + ".",
+    });
+  new Plot(parent, xs, {
+    title: "Parameters", note: "share of the range between their bounds", quantity: "share", x, xRange: span, stripes,
+    lines: history.parameters.map((values, k) => ({ name: data.parameters[k].name, values })), yRange: () => [-0.03, 1.03], height: 260,
+    summary: data.parameters.map((p) => `${p.name} from ${number(p.start)} to ${number(p.end)} ${p.unit}`).join("; ") + ".",
+  });
+}
+
+export function forcePlots(parent, data, pick) {
+  for (const chart of data.series) {
+    const shown = chart.lines.map((line) => ({ name: line.name, values: asList(line.values) }));
+    new Plot(parent, asList(chart.time), {
+      title: chart.title, note: chart.note, unit: chart.unit, quantity: chart.quantity, x: { label: "time [s]", time: true }, lines: shown, onPick: pick,
+      summary: shown.map((line) => `${line.name}: from ${number(least(line.values))} to ${number(most(line.values))} ${chart.unit}`).join("; ") + ".",
+    });
+  }
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Puts the report together: data into words, picture, tables and curves, and these to work with each other.
+import "./style.css";
+import { readData } from "./data.js";
+import { announce, byId, element } from "./dom.js";
+import { forcePlots, marginPlot, searchPlots } from "./curves.js";
+import { startMotion } from "./motion.js";
+import { repaintPlots, setPlotTime } from "./plots.js";
+import { costBars, pairTable, parameterTable, requirementTable } from "./tables.js";
+import { startPrinting, startTheme } from "./theme.js";
+import * as words from "./words.js";
+
+function fillVerdict(data) {
+  document.title = `${data.name} \u2013 fettle report`;
+  byId("name").textContent = data.name;
+  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance" }[data.kind];
+  byId("asked").textContent = words.asked(data);
+  const { tone, head, rest } = words.reached(data);
+  byId("reached").append(element("strong", { class: `verdict-${tone}` }, head), ` ${rest}`);
+  byId("facts").append(...words.facts(data).map(([term, value, small]) => element("div", {}, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null))));
+  byId("notices").append(...data.notices.map((text) => element("li", {}, text)));
+  if (data.message && data.status !== "optimal" && data.status !== "ok") byId("notices").prepend(element("li", { class: "warn" }, data.message));
+}
+
+function section(title, intro, ...children) {
+  const id = `section-${byId("sections").children.length}`;
+  const made = element("section", { "aria-labelledby": id }, element("h2", { id }, title), intro ? element("p", { class: "section-intro" }, intro) : null, ...children);
+  byId("sections").append(made);
+  return made;
+}
+
+function fillFooter(data) {
+  const lines = [];
+  if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, data.command)));
+  lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. Folder: `, element("code", {}, data.folder)));
+  lines.push(element("p", {}, "Proven: a bound that holds over the whole continuous motion of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm."));
+  byId("footer").append(...lines);
+}
+
+function fillLimits(data) {
+  const bounds = data.parameters.filter((p) => p.held === "lower bound" || p.held === "upper bound");
+  const costly = data.requirements.some((r) => r.counts);
+  if (!data.limits.length && !bounds.length && !costly) return;
+  const made = section("What limits the design", costly ? "What each requirement costs, in the objective: how much would be gained if it asked for a little less." : null);
+  if (costly) made.append(costBars(data));
+  const lines = [...data.limits, ...bounds.map((p) => `${p.name} is at its ${p.held}.`)];
+  if (lines.length) made.append(element("ul", { class: "plain-list" }, ...lines.map((line) => element("li", {}, line))));
+}
+
+function fillSections(data, motion) {
+  const pick = (t) => motion?.seek(t);
+  const show = (k) => motion.show(k);
+  show.can = (k) => !!motion && motion.canShow(k);
+  if (data.requirements.length) {
+    section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
+  } else if (data.pairs.length) {
+    const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : "Worst first. A row shows its narrowest gap in the picture above.";
+    section("Clearances", data.pair_count > data.pairs.length ? `${intro} ${data.pair_count - data.pairs.length} more pairs are in result.json.` : intro, pairTable(data, show));
+  }
+  const figures = () => element("div", { class: "figures" });
+  if (data.margins) {
+    const box = figures();
+    byId("sections").lastElementChild?.append(box);
+    marginPlot(box, data, pick);
+  }
+  if (data.kind === "optimise") {
+    fillLimits(data);
+    section("Parameters", "The open dot is where it began, the full one where it ended.", parameterTable(data));
+  }
+  if (data.history?.objective.length > 1) {
+    const box = figures();
+    section("How it got there", null, box);
+    searchPlots(box, data);
+  }
+  if (data.series.length) {
+    const box = figures();
+    section("Forces", data.series_note, box);
+    forcePlots(box, data, pick);
+  }
+}
+
+const data = readData();
+fillVerdict(data);
+let motion = null;
+if (data.views.length) {
+  try {
+    motion = startMotion(data, setPlotTime);
+  } catch (error) {
+    byId("viewport").replaceChildren(element("p", { class: "offscreen" }, "The picture needs WebGL, which this browser does not offer. Everything else is below."));
+    console.warn(String(error));
+  }
+} else {
+  byId("motion").hidden = true;
+}
+fillSections(data, motion);
+fillFooter(data);
+startTheme((dark) => {
+  motion?.paint(dark);
+  repaintPlots();
+});
+startPrinting(motion?.viewer, repaintPlots);
+motion?.seek(motion.start);
+announce("");
+performance.mark("fettle-ready");
+window.fettleReport = { data, motion };

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// One design's parts, put where they are at a time.
+import * as THREE from "three";
+
+import { indexAt } from "./data.js";
+
+const a = new THREE.Quaternion(), b = new THREE.Quaternion();
+
+export class Mechanism {
+  // `view`: times [s], and of each body mesh and poses (x y z qx qy qz qw, one after the other; a single one: it does not move).
+  constructor(view, solids, materials) {
+    this.times = view.times;
+    this.root = new THREE.Group();
+    this.parts = view.bodies.map((body, i) => {
+      const group = new THREE.Group(), { solid, lines, closed } = solids[body.mesh];
+      group.matrixAutoUpdate = false;
+      const meshes = [];
+      if (solid) meshes.push(new THREE.Mesh(solid, closed ? materials[i].whole : materials[i].open), new THREE.Mesh(solid, materials[i].cut));
+      if (lines) meshes.push(new THREE.LineSegments(lines, materials[i].lines));
+      for (const mesh of meshes) {
+        mesh.matrixAutoUpdate = mesh.frustumCulled = false;
+        mesh.renderOrder = mesh.isLineSegments ? 1 : 0;  // lines see the stencil of all solids
+      }
+      if (solid) meshes[1].visible = false;
+      group.add(...meshes);
+      this.root.add(group);
+      return { group, meshes, poses: body.poses, solid: solids[body.mesh], materials: materials[i], away: new THREE.Vector3(), at: new THREE.Vector3() };
+    });
+    this.offsets();
+  }
+
+  // Which way each part goes when the mechanism is taken apart: from the middle of all to the middle of its own, at the start.
+  offsets() {
+    this.setTime(this.times[0], 0);
+    const all = new THREE.Box3(), boxes = this.parts.map((part) => part.solid.box.clone().applyMatrix4(part.group.matrix));
+    for (const box of boxes) all.union(box);
+    this.box = all;
+    const middle = all.getCenter(new THREE.Vector3()), size = all.getSize(new THREE.Vector3());
+    const least = Math.max(size.x, size.y, size.z) || 1;
+    this.parts.forEach((part, i) => {
+      const own = boxes[i].getCenter(new THREE.Vector3()).sub(middle);
+      // Thin stacks come apart along the stack as well as flat ones do along their plane.
+      part.away.set((own.x * least) / Math.max(size.x, 0.3 * least), (own.y * least) / Math.max(size.y, 0.3 * least), (own.z * least) / Math.max(size.z, 0.3 * least));
+    });
+  }
+
+  setTime(t, exploded) {
+    const k = indexAt(this.times, t), last = this.times.length - 1;
+    const span = k < last ? this.times[k + 1] - this.times[k] : 0;
+    const share = span > 0 ? Math.min(1, Math.max(0, (t - this.times[k]) / span)) : 0;
+    for (const part of this.parts) {
+      const still = part.poses.length === 7, i = still ? 0 : 7 * k, j = still || k === last ? i : i + 7, p = part.poses;
+      a.set(p[i + 3], p[i + 4], p[i + 5], p[i + 6]);
+      b.set(p[j + 3], p[j + 4], p[j + 5], p[j + 6]);
+      if (share > 0) a.slerp(b, share);
+      part.at.set(p[i] + share * (p[j] - p[i]), p[i + 1] + share * (p[j + 1] - p[i + 1]), p[i + 2] + share * (p[j + 2] - p[i + 2]));
+      if (exploded > 0) part.at.addScaledVector(part.away, exploded);
+      part.group.matrix.makeRotationFromQuaternion(a).setPosition(part.at);
+      part.group.matrixWorldNeedsUpdate = true;
+      for (const mesh of part.meshes) mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  // The box of the whole motion, from some of its instants.
+  reach() {
+    const all = new THREE.Box3(), count = Math.min(this.times.length, 24);
+    for (let n = 0; n < count; ++n) {
+      this.setTime(this.times[Math.round((n * (this.times.length - 1)) / Math.max(1, count - 1))], 0);
+      for (const part of this.parts) all.union(part.solid.box.clone().applyMatrix4(part.group.matrix));
+    }
+    return all;
+  }
+
+  setSection(on) {
+    for (const { meshes, materials, solid } of this.parts) {
+      for (const mesh of meshes) {
+        if (mesh.isLineSegments) mesh.material = on ? materials.keptLines : materials.lines;
+        else if (mesh.material === materials.cut) mesh.visible = on;
+        else mesh.material = on ? materials.kept : solid.closed ? materials.whole : materials.open;
+      }
+    }
+  }
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Numbers for people. A lower bound is rounded down and an upper one up, so that what is read is proven too.
+
+const none = "\u2013";
+const minus = (text) => text.replace("-", "\u2212").replace("e-", "e\u2212");
+const isNumber = (x) => typeof x === "number" && Number.isFinite(x);
+
+// `digits` significant ones, by `round`; the exponent is told where the number is very small or large.
+function rounded(x, digits, round) {
+  if (x === 0) return "0";
+  const exponent = Math.floor(Math.log10(Math.abs(x)));
+  if (exponent < -4 || exponent > 6) {
+    const mantissa = round((x / 10 ** exponent) * 10 ** (Math.min(digits, 3) - 1)) / 10 ** (Math.min(digits, 3) - 1);
+    return `${mantissa}e${exponent}`;
+  }
+  const decimals = Math.max(0, digits - 1 - exponent);
+  return (round(x * 10 ** decimals) / 10 ** decimals).toFixed(decimals);
+}
+
+const trimmed = (text) => (text.includes(".") && !text.includes("e") ? text.replace(/0+$/, "").replace(/\.$/, "") : text);
+
+export const number = (x, digits = 5) => (isNumber(x) ? minus(trimmed(rounded(x, digits, Math.round))) : none);
+export const lowerBound = (x, digits = 5) => (isNumber(x) ? minus(rounded(x, digits, Math.floor)) : none);
+export const upperBound = (x, digits = 5) => (isNumber(x) ? minus(rounded(x, digits, Math.ceil)) : none);
+
+export const withUnit = (text, unit) => (unit && text !== none ? `${text}\u00a0${unit}` : text);
+
+// As many decimals as tell one step from the next.
+export function seconds(t, step = 0.01) {
+  const decimals = Math.max(0, Math.min(6, Math.ceil(-Math.log10(step))));
+  return `${minus(t.toFixed(decimals))}\u00a0s`;
+}
+
+export const plural = (n, one, many = one + "s") => `${n}\u00a0${n === 1 ? one : many}`;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
+import { element } from "./dom.js";
+import { lowerBound, number, seconds, upperBound, withUnit } from "./numbers.js";
+import { heldWords } from "./words.js";
+
+function tableOf(label, headings, rows) {
+  const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
+  const table = element("table", { class: "stacked" }, element("caption", { class: "visually-hidden" }, label), element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows));
+  return element("div", { class: "table-frame" }, table);
+}
+
+const cell = (label, type, ...children) => element("td", { "data-label": label, class: type + (children.length && children[0] !== "\u2013" ? "" : " nothing") }, ...children);
+
+const tones = { clear: "good", met: "good", violated: "bad", "not met": "bad", undecided: "open", contact: "plain" };
+const status = (word) => element("span", { class: `status ${tones[word] ?? "plain"}` }, word);
+
+const pairName = (pair) => `${pair.a} \u2013 ${pair.b}`;
+
+// A row's first cell: a button that shows the gap, where there is one to show.
+function opener(text, small, pair, show) {
+  const shown = pair !== null && pair !== undefined && show.can(pair);
+  const name = shown ? element("button", { type: "button", class: "row-button", "data-pair": pair, onclick: () => show(pair) }, text) : text;
+  return element("td", {}, name, small ? element("small", {}, small) : null);
+}
+
+export function pairTable(data, show) {
+  const required = data.pairs.some((pair) => pair.minimum !== null);
+  const headings = [["Pair"], ...(required ? [["Required", "num"]] : []), ["Proven at least", "num"], ["At most", "num"], ["When", "num"], ["Verdict"]];
+  const rows = data.pairs.map((pair, k) => element("tr", { "data-pair": k },
+    opener(pairName(pair), pair.note, k, show),
+    required ? cell("Required", "num", withUnit(number(pair.minimum), "mm")) : null,
+    cell("Proven at least", "num", withUnit(lowerBound(pair.lower), "mm")),
+    cell("At most", "num", withUnit(upperBound(pair.upper), "mm")),
+    cell("When", "num", pair.time === null || !pair.motion ? "\u2013" : seconds(pair.time, data.step)),
+    cell("Verdict", "", status(pair.finding ?? pair.status))));
+  return tableOf("Clearances of pairs", headings, rows);
+}
+
+function requiredWords(r) {
+  const low = r.required_lower !== null, high = r.required_upper !== null;
+  if (low && high) return r.required_lower === r.required_upper ? withUnit(number(r.required_lower), r.unit) : `${number(r.required_lower)} to ${withUnit(number(r.required_upper), r.unit)}`;
+  return low ? `\u2265 ${withUnit(number(r.required_lower), r.unit)}` : `\u2264 ${withUnit(number(r.required_upper), r.unit)}`;
+}
+
+export function requirementTable(data, show) {
+  const rows = data.requirements.map((r) => {
+    const pair = r.pair === null ? null : data.pairs[r.pair];
+    return element("tr", r.pair === null ? {} : { "data-pair": r.pair },
+      opener(r.name, r.fault, r.pair, show),
+      cell("Required", "num", requiredWords(r)),
+      cell("Proven at least", "num", withUnit(lowerBound(r.lower), r.unit)),
+      cell("At most", "num", withUnit(upperBound(r.upper), r.unit)),
+      cell("When", "num", pair && pair.motion ? seconds(pair.time, data.step) : "\u2013"),
+      cell("Verdict", "", status(r.met ? "met" : "not met")));
+  });
+  return tableOf("Requirements", [["Requirement"], ["Required", "num"], ["Proven at least", "num"], ["At most", "num"], ["When", "num"], ["Verdict"]], rows);
+}
+
+function rangeDrawing(p) {
+  const place = (x) => 6 + 108 * Math.min(1, Math.max(0, (x - p.lower) / (p.upper - p.lower || 1)));
+  const from = place(p.start), to = place(p.end);
+  return element("svg", { class: "range", viewBox: "0 0 120 16", "aria-hidden": "true" },
+    element("svg:line", { x1: 6, x2: 114, y1: 8, y2: 8 }), element("svg:line", { class: "moved", x1: from, x2: to, y1: 8, y2: 8 }),
+    element("svg:circle", { class: "from", cx: from, cy: 8, r: 3.5 }), element("svg:circle", { class: "to", cx: to, cy: 8, r: 4.5 }));
+}
+
+export function parameterTable(data) {
+  const rows = data.parameters.map((p) => element("tr", {},
+    element("td", {}, p.name),
+    cell("Start", "num", withUnit(number(p.start), p.unit)),
+    cell("End", "num", withUnit(number(p.end), p.unit)),
+    cell("Bounds", "num", `${number(p.lower)} to ${withUnit(number(p.upper), p.unit)}`),
+    cell("", "wide", rangeDrawing(p)),
+    cell("Held by", "", p.held ? heldWords[p.held] ?? p.held : "\u2013", p.step ? element("small", {}, `could move by ${withUnit(number(p.step, 3), p.unit)}`) : null)));
+  return tableOf("Parameters", [["Parameter"], ["Start", "num"], ["End", "num"], ["Bounds", "num"], ["Within them"], ["Held by"]], rows);
+}
+
+// What each requirement costs: bars, the dearest first.
+export function costBars(data) {
+  const costs = data.requirements.filter((r) => r.counts).sort((a, b) => Math.abs(b.cost) - Math.abs(a.cost));
+  const top = Math.abs(costs[0]?.cost ?? 1);
+  return element("ul", { class: "bars" }, ...costs.map((r) => {
+    const bar = element("div", { class: "bar" });
+    bar.style.width = `${(100 * Math.abs(r.cost)) / top}%`;
+    const told = `${withUnit(number(0.01), r.unit)} ${r.cost > 0 ? "less" : "more"} would gain ${number(0.01 * Math.abs(r.cost), 3)}`;
+    return element("li", {}, element("span", {}, r.name), element("div", { class: "track", "aria-hidden": "true" }, bar), element("span", { class: "told" }, told));
+  }));
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The verdict in words: what was asked, what was reached, what of it is proven. What is not proven is not told as if it were.
+import { lowerBound, number, plural, withUnit } from "./numbers.js";
+
+const mm = (text) => withUnit(text, "mm");
+
+const list = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`);
+const some = (names, most = 3) => (names.length <= most ? list(names) : `${names.slice(0, most).join(", ")} and ${names.length - most} more`);
+
+export function asked(data) {
+  if (data.description) return data.description;
+  if (data.kind === "optimise")
+    return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} are met and the objective is least.`;
+  if (data.kind === "clearance") return data.motion ? "Certified clearances over the motion." : "Certified clearances as assembled.";
+  return "A simulation of the mechanism.";
+}
+
+const unmet = (data) => data.requirements.filter((r) => !r.met).map((r) => r.name);
+
+function optimised(data) {
+  const bad = unmet(data), o = data.optimality, all = plural(data.requirements.length, "requirement");
+  const proven = `All ${all} are met, each by a proven bound.`;
+  switch (data.status) {
+    case "optimal":
+      return { tone: "good", head: "Optimal.", rest: `${proven} The best step still in sight would gain ${number(o.predicted_gain, 2)} of the objective, less than the ${number(o.worth, 2)} that counts.` };
+    case "feasible":
+      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven} ${data.budget_spent ? "The budget of evaluations ended the search." : o && !o.judged ? "Optimality could not be judged." : `A step is still in sight that would gain ${number(o?.predicted_gain, 2)} of the objective.`}` };
+    case "infeasible":
+      return { tone: "bad", head: "Infeasible.", rest: `Not met: ${some(bad)}.` };
+    case "interrupted":
+      return { tone: "open", head: "Interrupted.", rest: `This is the best design so far${bad.length ? `; not met: ${some(bad)}` : ""}. Nothing is said of optimality.` };
+    default:
+      return { tone: "bad", head: "Not begun.", rest: "Neither the start nor a design near it could be evaluated." };
+  }
+}
+
+function simulated(data) {
+  switch (data.status) {
+    case "ok":
+      return data.least === null
+        ? { tone: "good", head: "Simulated to the end.", rest: "No two bodies of it may collide, so that there was nothing to prove." }
+        : { tone: "good", head: "Simulated to the end, and proven never to touch.", rest: `Bodies that may collide stay at least ${mm(lowerBound(data.least))} apart over the whole continuous path.` };
+    case "not_certified":
+      return { tone: "open", head: "Simulated to the end, not proven.", rest: "Every step was solved, but the path between is not certified." };
+    case "interrupted":
+      return { tone: "open", head: "Interrupted.", rest: "What is shown is as far as it came." };
+    default:
+      return { tone: "bad", head: { blocked: "Blocked.", not_held: "Not held.", not_converged: "Not converged." }[data.status] ?? `${data.status}.`, rest: `It ended after ${plural(data.steps, "step")}.` };
+  }
+}
+
+function cleared(data) {
+  const pairs = data.pairs, required = pairs.filter((p) => p.minimum !== null), where = data.motion ? "over the whole motion" : "as assembled";
+  const of = (status) => pairs.filter((p) => p.status === status);
+  const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
+  const total = data.pair_count ?? pairs.length;
+  const pushing = of("contact").length, judged = total - pushing;
+  const others = pushing ? ` ${plural(pushing, "pair pushes", "pairs push")} each other and ${pushing === 1 ? "is" : "are"} not judged.` : "";
+  switch (data.status) {
+    case "clear":
+      return required.length
+        ? { tone: "good", head: "Clear, and proven.", rest: `${plural(judged, "pair keeps", "pairs keep")} the required clearance ${where}.${others}` }
+        : { tone: "good", head: "No clash, proven.", rest: `The distances of ${plural(total, "pair")} are bounded ${where}; no minimum was asked for.` };
+    case "violated":
+      return { tone: "bad", head: "Violated.", rest: `Too close ${where}: ${names(of("violated"))}.` };
+    default:
+      return { tone: "open", head: "Undecided.", rest: of("undecided").length ? `Not settled ${where}: ${names(of("undecided"))}.` : "Nothing was judged, or not to the end." };
+  }
+}
+
+// {tone: "good" | "open" | "bad", head, rest}
+export function reached(data) {
+  return { optimise: optimised, simulate: simulated, clearance: cleared }[data.kind](data);
+}
+
+// [term, value, small print]
+export function facts(data) {
+  const rows = [];
+  if (data.kind === "optimise" && data.objective.end !== null) {
+    rows.push(["Objective", number(data.objective.end), data.objective.start !== null ? `from ${number(data.objective.start)} at the start` : "the start could not be evaluated"]);
+    rows.push(["Requirements met", `${data.requirements.filter((r) => r.met).length} of ${data.requirements.length}`, "by proven bounds"]);
+  }
+  const least = data.kind === "simulate" ? data.least : Math.min(...data.pairs.map((p) => p.lower ?? Infinity));
+  if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : "proven"]);
+  if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
+  else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
+  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.motion ? "over the motion" : "as assembled"]);
+  if (data.kind !== "optimise") rows.push(["Parts", String(data.views[0]?.bodies.length ?? 0), `${data.views[0]?.bodies.filter((b) => b.type !== "static").length ?? 0} of them not fixed`]);
+  return rows;
+}
+
+// What holds a parameter, as people say it.
+export const heldWords = {
+  "lower bound": "its lower bound",
+  "upper bound": "its upper bound",
+  constraints: "requirements",
+  stationary: "the objective: least here",
+  nothing: "nothing",
+};
