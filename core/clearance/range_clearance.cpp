@@ -55,6 +55,7 @@ public:
           pairs_(pairs),
           options_(options),
           start_(as_assembled(model)),
+          usable_(have_usable_numbers(model, start_, {{}})),
           shapes_(body_shapes(model, bodies_named(pairs))) {}
 
     std::vector<RangeClearance> run() {
@@ -114,7 +115,7 @@ private:
             return out;
         }
         for (const int body : {request.a, request.b})
-            if (!has_usable_numbers(model_.bodies[static_cast<std::size_t>(body)], start_, {{}}, body)) {
+            if (!usable_[static_cast<std::size_t>(body)]) {
                 out.reason = "its numbers are not finite, or larger than 1e30";
                 return out;
             }
@@ -209,6 +210,7 @@ private:
     const std::vector<PairRequest>& pairs_;
     const RangeClearanceOptions& options_;
     const stepper::Trajectory start_;
+    const std::vector<char> usable_;  // [body]
     const std::vector<BodyShape> shapes_;
 };
 
