@@ -166,8 +166,9 @@ Errors write_out(const ClearanceArguments& options, const CommonOptions& common,
     std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
     Errors errors;
     if (!std::filesystem::equivalent(options.subject.path, folder / "trajectory.json", ignored)) {
-        if (const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size()); !kept)
-            return kept.errors();
+        const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size());
+        if (!kept) return kept.errors();
+        if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
         errors = core::records::write_trajectory(folder / "trajectory.json", subject.trajectory, subject.model, subject.scene_path);
     }
     json["out"] = options.out;
