@@ -133,10 +133,9 @@ private:
         const Vector3 lambda_theta = lambda_[s][i].tail<3>(), phi = motion_[s][i].tail<3>();
         const Matrix3 back = core::kinematics::left_jacobian_inverse(theta).transpose();
         const Vector3 torque = back * step.derivatives.gradient[i].tail<3>();
-        const core::kinematics::RotationDerivatives r = core::kinematics::rotation_derivatives(theta);
-        const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), r);
+        const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), theta);
         const Vector3 end_bar = back * (increment_bar.tail<3>() + curvature * lambda_theta) + 0.5 * phi.cross(torque);
-        const Vector3 base_bar = r.value.transpose() * end_bar;
+        const Vector3 base_bar = core::kinematics::rotation(theta).transpose() * end_bar;
         start_[s][i].leftCols<3>() += 0.5 * cross_matrix(base_bar) * trajectory_.poses[t][i].rotation;
     }
 

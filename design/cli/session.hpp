@@ -16,6 +16,7 @@ struct CommonOptions {
     bool json = false, quiet = false;
     bool strict = false;  ///< faults of meshes that are warnings else are errors
     std::vector<std::string> mesh_dirs;
+    std::string log;  ///< file for narration and progress; empty: none
 };
 
 /// A subcommand: adds itself to the program's options; `run` is called once the command line has been read, and returns the exit code.
@@ -24,9 +25,19 @@ struct Command {
     std::function<int(Console&)> run;
 };
 
+Command add_clearance(CommandLine& program, const CommonOptions& common);
+Command add_completion(CommandLine& program);
+Command add_draw(CommandLine& program, const CommonOptions& common);
+Command add_export(CommandLine& program, const CommonOptions& common);
+Command add_import(CommandLine& program, const CommonOptions& common);
+Command add_joints(CommandLine& program);
+Command add_manual(CommandLine& program);
+Command add_new(CommandLine& program);
+Command add_optimisers(CommandLine& program);
+Command add_quantities(CommandLine& program);
+Command add_shapes(CommandLine& program);
 Command add_validate(CommandLine& program, const CommonOptions& common);
 Command add_simulate(CommandLine& program, const CommonOptions& common);
-Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
 Command add_ccd(CommandLine& program);

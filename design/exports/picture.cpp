@@ -175,12 +175,19 @@ void draw_line(Image& image, const PictureLine& line, const Colour& colour, doub
 
 void draw_dot(Image& image, const Vector2& centre, const Colour& colour) { draw_line(image, {centre, centre}, colour, 7); }
 
+struct Rectangle {
+    int x, y, width, height;
+};
+void fill(Image& image, const Rectangle& r, const Colour& colour) {
+    for (int v = std::max(0, r.y); v < std::min(r.y + r.height, image.height); ++v)
+        for (int u = std::max(0, r.x); u < std::min(r.x + r.width, image.width); ++u) image.at(u, v) = colour;
+}
+
 void ink_texts(const Picture& picture, Image& image) {
     int y = 12;
     if (!picture.title.empty()) write_text(image, 12, std::exchange(y, y + 26), picture.title, ink, 2);
     for (const LegendEntry& entry : picture.legend) {
-        for (int v = y; v < std::min(y + 12, image.height); ++v)
-            for (int u = 12; u < std::min(26, image.width); ++u) image.at(u, v) = entry.colour;
+        fill(image, {12, y, 14, 12}, entry.colour);
         write_text(image, 34, y, entry.name, ink, 2);
         y += 20;
     }
@@ -233,7 +240,9 @@ Image inked(const Picture& picture) {
         const Vector2 at = picture.marker->to;
         const int width = text_width(picture.marker_text, 2);
         const int x = std::clamp(static_cast<int>(at.x()) + 12, 4, std::max(4, image.width - width - 4));
-        write_text(image, x, static_cast<int>(at.y()) - 24, picture.marker_text, alarm, 2);
+        const int y = std::clamp(static_cast<int>(at.y()) - 24, 4, std::max(4, image.height - 24));
+        fill(image, {x - 3, y - 3, width + 4, 21}, white);
+        write_text(image, x, y, picture.marker_text, alarm, 2);
     }
     ink_texts(picture, image);
     return image;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Letters for pictures made of pixels: ASCII, 5 x 7 with 1 between them, as on character displays.
+/// Letters for pictures made of pixels: ASCII, 5 x 7 and one row for what hangs below, 1 between them, as on character displays.
 #pragma once
 
 #include <string_view>

@@ -44,7 +44,8 @@ std::string marker_text(const Picture& picture) {
     std::string out =
         "<g id=\"witness\" stroke=\"#c80028\" stroke-width=\"2\" fill=\"#c80028\">\n<path d=\"" + path_of(*picture.marker) + "\"/>\n";
     for (const Vector2& p : {a, b}) out += "<circle cx=\"" + number(p.x()) + "\" cy=\"" + number(p.y()) + "\" r=\"3\"/>\n";
-    return out + text_at(b.x() + 10, b.y() - 10, picture.marker_text, " stroke=\"none\"") + "</g>\n";
+    return out + text_at(b.x() + 10, b.y() - 10, picture.marker_text, " stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"") +
+           "</g>\n";
 }
 
 std::string legend_text(const Picture& picture) {
