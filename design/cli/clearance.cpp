@@ -2,6 +2,7 @@
 /// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over a motion. What is judged:
 /// clearance_subject.hpp (motions), clearance_pairs.hpp (pairs and what they require); how it is told: clearance_report.hpp.
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -14,6 +15,7 @@
 #include "fettle/design/cli/clearance_report.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
@@ -27,8 +29,9 @@ struct ClearanceArguments {
     SubjectOptions subject;
     PairOptions pairs;
     std::vector<std::string> files;
-    std::string minimum, tolerance, csv, baseline, certificate;
+    std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
+    bool no_report = false;
 };
 
 // 1 um, or 0.1% of the least that is asked for if that is less.
@@ -151,11 +154,36 @@ Json proof_json(const ClearanceArguments& options, const Subject& subject) {
     return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
 }
 
+// The folder of the report: the answer, and the meshes and path that it speaks of.
+Errors write_out(const ClearanceArguments& options, const CommonOptions& common, const Subject& subject, Json& json, std::string& told,
+                 Console& console) {
+    if (options.out.empty()) return {};
+    if (!is_finite(subject.trajectory))
+        return {{ErrorCode::not_finite, options.out, "the path has numbers that are not finite: nothing is written"}};
+    const std::filesystem::path folder = options.out;
+    std::error_code ignored;
+    std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
+    Errors errors;
+    if (!std::filesystem::equivalent(options.subject.path, folder / "trajectory.json", ignored)) {
+        if (const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size()); !kept)
+            return kept.errors();
+        errors = core::records::write_trajectory(folder / "trajectory.json", subject.trajectory, subject.model, subject.scene_path);
+    }
+    json["out"] = options.out;
+    if (errors.empty()) errors = write_result(options.out, json, common);
+    if (errors.empty() && !options.no_report)
+        leave_report(options.out, common, console, json, told, report::Motion{subject.model, subject.trajectory}, subject.scene_path);
+    return errors;
+}
+
 /// What would be found out only after the work: files that cannot be written, an earlier report that cannot be read.
 Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
         if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+    }
+    if (!options.out.empty()) {
+        if (Errors errors = try_output_folder(options.out); !errors.empty()) return errors;
     }
     if (options.baseline.empty()) return {};
     return core::files::read_file(options.baseline).errors();
@@ -205,6 +233,8 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
                 "; check it with fettle validate " + options.certificate +
                 (subject->source == SubjectSource::trajectory ? " --trajectory " + options.subject.path : "") + "\n";
     }
+    errors = write_out(options, common, *subject, json, text, console);
+    if (!errors.empty()) return console.input_errors(errors);
     console.result(json, text);
     return exit_code(report.status);
 }
@@ -239,6 +269,8 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
     app.option("--certificate", options.certificate,
                "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
+    app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
+    app.flag("--no-report", options.no_report, "With --out: no report.html");
     app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
 }
 

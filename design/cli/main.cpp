@@ -37,6 +37,24 @@ std::string usage_message(const std::string& fault, const std::vector<Command>& 
     return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
 }
 
+// As it can be typed again: words that a shell would take apart or change are quoted.
+std::string typed(int argc, char** argv) {
+    std::string text = "fettle";
+    for (int k = 1; k < argc; ++k) {
+        const std::string word = argv[k];
+        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+        text += ' ';
+        if (plain) {
+            text += word;
+            continue;
+        }
+        text += '\'';
+        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        text += '\'';
+    }
+    return text;
+}
+
 void add_common_options(CommandLine program, CommonOptions& common) {
     program.version(std::string("fettle ") + core::base::version());
     program.option("--threads", common.threads, "How many threads (default: all of the machine's); changes no bit of a result")
@@ -60,7 +78,8 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
     add("Check what there is", {add_validate(program, common), add_clearance(program, common)});
     add("Move and tune", {add_simulate(program, common), add_optimise(program, common), add_gradient(program, common)});
-    add("See and pass on", {add_draw(program, common), add_export(program, common), add_import(program, common)});
+    add("See and pass on",
+        {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
     add("About the program", {add_ccd(program), add_completion(program), add_manual(program)});
     return all;
 }
@@ -69,6 +88,7 @@ int run(int argc, char** argv) {
     ProgramLine line("fettle", "fettle: tunes mechanisms of rigid parts under certified clearance");
     CommandLine program = line.options();
     CommonOptions common;
+    common.command = typed(argc, argv);
     add_common_options(program, common);
     const std::vector<Command> commands = add_commands(program, common);
     program.closing_words(

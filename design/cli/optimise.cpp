@@ -8,6 +8,7 @@
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
@@ -27,7 +28,7 @@ struct OptimiseArguments {
     std::string path, optimiser, out;
     int starts = 0;  // 0: one run
     std::optional<int> seed;
-    bool resume = false, repair = false;
+    bool resume = false, repair = false, no_report = false;
 };
 
 std::string output_folder(const OptimiseArguments& options, const reading::DesignFile& file) {
@@ -50,6 +51,7 @@ struct Run {
     const OptimiseArguments& options;
     const reading::DesignFile& file;
     const DesignProblem& problem;
+    const CommonOptions& common;
     Console& console;
     RunFacts facts;
 };
@@ -76,9 +78,9 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
         told = "best of " + std::to_string(rows.size()) + " starts, seed " + std::to_string(run.facts.seed) + ":\n" + told +
                "all starts:\n" + starts_text(rows);
     }
-    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    const Errors errors = core::files::write_file_atomically(std::filesystem::path(folder.directory) / "result.json", text);
+    const Errors errors = write_result(folder.directory, json, run.common);
     if (!errors.empty()) return console.input_errors(errors);
+    if (!run.options.no_report) leave_report(folder.directory, run.common, console, json, told);
     if (outcome.report.status == OptimiserStatus::interrupted)
         told += "go on where it stopped: " + resume_command(run.options, folder.directory) + "\n";
     console.result(json, told);
@@ -112,13 +114,13 @@ Errors adopt_history(const std::filesystem::path& folder, const std::filesystem:
     return core::files::write_file_atomically(folder / "history.jsonl", *history);
 }
 
-int run_all(Run run, const CommonOptions& common) {
+int run_all(Run run) {
     const int list = run.options.seed.value_or(1);
     if (list > most_lists)
         return run.console.input_errors({{ErrorCode::out_of_range, "--seed", "with --starts it is at most " + std::to_string(most_lists)}});
     StartsRequest request{run.options.path, run.facts.out, run.options.optimiser, {}, run.options.resume, run.options.repair};
     request.seeds = studies::seeds_of_list(static_cast<std::uint64_t>(list), run.options.starts);
-    const std::vector<StartResult> rows = run_starts(request, common, run.console);
+    const std::vector<StartResult> rows = run_starts(request, run.common, run.console);
     if (interrupted()) return tell_interrupted(run, rows);
     const size_t best = best_start(rows).value_or(0);
     run.facts.seed = rows[best].seed;
@@ -136,8 +138,8 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     const std::string out = output_folder(options, *file);
     const Errors errors = try_output_folder(out);
     if (!errors.empty()) return console.input_errors(errors);
-    const Run run{options, *file, *problem, console, {out, 0, options.repair}};
-    if (options.starts > 0) return run_all(run, common);
+    const Run run{options, *file, *problem, common, console, {out, 0, options.repair}};
+    if (options.starts > 0) return run_all(run);
     Run one = run;
     one.facts.seed = static_cast<std::uint64_t>(options.seed.value_or(0));
     return run_one(one, {});
@@ -158,6 +160,7 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
                "With --starts: which list of random starts (default 1); else: begin at the random start of this seed")
         .between(0, most_lists * 1000.0);
     app.flag("--repair", options->repair, "The smallest change that meets every requirement, instead of the best design");
+    app.flag("--no-report", options->no_report, "No report.html");
     app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
     app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
     return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }};

@@ -16,6 +16,7 @@
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/path_proof.hpp"
+#include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/exports/glb_writer.hpp"
 
 namespace fettle::design::cli {
@@ -30,6 +31,7 @@ struct SimulateArguments {
     std::string path, out, poses, earlier;
     int steps = -1;
     double time = -1;
+    bool no_report = false;
 };
 
 // Of the file's frame: its origin is at -c in the body's frame.
@@ -177,7 +179,7 @@ struct FinishedRun {
 };
 
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
-int finish(const SimulateArguments& options, const FinishedRun& run, Json json, Console& console) {
+int finish(const SimulateArguments& options, const CommonOptions& common, const FinishedRun& run, Json json, Console& console) {
     const Simulation &simulation = run.simulation, &earlier = run.earlier;
     const core::model::Model& model = run.loaded.model;
     const auto& report = simulation.report;
@@ -206,13 +208,15 @@ int finish(const SimulateArguments& options, const FinishedRun& run, Json json, 
     json["bodies"] = bodies_at_end(model, simulation.trajectory);
     add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
+    std::string told = answer_text(outcome, simulation, proof, writes_out ? options.out : "", console);
     if (writes_out) {
         json["out"] = options.out;
-        const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-        errors = core::files::write_file_atomically(std::filesystem::path(options.out) / "result.json", text);
+        errors = write_result(options.out, json, common);
         if (!errors.empty()) return console.input_errors(errors);
+        if (!options.no_report)
+            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory}, run.loaded.scene_path);
     }
-    console.result(json, answer_text(outcome, simulation, proof, writes_out ? options.out : "", console));
+    console.result(json, told);
     return outcome.exit_code;
 }
 
@@ -249,7 +253,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
     const Simulation simulation = core::stepper::simulate(model, simulate_options);
-    return finish(options, {*loaded, simulation, earlier, growing}, std::move(json), console);
+    return finish(options, common, {*loaded, simulation, earlier, growing}, std::move(json), console);
 }
 
 }  // namespace
@@ -260,10 +264,11 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.option("SCENE", options->path, "Scene or design").required();
     Option steps = app.option("--steps", options->steps, "How many steps (default: the scene's end time)").at_least(0);
     app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);
-    app.option(
-        "--out", options->out,
-        "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
-        "(forces between bodies), drives.csv (what motors and guides supply), and motion.glb; while it runs, trajectory.running.json");
+    app.option("--out", options->out,
+               "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
+               "(forces between bodies), drives.csv (what motors and guides supply); motion.glb and report.html; while it runs, "
+               "trajectory.running.json");
+    app.flag("--no-report", options->no_report, "With --out: no report.html");
     app.option("--continue", options->earlier,
                "An earlier run of this scene, its trajectory or its folder (of a killed one too): goes on to --steps or --time in all");
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");

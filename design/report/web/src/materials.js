@@ -66,10 +66,11 @@ export const shared = {
   faded: { value: new THREE.Color() },
 };
 
-// What is drawn of a part: the whole of it; in section what faces the viewer, and what the section shows of its material; lines.
+// What is drawn of a part: the whole of it, whose insides are not seen if it is closed; in section what faces the viewer, and what the section shows of its material; lines.
 const cutRef = 1;
 const kinds = {
-  whole: { side: THREE.DoubleSide },
+  whole: { side: THREE.FrontSide },
+  open: { side: THREE.DoubleSide },
   kept: { side: THREE.FrontSide, defines: { SECTION: 1 }, stencilRef: 0, stencilFunc: THREE.AlwaysStencilFunc },
   cut: { side: THREE.BackSide, defines: { SECTION: 1, CUT: 1 }, stencilRef: cutRef, stencilFunc: THREE.AlwaysStencilFunc },
   lines: {},

@@ -12,10 +12,10 @@ export class Mechanism {
     this.times = view.times;
     this.root = new THREE.Group();
     this.parts = view.bodies.map((body, i) => {
-      const group = new THREE.Group(), { solid, lines } = solids[body.mesh];
+      const group = new THREE.Group(), { solid, lines, closed } = solids[body.mesh];
       group.matrixAutoUpdate = false;
       const meshes = [];
-      if (solid) meshes.push(new THREE.Mesh(solid, materials[i].whole), new THREE.Mesh(solid, materials[i].cut));
+      if (solid) meshes.push(new THREE.Mesh(solid, closed ? materials[i].whole : materials[i].open), new THREE.Mesh(solid, materials[i].cut));
       if (lines) meshes.push(new THREE.LineSegments(lines, materials[i].lines));
       for (const mesh of meshes) {
         mesh.matrixAutoUpdate = mesh.frustumCulled = false;
@@ -72,11 +72,11 @@ export class Mechanism {
   }
 
   setSection(on) {
-    for (const { meshes, materials } of this.parts) {
+    for (const { meshes, materials, solid } of this.parts) {
       for (const mesh of meshes) {
         if (mesh.isLineSegments) mesh.material = on ? materials.keptLines : materials.lines;
         else if (mesh.material === materials.cut) mesh.visible = on;
-        else mesh.material = on ? materials.kept : materials.whole;
+        else mesh.material = on ? materials.kept : solid.closed ? materials.whole : materials.open;
       }
     }
   }

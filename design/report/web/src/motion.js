@@ -74,10 +74,13 @@ class Motion {
     this.playing = true;
     this.setPlayButton();
     announce("Playing");
-    let last = null;
+    let last = null, between = 0, frames = 0;
     const frame = (now) => {
       if (!this.playing) return;
       if (last !== null) {
+        // A machine that is slow at it gets plainer pictures while they move.
+        between = frames++ === 0 ? now - last : 0.75 * between + 0.25 * (now - last);
+        if (frames > 4 && between > 25) this.viewer.coarse = true;
         let t = this.time + ((now - last) / 1000) * this.speed;
         if (t > this.end) t = this.start + ((t - this.start) % (this.end - this.start));
         this.seek(t, true);
@@ -90,7 +93,8 @@ class Motion {
 
   pause() {
     if (!this.playing) return;
-    this.playing = false;
+    this.playing = this.viewer.coarse = false;
+    this.viewer.draw();
     this.setPlayButton();
     announce(`Paused at ${seconds(this.time, this.data.step)}`);
   }
@@ -223,7 +227,8 @@ class Motion {
     const normal = (Math.abs(thin.dot(along)) < 0.3 ? thin : home).clone().addScaledVector(along, -(Math.abs(thin.dot(along)) < 0.3 ? thin : home).dot(along));
     if (normal.lengthSq() < 1e-6) normal.copy(viewer.up).addScaledVector(along, -viewer.up.dot(along));
     this.gapNormal = normal.normalize();
-    this.gapOffset = middle.dot(normal);
+    const radius = viewer.box.getBoundingSphere(new THREE.Sphere()).radius;
+    this.gapOffset = middle.dot(normal) + 0.003 * radius;  // nearest points often lie in a face, which is not to be the section's
     this.chosen = k;
     const near = Math.max(1e-9, 0.51 * (this.data.step || 0));
     viewer.marked = { a, b, time: pair.time, near, label: `${withUnit(upperBound(pair.upper), "mm")}` };
@@ -236,7 +241,7 @@ class Motion {
     byId("section-at").value = 0.5;
     this.side = 1;
     this.applySection();
-    const radius = viewer.box.getBoundingSphere(new THREE.Sphere()).radius, height = Math.max(gap * 9, radius * 0.16);
+    const height = Math.max(gap * 9, radius * 0.16);
     const tilt = this.gapNormal.clone().addScaledVector(new THREE.Vector3().crossVectors(viewer.up, this.gapNormal), 0.18).addScaledVector(viewer.up, 0.12).normalize();
     viewer.fly(middle, tilt, height / (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)));
     this.seek(pair.time);

@@ -103,7 +103,7 @@ export class Plot {
       if (line.edge) return null;
       const swatch = element("i", { class: line.dash ? "dashed" : null });
       swatch.style.borderTopColor = this.colour(i);
-      const button = element("button", { type: "button", "aria-pressed": String(this.on[i]), onclick: () => this.toggle(i, button) }, swatch, line.name, line.silent ? null : this.told[i]);
+      const button = element("button", { type: "button", "aria-pressed": String(this.on[i]), onclick: () => this.toggle(i, button) }, swatch, element("span", {}, line.name), line.silent ? null : this.told[i]);
       return element("li", {}, button);
     }).filter(Boolean));
   }

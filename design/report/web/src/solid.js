@@ -27,27 +27,38 @@ function cornersByVertex(count, triangles) {
   return { first, corners };
 }
 
+// Vertices with normals, and triangles of them: a vertex is there once for each normal that its corners have.
 function smoothed(vertices, triangles, faces) {
-  const { first, corners } = cornersByVertex(vertices.length / 3, triangles);
+  const count = vertices.length / 3, { first, corners } = cornersByVertex(count, triangles);
   const lengths = new Float32Array(faces.length / 3);
   for (let t = 0; t < lengths.length; ++t) lengths[t] = Math.hypot(faces[3 * t], faces[3 * t + 1], faces[3 * t + 2]) || 1;
-  const positions = new Float32Array(3 * triangles.length), normals = new Float32Array(3 * triangles.length);
-  for (let c = 0; c < triangles.length; ++c) {
-    const v = triangles[c], t = (c / 3) | 0;
-    const x = faces[3 * t], y = faces[3 * t + 1], z = faces[3 * t + 2];
-    let nx = 0, ny = 0, nz = 0;
+  const positions = [], normals = [], index = new Uint32Array(triangles.length);
+  for (let v = 0; v < count; ++v) {
+    const begin = normals.length / 3;
     for (let k = first[v]; k < first[v + 1]; ++k) {
-      const o = (corners[k] / 3) | 0, ox = faces[3 * o], oy = faces[3 * o + 1], oz = faces[3 * o + 2];
-      if (o !== t && x * ox + y * oy + z * oz < sharp * lengths[t] * lengths[o]) continue;
-      nx += ox;
-      ny += oy;
-      nz += oz;
+      const t = (corners[k] / 3) | 0, x = faces[3 * t], y = faces[3 * t + 1], z = faces[3 * t + 2];
+      let nx = 0, ny = 0, nz = 0;
+      for (let l = first[v]; l < first[v + 1]; ++l) {
+        const o = (corners[l] / 3) | 0, ox = faces[3 * o], oy = faces[3 * o + 1], oz = faces[3 * o + 2];
+        if (o !== t && x * ox + y * oy + z * oz < sharp * lengths[t] * lengths[o]) continue;
+        nx += ox;
+        ny += oy;
+        nz += oz;
+      }
+      const length = Math.hypot(nx, ny, nz) || 1;
+      nx /= length;
+      ny /= length;
+      nz /= length;
+      let at = begin;
+      while (at < normals.length / 3 && nx * normals[3 * at] + ny * normals[3 * at + 1] + nz * normals[3 * at + 2] < 0.9999) ++at;
+      if (at === normals.length / 3) {
+        normals.push(nx, ny, nz);
+        positions.push(vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]);
+      }
+      index[corners[k]] = at;
     }
-    const length = Math.hypot(nx, ny, nz) || 1;
-    normals.set([nx / length, ny / length, nz / length], 3 * c);
-    positions.set([vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]], 3 * c);
   }
-  return { positions, normals };
+  return { positions: new Float32Array(positions), normals: new Float32Array(normals), index };
 }
 
 function sharpEdges(vertices, triangles, faces) {
@@ -66,21 +77,22 @@ function sharpEdges(vertices, triangles, faces) {
     if (dot < sharp * lengths) add(a, b);
   }
   for (const key of seen.keys()) add(Math.floor(key / count), key % count);  // rims of what is open
-  return ends;
+  return { ends, closed: seen.size === 0 };
 }
 
-// {vertices, triangles, edges: of no triangle} -> {solid, lines: geometries or null, centre, radius}
+// {vertices, triangles, edges: of no triangle} -> {solid, lines: geometries or null, closed, box}
 export function solidOf(mesh) {
   const { vertices, triangles, edges } = mesh;
   const faces = faceNormals(vertices, triangles);
-  const ends = sharpEdges(vertices, triangles, faces);
+  const { ends, closed } = sharpEdges(vertices, triangles, faces);
   for (const v of edges ?? []) ends.push(vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]);
-  const made = { solid: null, lines: null, box: new THREE.Box3().setFromArray(vertices) };
+  const made = { solid: null, lines: null, closed, box: new THREE.Box3().setFromArray(vertices) };
   if (triangles.length > 0) {
-    const { positions, normals } = smoothed(vertices, triangles, faces);
+    const { positions, normals, index } = smoothed(vertices, triangles, faces);
     made.solid = new THREE.BufferGeometry();
     made.solid.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     made.solid.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
+    made.solid.setIndex(new THREE.BufferAttribute(index, 1));
   }
   if (ends.length > 0) {
     made.lines = new THREE.BufferGeometry();

@@ -9,10 +9,10 @@ import { Mechanism } from "./mechanism.js";
 import { solidOf } from "./solid.js";
 
 const palette = {
-  light: ["#c58b62", "#7f9f8a", "#c9aa5b", "#8489b3", "#6c9fb0", "#b97f8b", "#9aa566", "#a88a9f", "#87947f", "#a7815a"],
+  light: ["#cc9168", "#7f9f8a", "#c9aa5b", "#8489b3", "#6c9fb0", "#b97f8b", "#9aa566", "#a88a9f", "#87947f", "#a7815a"],
   dark: ["#c98f66", "#86a892", "#c9ab62", "#9096c4", "#74a9bb", "#c28894", "#a2ad70", "#b094a8", "#93a08b", "#b08b65"],
 };
-const stone = { light: "#bdb8ac", dark: "#8d8a84" };
+const stone = { light: "#cbc6ba", dark: "#8d8a84" };
 
 export class Viewer {
   constructor(canvas, overlay, data) {
@@ -25,7 +25,8 @@ export class Viewer {
     this.hidden = new Set();
     this.section = null;
     this.marked = null;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
+    this.coarse = false;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
@@ -64,7 +65,7 @@ export class Viewer {
     if (!width || !height) return;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
-    this.targets?.forEach((target) => target.dispose());
+    this.targets?.forEach((target) => target?.dispose());
     this.targets = null;
     this.draw();
   }
@@ -88,19 +89,48 @@ export class Viewer {
     this.camera.far = distance + reach * 1.6;
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
-    this.renderer.setRenderTarget(null);
-    this.renderer.setScissorTest(false);
-    this.renderer.setViewport(0, 0, size.x, size.y);
-    this.renderer.clear();
-    if (side) {
-      this.drawIn("before", 0, size);
-      this.drawIn("after", size.x / 2, size);
-    } else if (this.mode === "fade") {
-      this.drawFaded(size);
+    if (this.mode === "fade") {
+      this.begin(this.target(0, size));
+      this.drawOne("before");
+      this.begin(this.target(1, size));
+      this.drawOne("after");
+      this.show(0, 1, this.share);
     } else {
-      this.drawOne(this.mode);
+      this.begin(this.coarse ? null : this.target(0, size));
+      if (side) {
+        this.drawIn("before", 0, size);
+        this.drawIn("after", 1, size);
+      } else {
+        this.drawOne(this.mode);
+      }
+      if (!this.coarse) this.show(0, 0, 1);
     }
     this.mark(size);
+  }
+
+  // Pictures with smooth edges are drawn aside first; where that is too slow for a motion, `coarse` draws straight to the page.
+  target(k, size) {
+    const ratio = this.renderer.getPixelRatio();
+    this.targets ??= [null, null];
+    return (this.targets[k] ??= new THREE.WebGLRenderTarget(size.x * ratio, size.y * ratio, { samples: 4, stencilBuffer: true }));
+  }
+
+  begin(target) {
+    this.renderer.setRenderTarget(target);
+    this.renderer.setScissorTest(false);
+    this.renderer.clear();
+  }
+
+  // What was drawn aside, two of it over each other.
+  show(before, after, share) {
+    this.blend ??= new THREE.Mesh(new THREE.PlaneGeometry(2, 2), blendMaterial());
+    this.blend.frustumCulled = false;
+    const { uniforms } = this.blend.material;
+    uniforms.before.value = this.targets[before].texture;
+    uniforms.after.value = this.targets[after].texture;
+    uniforms.share.value = share;
+    this.begin(null);
+    this.renderer.render(this.blend, this.camera);
   }
 
   drawOne(name) {
@@ -111,30 +141,28 @@ export class Viewer {
     this.renderer.render(this.scene, this.camera);
   }
 
-  drawIn(name, left, size) {
-    this.renderer.setViewport(left, 0, size.x / 2, size.y);
-    this.renderer.setScissor(left, 0, size.x / 2, size.y);
-    this.renderer.setScissorTest(true);
+  // In the left (0) or right (1) half.
+  drawIn(name, half, size) {
+    const target = this.coarse ? this.renderer : this.targets[0], width = this.coarse ? size.x / 2 : target.width / 2;
+    const box = [half * width, 0, width, this.coarse ? size.y : target.height];
+    if (this.coarse) {
+      target.setViewport(...box);
+      target.setScissor(...box);
+      target.setScissorTest(true);
+    } else {
+      target.viewport.set(...box);
+      target.scissor.set(...box);
+      target.scissorTest = true;
+      this.renderer.setRenderTarget(target);
+    }
     this.drawOne(name);
-    this.renderer.setScissorTest(false);
-  }
-
-  drawFaded(size) {
-    const ratio = this.renderer.getPixelRatio();
-    this.targets ??= [0, 1].map(() => new THREE.WebGLRenderTarget(size.x * ratio, size.y * ratio, { samples: 4, stencilBuffer: true }));
-    this.blend ??= new THREE.Mesh(new THREE.PlaneGeometry(2, 2), blendMaterial());
-    ["before", "after"].forEach((name, k) => {
-      this.renderer.setRenderTarget(this.targets[k]);
-      this.renderer.clear();
-      this.drawOne(name);
-    });
-    this.renderer.setRenderTarget(null);
-    const { uniforms } = this.blend.material;
-    uniforms.before.value = this.targets[0].texture;
-    uniforms.after.value = this.targets[1].texture;
-    uniforms.share.value = this.share;
-    this.blend.frustumCulled = false;
-    this.renderer.render(this.blend, this.camera);
+    if (this.coarse) {
+      target.setViewport(0, 0, size.x, size.y);
+      target.setScissorTest(false);
+    } else {
+      target.viewport.set(0, 0, target.width, target.height);
+      target.scissorTest = false;
+    }
   }
 
   // Where a point of the world is in the picture, in pixels of the page.

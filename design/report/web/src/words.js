@@ -39,7 +39,7 @@ function simulated(data) {
     case "ok":
       return data.least === null
         ? { tone: "good", head: "Simulated to the end.", rest: "No two bodies of it may collide, so that there was nothing to prove." }
-        : { tone: "good", head: "Simulated to the end, and proven free of contact.", rest: `Bodies that may collide stay at least ${mm(lowerBound(data.least))} apart over the whole continuous path.` };
+        : { tone: "good", head: "Simulated to the end, and proven never to touch.", rest: `Bodies that may collide stay at least ${mm(lowerBound(data.least))} apart over the whole continuous path.` };
     case "not_certified":
       return { tone: "open", head: "Simulated to the end, not proven.", rest: "Every step was solved, but the path between is not certified." };
     case "interrupted":
@@ -54,10 +54,12 @@ function cleared(data) {
   const of = (status) => pairs.filter((p) => p.status === status);
   const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
   const total = data.pair_count ?? pairs.length;
+  const pushing = of("contact").length, judged = total - pushing;
+  const others = pushing ? ` ${plural(pushing, "pair pushes", "pairs push")} each other and ${pushing === 1 ? "is" : "are"} not judged.` : "";
   switch (data.status) {
     case "clear":
       return required.length
-        ? { tone: "good", head: "Clear, and proven.", rest: `No required clearance is undercut ${where}: ${plural(total, "pair")} judged.` }
+        ? { tone: "good", head: "Clear, and proven.", rest: `${plural(judged, "pair keeps", "pairs keep")} the required clearance ${where}.${others}` }
         : { tone: "good", head: "No clash, proven.", rest: `The distances of ${plural(total, "pair")} are bounded ${where}; no minimum was asked for.` };
     case "violated":
       return { tone: "bad", head: "Violated.", rest: `Too close ${where}: ${names(of("violated"))}.` };
@@ -82,7 +84,7 @@ export function facts(data) {
   if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
-  if (data.kind === "clearance") rows.push(["Pairs judged", String(data.pair_count ?? data.pairs.length), data.motion ? "over the motion" : "as assembled"]);
+  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.motion ? "over the motion" : "as assembled"]);
   if (data.kind !== "optimise") rows.push(["Parts", String(data.views[0]?.bodies.length ?? 0), `${data.views[0]?.bodies.filter((b) => b.type !== "static").length ?? 0} of them not fixed`]);
   return rows;
 }

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// fettle report DIR: the HTML report of a folder that optimise, simulate or clearance wrote.
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/session.hpp"
+#include "fettle/design/report/report_folder.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+struct ReportArguments {
+    std::string folder, out;
+};
+
+int run_report(const ReportArguments& arguments, const CommonOptions& common, Console& console) {
+    report::ReportOptions options;
+    options.out = arguments.out;
+    options.mesh_dirs = common.mesh_dirs;
+    options.should_stop = interrupted;
+    if (!arguments.out.empty()) {
+        const Errors errors = try_output_file(arguments.out);
+        if (!errors.empty()) return console.input_errors(errors);
+    }
+    const Result<std::string> made = report::write_report(arguments.folder, std::move(options));
+    if (!made) return console.input_errors(made.errors());
+    const bool whole = !interrupted();
+    console.result({{"status", whole ? "ok" : "interrupted"}, {"report", *made}}, "report: " + *made + "\n");
+    return whole ? exit_done : exit_undecided;
+}
+
+}  // namespace
+
+Command add_report(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("report", "Makes the HTML report of a folder of results");
+    auto options = std::make_shared<ReportArguments>();
+    app.option("DIR", options->folder, "What optimise, simulate or clearance wrote with --out").required();
+    app.option("--out", options->out, "File for it (default: report.html in DIR)");
+    app.closing_words("Example:  fettle report out");
+    return {app, [options, &common](Console& console) { return run_report(*options, common, console); }};
+}
+
+}  // namespace fettle::design::cli

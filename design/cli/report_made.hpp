@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// What commands with --out leave for people beside what they leave for programs: result.json says by which command, report.html shows it.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/design/cli/session.hpp"
+#include "fettle/design/report/report_data.hpp"
+
+namespace fettle::design::cli {
+
+/// Writes FOLDER/result.json: `answer`, and `program` (the version) and `command`.
+[[nodiscard]] Errors write_result(const std::string& folder, nlohmann::ordered_json answer, const CommonOptions& common);
+
+/// Makes FOLDER/report.html, tells of it in `answer` (`report`) and at the end of `told`. A report that cannot be made is a warning: the
+/// results are there. Once a stop has been asked for, what takes computing is left out.
+/// @param motion  of the folder's trajectory, with its scene's path, if at hand.
+void leave_report(const std::string& folder, const CommonOptions& common, Console& console, nlohmann::ordered_json& answer,
+                  std::string& told, std::optional<report::Motion> motion = std::nullopt, const std::string& scene_path = {});
+
+}  // namespace fettle::design::cli

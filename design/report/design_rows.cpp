@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/report/design_rows.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/report/answer_values.hpp"
+
+namespace fettle::design::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json in_unit(double si, double unit) { return std::isfinite(si) ? Json(si / unit) : Json(); }
+Json in_unit(const Json& si, double unit) { return si.is_number() ? in_unit(si.get<double>(), unit) : Json(); }
+
+// Of a row of `result` and the bounds that it is judged by.
+Json row_json(const std::string& name, const Json& told, const description::Bounds& bounds, double unit) {
+    return {{"name", name},
+            {"unit", ""},
+            {"lower", in_unit(member(told, "lower"), unit)},
+            {"upper", in_unit(member(told, "upper"), unit)},
+            {"required_lower", in_unit(bounds.lower, unit)},
+            {"required_upper", in_unit(bounds.upper, unit)},
+            {"met", member(told, "met").is_boolean() && told["met"].get<bool>()},
+            {"fault", member(told, "fault")},
+            {"cost", Json()},
+            {"counts", false},
+            {"pair", Json()}};
+}
+
+// How many of the constraints are clearances: each has a pair in the result, in their order.
+bool pairs_match(const description::Design& design, const Json& result) {
+    std::size_t clearances = 0;
+    for (const auto& constraint : design.constraints)
+        clearances += dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr ? 1 : 0;
+    const Json pairs = member(member(result, "clearance"), "pairs");
+    return pairs.is_array() && pairs.size() == clearances;
+}
+
+}  // namespace
+
+double shown_unit(Dimension dimension, double unit) { return dimension == Dimension::length ? millimetre : unit; }
+
+std::string shown_unit_name(Dimension dimension, double unit) {
+    if (dimension == Dimension::number) return {};
+    const double wanted = shown_unit(dimension, unit);
+    for (const Unit& each : core::base::units())
+        if (each.dimension == dimension && core::base::to_si(1, each) == wanted) return std::string(each.name);
+    return std::string(core::base::si_unit(dimension));
+}
+
+Json requirement_rows(const description::Design& design, const Json& result) {
+    Json rows = Json::array();
+    const Json told = member(result, "constraints"), optimality = member(result, "optimality"), costs = member(optimality, "multipliers");
+    const Json worth = member(optimality, "worth");
+    const bool matched = pairs_match(design, result);
+    int pair = 0;
+    for (std::size_t i = 0; i < design.constraints.size(); ++i) {
+        const description::Constraint& constraint = design.constraints[i];
+        const Dimension dimension = constraint.quantity->dimension();
+        const double unit = shown_unit(dimension, constraint.bounds.unit);
+        Json row = row_json(constraint.name, i < told.size() ? told[i] : Json(), constraint.bounds, unit);
+        row["unit"] = shown_unit_name(dimension, constraint.bounds.unit);
+        if (const Json cost = member(costs, constraint.name); cost.is_number()) {
+            const double per_unit = cost.get<double>() * unit / constraint.bounds.unit;
+            row["cost"] = per_unit;
+            row["counts"] = worth.is_number() && per_unit != 0 && std::abs(per_unit) * 0.01 >= worth.get<double>() * 0.1;
+        }
+        if (matched && dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr) row["pair"] = pair++;
+        rows.push_back(std::move(row));
+    }
+    const Json relations = member(result, "relations");
+    for (std::size_t i = 0; i < design.relations.size(); ++i) {
+        const description::Relation& relation = design.relations[i];
+        Json row = row_json(relation.name, i < relations.size() ? relations[i] : Json(), relation.bounds, relation.bounds.unit);
+        const Json value = in_unit(member(i < relations.size() ? relations[i] : Json(), "value"), relation.bounds.unit);
+        row["lower"] = row["upper"] = value;  // known, not bounded
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json parameter_rows(const description::Design& design, const Json& result) {
+    Json rows = Json::array();
+    const Json optimality = member(result, "optimality"), held = member(optimality, "held_by"),
+               improvable = member(optimality, "improvable");
+    for (const description::Parameter& p : design.parameters) {
+        Json step;
+        for (const Json& each : improvable)
+            if (each.is_object() && each.value("parameter", "") == p.name) step = member(each, "step");
+        rows.push_back({{"name", p.name},
+                        {"unit", p.unit.dimension == Dimension::number ? std::string() : std::string(p.unit.name)},
+                        {"start", member(member(result, "parameters_start"), p.name)},
+                        {"end", member(member(result, "parameters"), p.name)},
+                        {"lower", description::from_si(p.lower, p.unit)},
+                        {"upper", description::from_si(p.upper, p.unit)},
+                        {"held", member(held, p.name)},
+                        {"step", step}});
+    }
+    return rows;
+}
+
+}  // namespace fettle::design::report

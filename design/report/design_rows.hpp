@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+/// The tables of an optimised design: its requirements and its parameters.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "fettle/design/description/design.hpp"
+
+namespace fettle::design::report {
+
+/// What numbers of this dimension are shown in, as an SI value: lengths in mm, all others in the unit that they are counted in.
+double shown_unit(Dimension dimension, double unit);
+
+/// Its name: "mm", "g"; empty for a plain number.
+std::string shown_unit_name(Dimension dimension, double unit);
+
+/// List of {name, unit, lower, upper: the proven bounds, required_lower, required_upper: null where there is none, met, fault: null or
+/// text, cost: of the objective per unit, null if not told, counts: is it worth telling, pair: index into the pairs, or null}; relations
+/// follow.
+/// @param result  as `fettle optimise` answers (docs/interface.md).
+nlohmann::ordered_json requirement_rows(const description::Design& design, const nlohmann::ordered_json& result);
+
+/// List of {name, unit, start, end, lower, upper, held: null or a word of docs/interface.md, step: null, or how far it could move}.
+nlohmann::ordered_json parameter_rows(const description::Design& design, const nlohmann::ordered_json& result);
+
+}  // namespace fettle::design::report

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/report/pair_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "fettle/design/report/answer_values.hpp"
+#include "fettle/design/report/packed_numbers.hpp"
+
+namespace fettle::design::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using core::clearance::PairClearance;
+using core::clearance::PairRequest;
+
+constexpr std::size_t most_nearest = 12;           // rows of a simulation
+constexpr int most_searched = 60;                  // of no more pairs each is searched by itself
+constexpr long most_evaluations = 2'000'000;       // of a pair: what is longer is told with wider bounds
+constexpr double share = 1e-2, wide_reach = 1.25;  // how well, and how far beyond the least, nearest pairs are looked for
+
+Json millimetres(const Json& metres) {
+    if (metres.is_number()) return metres.get<double>() / millimetre;
+    if (!metres.is_array()) return {};
+    Json list = Json::array();
+    for (const Json& x : metres) list.push_back(x.get<double>() / millimetre);
+    return list;
+}
+
+Json millimetres(const Vector3& p) { return {p.x() / millimetre, p.y() / millimetre, p.z() / millimetre}; }
+
+int index_of(const core::model::Model& model, const std::string& name) {
+    for (std::size_t i = 0; i < model.bodies.size(); ++i)
+        if (model.bodies[i].name == name) return static_cast<int>(i);
+    return -1;
+}
+
+std::vector<PairRequest> pairs_that_may_collide(const core::model::Model& model) {
+    std::vector<PairRequest> requests;
+    const auto count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b)
+            if (core::model::may_collide(model, a, b)) requests.push_back({a, b, 0});
+    return requests;
+}
+
+Json row_of(const PairClearance& pair, const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+    const core::clearance::Witness& w = pair.witness;
+    const bool pushes = pair.status == core::clearance::PairStatus::contact;
+    return {{"a", model.bodies[static_cast<std::size_t>(pair.a)].name},
+            {"b", model.bodies[static_cast<std::size_t>(pair.b)].name},
+            {"body_a", pair.a},
+            {"body_b", pair.b},
+            {"motion", true},
+            {"minimum", Json()},
+            {"lower", pair.lower / millimetre},
+            {"upper", std::isfinite(pair.upper) ? Json(pair.upper / millimetre) : Json()},
+            {"status", core::clearance::to_string(pair.status)},
+            {"finding", pair.is_clash()  ? Json("clash")
+                        : pushes         ? Json("contact")
+                        : pair.lower > 0 ? Json("apart")
+                                         : Json("undecided")},
+            {"time", core::stepper::time_at(trajectory, w.step, w.segment, w.s)},
+            {"point_a", millimetres(w.point_a)},
+            {"point_b", millimetres(w.point_b)},
+            {"note", Json()}};
+}
+
+core::clearance::ClearanceOptions options_over_motion(double tolerance, const std::function<bool()>& should_stop) {
+    core::clearance::ClearanceOptions options;
+    options.motion = true;
+    options.tolerance = tolerance;
+    options.sample_nodes = options.measure_overlap = false;
+    options.max_evaluations = most_evaluations;
+    options.should_stop = should_stop;
+    return options;
+}
+
+// The nearest of the windows of each pair.
+std::vector<PairClearance> nearest_of_pairs(const std::vector<PairClearance>& windows) {
+    std::map<std::pair<int, int>, PairClearance> pairs;
+    for (const PairClearance& window : windows) {
+        const auto [at, is_new] = pairs.try_emplace({window.a, window.b}, window);
+        if (!is_new && window.upper < at->second.upper) at->second = window;
+    }
+    std::vector<PairClearance> list;
+    for (const auto& [key, pair] : pairs) list.push_back(pair);
+    return list;
+}
+
+float rounded_down(double x) {
+    const auto y = static_cast<float>(x);
+    return static_cast<double>(y) > x ? std::nextafter(y, -std::numeric_limits<float>::infinity()) : y;
+}
+float rounded_up(double x) { return -rounded_down(-x); }
+
+}  // namespace
+
+Json told_pairs(const Json& pairs, const core::model::Model& model, const std::vector<bool>& motion) {
+    Json rows = Json::array();
+    for (std::size_t k = 0; k < pairs.size() && k < most_pairs; ++k) {
+        const Json& pair = pairs[k];
+        const auto a = pair.at("a").get<std::string>(), b = pair.at("b").get<std::string>();
+        const Json witness = member(pair, "witness"), measured = member(pair, "measured");
+        const Json time = witness.is_object() ? member(witness, "time") : member(pair, "time");
+        Json note = member(pair, "reason");
+        if (note.is_null()) note = member(pair, "overlap");
+        if (measured.is_boolean() && !measured.get<bool>()) note = "at least twice as far apart as required: not measured";
+        rows.push_back({{"a", a},
+                        {"b", b},
+                        {"body_a", index_of(model, pair.value("body_a", a))},
+                        {"body_b", index_of(model, pair.value("body_b", b))},
+                        {"motion", k < motion.size() && motion[k]},
+                        {"minimum", millimetres(member(pair, "minimum"))},
+                        {"lower", millimetres(member(pair, "lower"))},
+                        {"upper", millimetres(member(pair, "upper"))},
+                        {"status", member(pair, "status")},
+                        {"finding", member(pair, "finding")},
+                        {"time", time},
+                        {"point_a", millimetres(member(pair, "point_a"))},
+                        {"point_b", millimetres(member(pair, "point_b"))},
+                        {"note", note}});
+    }
+    return rows;
+}
+
+Json nearest_pairs(const core::model::Model& model, const core::stepper::Trajectory& trajectory, double least,
+                   const std::function<bool()>& should_stop) {
+    const std::vector<PairRequest> requests = pairs_that_may_collide(model);
+    Json rows = Json::array();
+    if (requests.empty() || trajectory.steps.empty() || !(least > 0)) return rows;
+    const core::clearance::ClearanceOptions options = options_over_motion(share * least, should_stop);
+    const bool few = requests.size() <= static_cast<std::size_t>(most_searched);
+    std::vector<PairClearance> pairs =
+        few ? core::clearance::certify_clearance(model, trajectory, requests, options)
+            : nearest_of_pairs(core::clearance::certify_near(model, trajectory, wide_reach * least, options).windows);
+    std::stable_sort(pairs.begin(), pairs.end(), [](const PairClearance& x, const PairClearance& y) { return x.upper < y.upper; });
+    for (std::size_t k = 0; k < pairs.size() && k < most_nearest; ++k) rows.push_back(row_of(pairs[k], model, trajectory));
+    return rows;
+}
+
+Json margin_curves(const Json& rows, const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                   const std::function<bool()>& should_stop) {
+    if (trajectory.steps.empty()) return {};
+    std::vector<double> times;
+    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+        for (int k = 0; k < core::stepper::segment_count(trajectory, t); ++k) times.push_back(core::stepper::time_at(trajectory, t, k, 0));
+    const std::size_t stretches = times.size();
+    times.push_back(core::stepper::time_at(trajectory, static_cast<int>(trajectory.steps.size())));
+    Json curves = Json::array();
+    std::vector<std::pair<int, int>> done;
+    for (std::size_t k = 0; k < rows.size() && curves.size() < most_margins; ++k) {
+        const Json& row = rows[k];
+        const int a = row["body_a"].get<int>(), b = row["body_b"].get<int>();
+        if (!row["motion"].get<bool>() || row["upper"].is_null() || a < 0 || b < 0) continue;
+        if (std::find(done.begin(), done.end(), std::pair(a, b)) != done.end()) continue;
+        done.emplace_back(a, b);
+        const double lower = row["lower"].get<double>() * millimetre, upper = row["upper"].get<double>() * millimetre;
+        core::clearance::ClearanceOptions options = options_over_motion(std::max({share * lower, upper - lower, 1e-8}), should_stop);
+        options.margin_curve = true;
+        const auto found = core::clearance::certify_clearance(model, trajectory, {{a, b, 0}}, options);
+        const auto& margin = found.front().margin;
+        if (margin.size() != stretches) continue;
+        std::vector<float> low, high;
+        for (const core::clearance::MarginInterval& each : margin) {
+            low.push_back(rounded_down(each.lower / millimetre));
+            high.push_back(rounded_up(each.upper / millimetre));
+        }
+        curves.push_back({{"pair", k}, {"lower", packed(low)}, {"upper", packed(high)}});
+    }
+    if (curves.empty()) return {};
+    return {{"time", packed(times)}, {"pairs", curves}};
+}
+
+}  // namespace fettle::design::report

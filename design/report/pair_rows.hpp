@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// The pairs of bodies that a report tells of, and their certified distance along the motion. Lengths in mm.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "fettle/core/clearance/clearance.hpp"
+
+namespace fettle::design::report {
+
+/// So many rows at most are told of, and of so many the curve over time.
+inline constexpr std::size_t most_pairs = 200, most_margins = 8;
+
+/// A row {a, b, body_a, body_b: indices, -1: none, motion, minimum: null if none is required, lower, upper: null if not measured, status,
+/// finding, time [s], point_a, point_b: null if not measured, note} of each pair of an answer (docs/interface.md), up to most_pairs.
+/// @param pairs   `pairs` of `fettle clearance`, or of `clearance` of `fettle optimise`.
+/// @param motion  per pair: is it over the motion?
+nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model, const std::vector<bool>& motion);
+
+/// Such rows of a simulation, which has none of its own: of the pairs that come nearest to each other, the nearest first; empty if none may
+/// collide. Their bounds are certified.
+/// @param least  the least distance of all [m].
+nlohmann::ordered_json nearest_pairs(const core::model::Model& model, const core::stepper::Trajectory& trajectory, double least,
+                                     const std::function<bool()>& should_stop);
+
+/// {time f64 [s]: where each stretch of the path begins, and where the last one ends; pairs: list of {pair: index of a row, lower f32,
+/// upper f32: certified for each stretch}} of the first rows over the motion; null if there are none. In single precision lower bounds are
+/// rounded down and upper ones up.
+nlohmann::ordered_json margin_curves(const nlohmann::ordered_json& rows, const core::model::Model& model,
+                                     const core::stepper::Trajectory& trajectory, const std::function<bool()>& should_stop);
+
+}  // namespace fettle::design::report

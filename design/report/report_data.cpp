@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/report/report_data.hpp"
+
+#include "fettle/core/base/version.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/report/answer_values.hpp"
+#include "fettle/design/report/design_rows.hpp"
+#include "fettle/design/report/moving_parts.hpp"
+#include "fettle/design/report/pair_rows.hpp"
+#include "fettle/design/report/search_curves.hpp"
+
+namespace fettle::design::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* word(ReportKind kind) {
+    switch (kind) {
+        case ReportKind::optimise:
+            return "optimise";
+        case ReportKind::clearance:
+            return "clearance";
+        case ReportKind::simulate:
+            break;
+    }
+    return "simulate";
+}
+
+void add_head(Json& data, const ReportSource& source) {
+    const Json& result = source.result;
+    const std::string own = core::base::version();
+    data["format"] = 1;
+    data["program"] = result.value("program", own);
+    if (data["program"] != own) data["made_by_other"] = own;
+    data["command"] = member(result, "command");
+    data["kind"] = word(source.kind);
+    data["name"] = source.name;
+    data["folder"] = source.folder;
+    data["description"] = source.description.empty() ? Json() : Json(source.description);
+    const Vector3 up = source.gravity.norm() > 0 ? Vector3(-source.gravity.normalized()) : Vector3(Vector3::UnitZ());
+    data["up"] = {up.x(), up.y(), up.z()};
+    data["status"] = member(result, "status");
+    data["message"] = member(result, "message");
+    const Json least = member(result, "minimum_distance");
+    data["least"] = least.is_number() ? Json(least.get<double>() / millimetre) : Json();
+}
+
+void add_optimisation(Json& data, const ReportSource& source) {
+    const Json& result = source.result;
+    data["objective"] = {{"start", member(result, "objective_start")}, {"end", member(result, "objective")}};
+    data["evaluations"] = member(result, "evaluations");
+    data["failed"] = member(result, "failed_evaluations");
+    data["violation"] = member(result, "constraint_violation");
+    data["budget_spent"] = member(result, "budget_spent");
+    const Json optimality = member(result, "optimality");
+    data["optimality"] = optimality.is_object() ? Json{{"predicted_gain", member(optimality, "predicted_gain")},
+                                                       {"worth", member(optimality, "worth")},
+                                                       {"judged", member(optimality, "judged")}}
+                                                : Json();
+}
+
+// Which of an answer's pairs are over the motion.
+std::vector<bool> over_motion(const ReportSource& source, std::size_t pairs) {
+    if (source.kind == ReportKind::clearance) return std::vector<bool>(pairs, member(source.result, "motion") == true);
+    std::vector<bool> motion;
+    for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>())
+        if (dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr)
+            motion.push_back(!constraint.quantity->is_at_rest());
+    return motion;
+}
+
+Json pairs_of(const ReportSource& source, const std::function<bool()>& should_stop) {
+    if (source.kind == ReportKind::simulate) {
+        const Json least = member(source.result, "minimum_distance");
+        return nearest_pairs(source.motion->model, source.motion->trajectory, least.is_number() ? least.get<double>() : 0, should_stop);
+    }
+    const Json& result = source.result;
+    const Json pairs = member(source.kind == ReportKind::clearance ? result : member(result, "clearance"), "pairs");
+    return pairs.is_array() ? told_pairs(pairs, source.motion->model, over_motion(source, pairs.size())) : Json::array();
+}
+
+void add_motion(Json& data, const ReportSource& source, const std::function<bool()>& should_stop) {
+    const core::stepper::Trajectory& trajectory = source.motion->trajectory;
+    const auto steps = static_cast<int>(trajectory.steps.size());
+    data["motion"] = steps > 0;
+    data["steps"] = steps;
+    data["step"] = steps > 0 ? trajectory.timestep : 0.0;
+    data["duration"] = core::stepper::time_at(trajectory, steps) - core::stepper::time_at(trajectory, 0);
+    if (source.before) add_view(data, "before", source.before->model, source.before->trajectory);
+    add_view(data, "after", source.motion->model, trajectory);
+    const Json& every = data["views"].back()["every"];
+    if (every > 1) data["notices"].push_back("The picture shows every " + std::to_string(every.get<int>()) + "th step.");
+    data["pairs"] = pairs_of(source, should_stop);
+    const Json all = source.kind == ReportKind::clearance ? member(source.result, "pairs") : Json();
+    data["pair_count"] = all.is_array() ? all.size() : data["pairs"].size();
+    data["margins"] = should_stop() ? Json() : margin_curves(data["pairs"], source.motion->model, trajectory, should_stop);
+    std::set<std::string> fixed;
+    for (const core::model::Body& body : source.motion->model.bodies)
+        if (body.type == core::scene::BodyType::static_body) fixed.insert(body.name);
+    data["series"] = step_curves(source.tables, fixed, source.linear);
+}
+
+}  // namespace
+
+std::optional<ReportKind> kind_of(const Json& result) {
+    if (!result.is_object() || !result.contains("status")) return std::nullopt;
+    if (result.contains("parameters_start")) return ReportKind::optimise;
+    if (result.contains("certification")) return ReportKind::simulate;
+    if (result.contains("pairs") && result.contains("source")) return ReportKind::clearance;
+    return std::nullopt;
+}
+
+Json report_data(const ReportSource& source, const std::function<bool()>& should_stop) {
+    Json data;
+    add_head(data, source);
+    data["notices"] = source.notices;
+    for (const char* key : {"warnings", "notes", "unbuildable"})
+        for (const Json& text : member(source.result, key)) data["notices"].push_back(text);
+    data["motion"] = false;
+    data["steps"] = 0;
+    data["step"] = data["duration"] = 0.0;
+    data["meshes"] = data["views"] = data["pairs"] = data["series"] = Json::array();
+    data["pair_count"] = 0;
+    data["margins"] = data["history"] = data["series_note"] = Json();
+    data["requirements"] = source.design ? requirement_rows(*source.design, source.result) : Json::array();
+    data["parameters"] = source.design ? parameter_rows(*source.design, source.result) : Json::array();
+    const Json limits = member(source.result, "limits");
+    data["limits"] = limits.is_array() ? limits : Json::array();
+    if (source.kind == ReportKind::optimise) add_optimisation(data, source);
+    if (source.design && !source.history.empty()) data["history"] = search_curves(source.history, *source.design);
+    if (source.motion) add_motion(data, source, should_stop);
+    if (!source.motion)  // their gaps have no picture
+        for (Json& row : data["requirements"]) row["pair"] = Json();
+    return data;
+}
+
+}  // namespace fettle::design::report

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// What a report says, as the page takes it: one JSON object. Lengths in mm, times in s; arrays of numbers as packed_numbers.hpp has them.
+///   format          1
+///   program         version that made the results; made_by_other: that of this page, if it is another
+///   command         that made the results; null if not known
+///   kind            "optimise", "simulate", "clearance"
+///   name, folder, description (null: the files have none), up: the direction against gravity
+///   status, message; budget_spent, evaluations, failed, violation, optimality, objective {start, end} of an optimisation
+///   motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none
+///   meshes, views   moving_parts.hpp; "before" (of an optimisation) and "after"
+///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp
+///   requirements, parameters: design_rows.hpp; limits: texts
+///   history         search_curves.hpp; null if there is none
+///   series          step_curves.hpp; series_note
+///   notices         texts
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/design/description/design.hpp"
+#include "fettle/design/report/step_curves.hpp"
+
+namespace fettle::design::report {
+
+/// Bodies and their motion.
+struct Motion {
+    core::model::Model model;  ///< geometry and names
+    core::stepper::Trajectory trajectory;
+};
+
+enum class ReportKind { optimise, simulate, clearance };
+
+/// What a folder of results holds.
+struct ReportSource {
+    ReportKind kind = ReportKind::simulate;
+    std::string folder, name, description;
+    Vector3 gravity = Vector3::Zero();
+    nlohmann::ordered_json result;
+    std::optional<Motion> motion, before;
+    std::optional<description::Design> design;
+    std::string history;
+    StepTables tables;
+    LinearMotors linear;
+    std::vector<std::string> notices;
+};
+
+/// Which command answered so; nothing if none of them did.
+std::optional<ReportKind> kind_of(const nlohmann::ordered_json& result);
+
+/// @param should_stop  asked while distances are certified; true leaves the rest out.
+nlohmann::ordered_json report_data(
+    const ReportSource& source, const std::function<bool()>& should_stop = [] { return false; });
+
+}  // namespace fettle::design::report

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/report/report_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/records/geometry_hash.hpp"
+#include "fettle/core/records/step_tables.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/report/report_page.hpp"
+
+namespace fettle::design::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using core::model::Model;
+using core::stepper::Simulation;
+
+std::string text_or_empty(const fs::path& file) {
+    const Result<std::string> text = core::files::read_file(file);
+    return text ? *text : std::string();
+}
+
+Result<Json> read_result(const fs::path& folder) {
+    const fs::path file = folder / "result.json";
+    const Result<std::string> text = core::files::read_file(file);
+    if (!text)
+        return Error{ErrorCode::file_not_found, file.string(),
+                     "is not there: a report is made of a folder that optimise, simulate or clearance wrote with --out"};
+    Json result = Json::parse(*text, nullptr, false);
+    if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is no JSON"};
+    if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is no answer of optimise, simulate or clearance"};
+    return result;
+}
+
+// "slider_crank.scene.json" -> "slider_crank"; of no file the folder's own name.
+std::string name_of(const std::string& scene, const fs::path& folder) {
+    const std::string file = fs::path(scene).filename().string();
+    if (!file.empty()) return file.substr(0, file.find('.'));
+    const fs::path whole = fs::absolute(folder).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+// What a scene or design file says in words.
+std::string description_of(const std::string& text) {
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_object() && json.contains("description") && json["description"].is_string() ? json["description"].get<std::string>()
+                                                                                               : std::string();
+}
+
+Vector3 gravity_in(const std::string& text) {
+    Json json = Json::parse(text, nullptr, false);
+    if (json.is_object() && json.contains("rigid_body_problem")) json = Json(json["rigid_body_problem"]);
+    Vector3 gravity = Vector3::Zero();
+    if (!json.is_object() || !json.contains("gravity") || !json["gravity"].is_array()) return gravity;
+    const Json& list = json["gravity"];
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, list.size()); ++k)
+        if (list[k].is_number()) gravity[static_cast<Eigen::Index>(k)] = list[k].get<double>();
+    return gravity;
+}
+
+// Motors that move something along a line: their efforts are forces.
+LinearMotors linear_motors(const core::scene::Mechanism& mechanism) {
+    LinearMotors linear;
+    for (const core::scene::Motor& motor : mechanism.motors)
+        for (const core::scene::Joint& joint : mechanism.joints)
+            if (joint.name == motor.joint &&
+                (joint.kind == core::scene::JointKind::prismatic || joint.kind == core::scene::JointKind::cylindrical))
+                linear.insert(motor.name);
+    return linear;
+}
+
+StepTables read_tables(const fs::path& folder) {
+    return {text_or_empty(folder / "steps.csv"), text_or_empty(folder / "contacts.csv"), text_or_empty(folder / "drives.csv"),
+            text_or_empty(folder / "joints.csv")};
+}
+
+std::vector<std::string> names_of(const Model& model) {
+    std::vector<std::string> names;
+    for (const auto& body : model.bodies) names.push_back(body.name);
+    return names;
+}
+
+StepTables tables_of(const Simulation& simulation, const Model& model) {
+    StepTables tables{core::records::steps_csv(simulation),
+                      core::records::contacts_csv(simulation, names_of(model)),
+                      core::records::drives_csv(simulation, names_of(model)),
+                      {}};
+    if (!model.mechanism.joints.empty()) tables.joints = core::records::joints_csv(simulation, model.mechanism);
+    return tables;
+}
+
+Errors write_tables(const fs::path& folder, const StepTables& tables) {
+    for (const auto& [name, text] : {std::pair{"steps.csv", &tables.steps}, std::pair{"contacts.csv", &tables.contacts},
+                                     std::pair{"drives.csv", &tables.drives}, std::pair{"joints.csv", &tables.joints}}) {
+        if (text->empty()) continue;
+        if (Errors errors = core::files::write_file_atomically(folder / name, *text); !errors.empty()) return errors;
+    }
+    return {};
+}
+
+// As the optimiser's trials are simulated.
+Simulation simulated(const Model& model, int steps, bool outputs, const std::function<bool()>& should_stop) {
+    core::stepper::SimulationOptions options;
+    options.steps = steps;
+    options.for_gradient = true;
+    options.outputs = outputs;
+    options.should_stop = should_stop;
+    return core::stepper::simulate(model, options);
+}
+
+bool same_poses(const core::stepper::Trajectory& x, const core::stepper::Trajectory& y) {
+    return std::equal(x.poses.begin(), x.poses.end(), y.poses.begin(), y.poses.end(), [](const auto& p, const auto& q) {
+        return std::equal(p.begin(), p.end(), q.begin(), q.end(),
+                          [](const auto& a, const auto& b) { return a.position == b.position && a.rotation == b.rotation; });
+    });
+}
+
+// Values of an answer's `parameters_start`, SI; nothing if they are not all there.
+std::optional<VectorX> start_values(const description::Design& design, const Json& result) {
+    VectorX p(static_cast<Eigen::Index>(design.parameters.size()));
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
+        const description::Parameter& parameter = design.parameters[static_cast<std::size_t>(k)];
+        const Json& start = result["parameters_start"];
+        if (!start.contains(parameter.name) || !start[parameter.name].is_number()) return std::nullopt;
+        p[k] = core::base::to_si(start[parameter.name].get<double>(), parameter.unit);
+    }
+    return p;
+}
+
+// The folder being read into a source; what takes computing is left out once a stop is asked for.
+class FolderReader {
+public:
+    FolderReader(const fs::path& folder, ReportOptions& options, ReportSource& source)
+        : folder_(folder), options_(options), source_(source) {}
+
+    Errors read() {
+        if (Errors errors = read_motion(); !errors.empty()) return errors;
+        if (source_.kind == ReportKind::optimise) return read_design();
+        const std::string scene = text_or_empty(scene_path_);
+        source_.description = description_of(scene);
+        source_.gravity = gravity_in(scene);
+        source_.tables = source_.kind == ReportKind::simulate ? read_tables(folder_) : StepTables{};
+        source_.name = name_of(scene_path_, folder_);
+        if (!source_.tables.joints.empty() && !scene.empty()) {
+            const auto read = core::scene::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs));
+            if (read) source_.linear = linear_motors(read->mechanism);
+        }
+        return {};
+    }
+
+private:
+    Errors read_motion() {
+        if (source_.result.value("status", "") == "start_failed") return {};  // a trajectory that is there is not its own
+        if (options_.motion) {
+            source_.motion = std::move(options_.motion);
+            scene_path_ = options_.scene_path;
+            return {};
+        }
+        Result<core::records::StoredTrajectory> stored = core::records::read_trajectory(folder_ / "trajectory.json");
+        if (!stored) return stored.errors();
+        source_.notices.insert(source_.notices.end(), stored->warnings.begin(), stored->warnings.end());
+        scene_path_ = stored->scene_path;
+        source_.motion = Motion{std::move(stored->model), std::move(stored->trajectory)};
+        return {};
+    }
+
+    Errors read_design() {
+        Result<reading::DesignFile> file = reading::read_design((folder_ / "design.final.json").string(), {options_.mesh_dirs});
+        if (!file) return file.errors();
+        source_.description = description_of(file->text);
+        source_.gravity = file->design.scene.gravity;
+        source_.name = name_of(file->scene_path, folder_);
+        source_.linear = linear_motors(file->design.scene.mechanism);
+        source_.history = text_or_empty(folder_ / "history.jsonl");
+        source_.design = file->design;
+        if (!source_.motion) return {};
+        const Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
+        if (!problem) return problem.errors();
+        if (Errors errors = take_tables(*problem); !errors.empty()) return errors;
+        return take_before(*problem, file->scene_path);
+    }
+
+    // Forces of the final design: as they are kept, or simulated once more, with the same bits.
+    Errors take_tables(const problem::DesignProblem& problem) {
+        if (!options_.fresh) source_.tables = read_tables(folder_);
+        if (!source_.tables.steps.empty() || options_.should_stop()) return {};
+        const Result<Model> model = problem.model_at(description::values_of(problem.design().parameters));
+        if (!model) return model.errors();
+        const Simulation simulation = simulated(*model, problem.design().steps, true, options_.should_stop);
+        if (!same_poses(simulation.trajectory, source_.motion->trajectory)) {
+            if (!options_.should_stop())
+                source_.notices.emplace_back(
+                    "No forces are shown: the scene or the program has changed since trajectory.json was written.");
+            return {};
+        }
+        source_.tables = tables_of(simulation, *model);
+        return write_tables(folder_, source_.tables);
+    }
+
+    Errors take_before(const problem::DesignProblem& problem, const std::string& scene_path) {
+        const std::optional<VectorX> p = start_values(problem.design(), source_.result);
+        if (!p || options_.should_stop()) return {};
+        const Errors obstacles = problem.obstacles(*p);
+        const Result<Model> model = obstacles.empty() ? problem.model_at(*p) : Result<Model>(obstacles);
+        if (!model) {
+            source_.notices.push_back("The design before is not shown: " + model.errors().front().message);
+            return {};
+        }
+        const fs::path file = folder_ / "trajectory.start.json";
+        if (!options_.fresh && core::records::is_trajectory_file(file)) {
+            auto stored = core::records::read_trajectory(file);
+            if (stored && core::records::geometry_hash(stored->model) == core::records::geometry_hash(*model)) {
+                source_.before = Motion{std::move(stored->model), std::move(stored->trajectory)};
+                return {};
+            }
+        }
+        Simulation simulation = simulated(*model, problem.design().steps, false, options_.should_stop);
+        if (options_.should_stop()) return {};
+        if (simulation.report.status != core::stepper::SimulationStatus::ok)
+            source_.notices.push_back("The design before could not be simulated to the end: " + simulation.report.message);
+        const Errors errors = core::records::write_trajectory(file, simulation.trajectory, *model, scene_path);
+        source_.before = Motion{*model, std::move(simulation.trajectory)};
+        return errors;
+    }
+
+    const fs::path& folder_;
+    ReportOptions& options_;
+    ReportSource& source_;
+    std::string scene_path_;
+};
+
+}  // namespace
+
+Result<std::string> write_report(const std::string& folder, ReportOptions options) {
+    Result<Json> result = read_result(folder);
+    if (!result) return result.errors();
+    ReportSource source;
+    source.kind = *kind_of(*result);
+    source.folder = folder;
+    source.result = *std::move(result);
+    const fs::path path = folder;
+    if (Errors errors = FolderReader(path, options, source).read(); !errors.empty()) return errors;
+    const std::string file = options.out.empty() ? (path / "report.html").string() : options.out;
+    const std::string page = page_of(report_data(source, options.should_stop));
+    if (Errors errors = core::files::write_file_atomically(file, page); !errors.empty()) return errors;
+    return file;
+}
+
+}  // namespace fettle::design::report

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// The report of a folder of results: DIR/report.html, made from what `optimise`, `simulate` or `clearance` wrote there with --out.
+///   result.json        what was answered
+///   trajectory.json    bodies and motion
+///   design.final.json, history.jsonl      of an optimisation
+///   steps.csv, contacts.csv, drives.csv, joints.csv     forces and energies
+/// Of an optimisation the motion of the design before (trajectory.start.json) and these tables are computed, and kept there, where they are
+/// missing: two simulations.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/design/report/report_data.hpp"
+
+namespace fettle::design::report {
+
+struct ReportOptions {
+    std::string out;                                           ///< file; empty: report.html in the folder
+    std::vector<std::string> mesh_dirs;                        ///< also looked in for meshes
+    bool fresh = false;                                        ///< what could be there from an earlier run is computed again
+    std::optional<Motion> motion;                              ///< of the folder's trajectory, if it is at hand
+    std::string scene_path;                                    ///< of that motion's scene
+    std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
+};
+
+/// @return the path of the report. Errors: no result.json, one of another kind, or files that cannot be read or written.
+Result<std::string> write_report(const std::string& folder, ReportOptions options = {});
+
+}  // namespace fettle::design::report

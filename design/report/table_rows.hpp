@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// Reads the CSV tables that the program writes (core/records/step_tables.hpp): a header, then rows; words may be quoted.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fettle::design::report {
+
+class TableRows {
+public:
+    /// Rows that have not as many fields as the header (a file that was cut off) are left out.
+    explicit TableRows(std::string_view text);
+
+    std::size_t size() const { return rows_.size(); }
+    /// Is there a column of this name?
+    bool has(std::string_view column) const;
+    /// Empty where there is no such column.
+    const std::string& word(std::size_t row, std::string_view column) const;
+    /// NaN where there is none.
+    double number(std::size_t row, std::string_view column) const;
+
+private:
+    std::vector<std::string> header_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace fettle::design::report

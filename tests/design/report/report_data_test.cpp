@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+// What a report says, against what was computed: meshes and poses read back, curves of tables, certified bands against known distances,
+// the rows of a design, a page that users' names cannot break out of; and the command, from outside.
+#include "fettle/design/report/report_data.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/report/design_rows.hpp"
+#include "fettle/design/report/moving_parts.hpp"
+#include "fettle/design/report/packed_numbers.hpp"
+#include "fettle/design/report/pair_rows.hpp"
+#include "fettle/design/report/report_page.hpp"
+#include "fettle/design/report/search_curves.hpp"
+#include "fettle/design/report/table_rows.hpp"
+#include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
+#include "fettle/tests/support/program.hpp"
+
+namespace fettle::design::report::report_data_test {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using fettle::tests::design_support::DesignFolder;
+using fettle::tests::support::run;
+
+// The reverse of packed(), written for itself.
+template <class Number>
+std::vector<Number> unpacked(const Json& value, const char* key) {
+    const std::string text = value.at(key).get<std::string>(), digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned bits = 0;
+    int held = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        bits = bits << 6 | static_cast<unsigned>(digits.find(c));
+        held += 6;
+        if (held < 8) continue;
+        held -= 8;
+        bytes += static_cast<char>(bits >> held & 255);
+    }
+    std::vector<Number> numbers(bytes.size() / sizeof(Number));
+    std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));  // of a machine with the lowest byte first
+    return numbers;
+}
+
+core::scene::Body box(const std::string& name, const Vector3& size, const Vector3& at) {
+    core::scene::Body body;
+    body.name = name;
+    body.type = core::scene::BodyType::kinematic_body;
+    body.mesh = fettle::tests::support::box_mesh(-0.5 * size, 0.5 * size);
+    body.pose.position = at;
+    for (auto& dof : body.prescribed) dof = core::scene::MotionCurve{};
+    return body;
+}
+
+// Two cubes of 10 mm, 5 mm apart, that part at 20 mm/s while the second turns about their axis; a third like the first stands far away.
+Motion parting_cubes(int steps) {
+    core::scene::Scene scene;
+    scene.timestep = 0.01;
+    for (const auto& [name, x] : {std::pair{"still", 0.0}, std::pair{"moving", 0.015}, std::pair{"far", 0.2}})
+        scene.bodies.push_back(box(name, Vector3::Constant(0.01), Vector3(x, 0, 0)));
+    scene.bodies[1].prescribed[0]->rate = 0.02;
+    scene.bodies[1].prescribed[3]->rate = M_PI;
+    Motion motion{core::model::build_model(scene).value(), {}};
+    motion.trajectory = core::stepper::follow_scripts(motion.model, steps);
+    return motion;
+}
+
+const auto go_on = [] { return false; };
+
+std::string contents(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+// What stands in a page between its script element's ends.
+Json data_of(const std::string& page) {
+    const std::string begin = "id=\"fettle-report\">";
+    const size_t at = page.find(begin) + begin.size();
+    return Json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+}  // namespace
+
+TEST_CASE("report: base64 as RFC 4648 has it, numbers lowest byte first") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+    CHECK(packed(std::vector<std::uint32_t>{1}).at("u32") == "AQAAAA==");
+    CHECK(packed(std::vector<float>{1.0F}).at("f32") == "AACAPw==");
+    CHECK(unpacked<double>(packed(std::vector<double>{0.1, -3.0}), "f64") == std::vector<double>{0.1, -3.0});
+}
+
+TEST_CASE("report: tables with quoted words, rows that are cut off") {
+    const TableRows table("a,b\n\"x,\"\"y\",1.5\nz,\ncut");
+    REQUIRE(table.size() == 2);
+    CHECK(table.word(0, "a") == "x,\"y");
+    CHECK(table.number(0, "b") == 1.5);
+    CHECK(std::isnan(table.number(1, "b")));
+    CHECK(std::isnan(table.number(0, "c")));
+    CHECK(table.has("b"));
+    CHECK(TableRows("").size() == 0);
+}
+
+TEST_CASE("report: curves of forces, in the units that are told") {
+    StepTables tables;
+    tables.joints = "time,name,fx,fy,fz,tx,ty,tz,effort\n0.1,hinge,3,4,0,0,0,0,0\n0.1,turn,0,0,0,0,0,0,0.002\n0.1,push,0,0,1,0,0,0,7\n";
+    tables.drives = "time,body,fx,fy,fz,tx,ty,tz\n0.1,base,0,3,4,0,0,0\n0.1,crank,0,0,0,0,0,-0.5\n0.2,crank,0,0,0,0,0,0.25\n";
+    tables.contacts = "time,a,b,normal\n0.1,x,y,2\n0.3,x,z,1\n";
+    const Json curves = step_curves(tables, {"base"}, {"push"});
+    const auto curve = [&](const std::string& title) {
+        for (const Json& each : curves)
+            if (each["title"] == title) return each;
+        return Json();
+    };
+    const auto values = [](const Json& line) { return unpacked<double>(line["values"], "f64"); };
+    REQUIRE(curve("Motor torque")["lines"].size() == 1);
+    CHECK(curve("Motor torque")["lines"][0]["name"] == "turn");
+    CHECK(values(curve("Motor torque")["lines"][0]) == std::vector<double>{2});
+    CHECK(curve("Motor torque")["unit"] == "N mm");
+    CHECK(values(curve("Motor force")["lines"][0]) == std::vector<double>{7});
+    CHECK(values(curve("Joint force")["lines"][0]) == std::vector<double>{5});
+    REQUIRE(curve("Driving torque")["lines"].size() == 1);
+    CHECK(curve("Driving torque")["lines"][0]["name"] == "crank about z");
+    CHECK(values(curve("Driving torque")["lines"][0]) == std::vector<double>{-500, 250});
+    CHECK(values(curve("Force on fixed parts")["lines"][0]) == std::vector<double>{5});
+    CHECK(curve("Driving and guiding force").is_null());  // nothing but zeros
+    REQUIRE(curve("Contact")["lines"].size() == 2);
+    CHECK(unpacked<double>(curve("Contact")["time"], "f64") == std::vector<double>{0.1, 0.3});
+    CHECK(values(curve("Contact")["lines"][0]) == std::vector<double>{2, 0});  // what does not touch carries nothing
+    CHECK(values(curve("Contact")["lines"][1]) == std::vector<double>{0, 1});
+}
+
+TEST_CASE("report: parts in mm, copies once, still ones with one pose") {
+    const Motion motion = parting_cubes(20);
+    Json data;
+    add_view(data, "after", motion.model, motion.trajectory);
+    REQUIRE(data["meshes"].size() == 1);
+    const auto vertices = unpacked<float>(data["meshes"][0]["vertices"], "f32");
+    CHECK(vertices.size() == 24);
+    for (const float x : vertices) CHECK(std::abs(std::abs(x) - 5.0F) < 1e-5F);
+    CHECK(unpacked<std::uint32_t>(data["meshes"][0]["triangles"], "u32").size() == 36);
+    CHECK(unpacked<std::uint32_t>(data["meshes"][0]["edges"], "u32").empty());
+    const Json& view = data["views"][0];
+    CHECK(unpacked<float>(view["bodies"][0]["poses"], "f32").size() == 7);
+    const auto times = unpacked<double>(view["times"], "f64");
+    const auto poses = unpacked<float>(view["bodies"][1]["poses"], "f32");
+    REQUIRE(poses.size() == 7 * times.size());
+    REQUIRE(times.size() >= 21);
+    for (size_t k = 0; k < times.size(); ++k) {
+        const float* p = &poses[7 * k];
+        CHECK(p[0] == Approx(15 + 20 * times[k]).epsilon(1e-6));
+        CHECK(p[3] == Approx(std::sin(M_PI * times[k] / 2)).margin(1e-6));
+        CHECK(p[6] == Approx(std::cos(M_PI * times[k] / 2)).margin(1e-6));
+    }
+    CHECK(times.back() == Approx(0.2));
+}
+
+TEST_CASE("report: bands of clearance hold the distance, and the nearest pair comes first") {
+    Motion motion = parting_cubes(20);
+    for (core::model::Body& body : motion.model.bodies) body.type = core::scene::BodyType::dynamic_body;  // so that they may collide
+    const Json rows = nearest_pairs(motion.model, motion.trajectory, 5e-3, go_on);
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0]["a"] == "still");
+    CHECK(rows[0]["b"] == "moving");
+    CHECK(rows[0]["lower"].get<double>() <= 5.0);
+    CHECK(rows[0]["upper"].get<double>() >= 5.0 - 1e-9);
+    CHECK(rows[0]["upper"].get<double>() - rows[0]["lower"].get<double>() < 0.06);
+    CHECK(rows[0]["time"].get<double>() == Approx(0).margin(1e-6));
+    const Json curves = margin_curves(rows, motion.model, motion.trajectory, go_on);
+    const auto time = unpacked<double>(curves["time"], "f64");
+    const auto lower = unpacked<float>(curves["pairs"][0]["lower"], "f32"), upper = unpacked<float>(curves["pairs"][0]["upper"], "f32");
+    REQUIRE(lower.size() + 1 == time.size());
+    for (size_t k = 0; k < lower.size(); ++k) {
+        const double least = 5 + 20 * time[k];  // of the stretch: where it begins
+        CHECK(lower[k] <= least);
+        CHECK(upper[k] >= least - 1e-9);
+        CHECK(upper[k] - lower[k] < 0.3);
+    }
+    // Asked to stop, bounds are wider, and hold.
+    const Json stopped = nearest_pairs(motion.model, motion.trajectory, 5e-3, [] { return true; });
+    for (const Json& row : stopped) CHECK(row["lower"].get<double>() <= 200);
+    CHECK(margin_curves(Json::array(), motion.model, motion.trajectory, go_on).is_null());
+}
+
+TEST_CASE("report: rows of a design, what is required in mm, what it costs per mm") {
+    const DesignFolder folder;
+    const auto file = reading::read_design(folder.design());
+    REQUIRE(file);
+    Json result = Json::parse(R"({"status": "optimal", "parameters_start": {"height": 10, "density": 1000}, "parameters": {"height": 9},
+        "constraints": [{"name": "x", "lower": 0.0151, "upper": 0.0152, "met": true}],
+        "optimality": {"worth": 0.01, "held_by": {"height": "lower bound"}, "improvable": [{"parameter": "width", "step": 0.5}]}})");
+    const auto& constraints = file->design.constraints;
+    result["optimality"]["multipliers"][constraints[0].name] = 3.0;
+    const Json rows = requirement_rows(file->design, result);
+    REQUIRE(rows.size() == constraints.size());
+    CHECK(rows[0]["unit"] == "mm");
+    CHECK(rows[0]["required_lower"].get<double>() == Approx(15));
+    CHECK(rows[0]["required_upper"].is_null());
+    CHECK(rows[0]["lower"].get<double>() == Approx(15.1));
+    CHECK(rows[0]["met"] == true);
+    CHECK(rows[0]["cost"] == 3.0);
+    CHECK(rows[0]["counts"] == true);
+    CHECK(rows[0]["pair"].is_null());  // the answer has no pairs
+    CHECK(rows[1]["met"] == false);    // of what is not told nothing is met
+    const Json& mass = rows.back();
+    CHECK(mass["unit"] != "mm");
+    const Json parameters = parameter_rows(file->design, result);
+    CHECK(parameters[0]["start"] == 10);
+    CHECK(parameters[0]["end"] == 9);
+    CHECK(parameters[0]["lower"] == 6);
+    CHECK(parameters[0]["held"] == "lower bound");
+    CHECK(parameters[1]["step"] == 0.5);
+    CHECK(parameters[1]["start"].is_null());
+    CHECK(parameters[3]["unit"] == "kg/m^3");
+}
+
+TEST_CASE("report: how a search went, with trials that failed and a line that was cut off") {
+    const DesignFolder folder;
+    const auto file = reading::read_design(folder.design());
+    REQUIRE(file);
+    const std::string text =
+        "{\"fettle_history\":1}\n"
+        "{\"usable\":true,\"model\":\"wide\",\"parameters\":{\"height\":0.008},\"objective\":2,\"violation\":1,\"constraints\":[0.016]}\n"
+        "{\"usable\":false,\"parameters\":{\"height\":0.01}}\n{\"usable\":tr";
+    const Json curves = search_curves(text, file->design);
+    CHECK(curves["objective"] == Json::parse("[2, null]"));
+    CHECK(curves["own"] == Json::parse("[false, true]"));
+    CHECK(curves["model"][0] == "wide");
+    CHECK(curves["parameters"][0][0].get<double>() == Approx(0.25));
+    CHECK(curves["parameters"][1][0].is_null());
+    CHECK(curves["constraints"][0]["spare"][0].get<double>() == Approx(1));  // mm
+    CHECK(curves["constraints"][0]["spare"][1].is_null());
+}
+
+TEST_CASE("report: a page that names cannot break out of, and that asks for nothing") {
+    const Json data{{"name", "</script><script>alert(1)</script><!--"}, {"bad", "\xff"}};
+    const std::string page = page_of(data);
+    CHECK(page.find("alert(1)</script>") == std::string::npos);
+    CHECK(page.find("<!--", page.find("fettle-report")) == std::string::npos);
+    CHECK(data_of(page)["name"] == data["name"]);
+    const std::string_view built = page_template();
+    CHECK(built.size() < 1'000'000);
+    CHECK(built.find("default-src 'none'") != std::string_view::npos);
+    CHECK(page.size() > built.size());
+}
+
+TEST_CASE("report: simulate and clearance leave one beside their results, and report makes it again") {
+    const DesignFolder folder;
+    const std::string out = folder.file("sim"), scene = folder.file("small.scene.json");
+    const auto simulated = run("simulate " + scene + " --steps 5 --out " + out + " --json");
+    REQUIRE(simulated.code == 0);
+    CHECK(simulated.json().at("report") == out + "/report.html");
+    const Json data = data_of(contents(out + "/report.html"));
+    CHECK(data["kind"] == "simulate");
+    CHECK(data["status"] == "ok");
+    CHECK(data["name"] == "small");
+    CHECK(data["steps"] == 5);
+    CHECK(data["up"][2] == 1.0);
+    CHECK(data["command"].get<std::string>().find("fettle simulate") == 0);
+    CHECK(data["least"].get<double>() == Approx(1e3 * simulated.json().at("minimum_distance").get<double>()));
+    REQUIRE_FALSE(data["pairs"].empty());
+    CHECK(data["pairs"][0]["upper"].get<double>() >= data["least"].get<double>());
+    const std::string first = contents(out + "/report.html");
+    CHECK(run("report " + out + " --out " + folder.file("again.html")).code == 0);
+    CHECK(contents(folder.file("again.html")) == first);  // from the folder alone, to the byte
+
+    const std::string fit = folder.file("fit");
+    const auto cleared = run("clearance " + scene + " --minimum 1mm --pairs cube:wall --out " + fit + " --json");
+    CHECK(cleared.code == 0);
+    const Json judged = data_of(contents(fit + "/report.html"));
+    CHECK(judged["kind"] == "clearance");
+    CHECK(judged["pairs"][0]["minimum"] == 1.0);
+    CHECK(judged["margins"].is_null());  // as assembled
+    CHECK(Json::parse(contents(fit + "/result.json"))["pairs"][0]["lower"] == Json(cleared.json()["pairs"][0]["lower"]));
+
+    REQUIRE(run("simulate " + scene + " --steps 2 --no-report --out " + folder.file("bare")).code == 0);
+    CHECK_FALSE(std::filesystem::exists(folder.file("bare") + "/report.html"));
+    CHECK(run("report " + folder.file("nothing") + " --json").code == 3);
+    folder.write("other/result.json", "{\"status\": \"ok\"}");
+    CHECK(run("report " + folder.file("other") + " --json").json().at("errors")[0].at("code") == "unsupported");
+}
+
+TEST_CASE("report: an optimisation's has the design before and after, and the forces") {
+    const DesignFolder folder;
+    const std::string out = folder.file("opt");
+    const auto answer = run("optimise " + folder.design() + " --out " + out + " --json");
+    REQUIRE(answer.code <= 2);
+    const std::string first = contents(out + "/report.html");
+    const Json data = data_of(first);
+    REQUIRE(data["views"].size() == 2);
+    CHECK(data["views"][0]["name"] == "before");
+    CHECK(data["parameters"].size() == 5);
+    CHECK(data["requirements"][0]["pair"] == 0);
+    CHECK(data["pairs"][0]["motion"] == true);
+    CHECK(data["pairs"][0]["lower"].get<double>() == Approx(1e3 * answer.json().at("clearance").at("pairs")[0].at("lower").get<double>()));
+    CHECK(data["history"]["objective"].size() == answer.json().at("evaluations").get<size_t>());
+    CHECK_FALSE(data["series"].empty());
+    CHECK(data["margins"]["pairs"].size() >= 1);
+    CHECK(run("report " + out).code == 0);
+    CHECK(contents(out + "/report.html") == first);  // with what is kept: the same
+    const Json notices = data["notices"];
+    CHECK(notices.dump().find("has changed since") == std::string::npos);
+}
+
+}  // namespace fettle::design::report::report_data_test
