@@ -22,7 +22,7 @@ struct PictureMarker {
 struct PictureOptions {
     ProjectionView view;
     int width = 1200, height = 900;  ///< pixels
-    double crease = M_PI / 6;        ///< faces that meet at a larger angle have an edge between them [rad]
+    double crease = 0.6;  ///< faces that meet at a larger angle have an edge between them [rad]; 34 degrees: of a polygon of 12, none
     std::optional<PictureMarker> marker;
     std::string title;  ///< one line at the top
 };

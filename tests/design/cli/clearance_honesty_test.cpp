@@ -120,13 +120,16 @@ TEST_CASE("clearance: without a minimum distances are told, and clashes all the 
 
 TEST_CASE("clearance: files that are none of what it reads are refused with a list of what is") {
     const OverlapFolder folder;
-    for (const char* name : {"part.stl", "part.scad", "part.amf", "part.csv"}) {
+    for (const char* name : {"part.step", "part.scad", "part.amf", "part.csv"}) {
         const Answer answer = run("clearance " + folder.write(name, "solid part\nendsolid part\n") + " --minimum 1mm", true);
         CAPTURE(name, answer.out);
         CHECK(answer.code == 3);
         CHECK(answer.says("scenes, designs and trajectories are JSON (.json)"));
         CHECK(!answer.says("valid JSON"));
     }
+    const std::string mesh = "clearance " + folder.write("part.stl", "solid part\nendsolid part\n") + " --minimum 1mm";
+    CHECK(run(mesh, true).says("the file states no unit of length"));
+    CHECK(run(mesh + " --unit mm").code == 3);  // a mesh without a triangle
 }
 
 TEST_CASE("clearance: one that is interrupted is undecided, never violated") {

@@ -106,7 +106,7 @@ TEST_CASE("validate: real meshes pass with warnings, and not when strict") {
 TEST_CASE("files of other kinds are told what is read") {
     const Folder folder;
     const std::string mesh = folder.write("part.stl", "solid a\nendsolid a\n");
-    const Answer stl = run("clearance " + mesh + " --minimum 0.3mm", true);
+    const Answer stl = run("simulate " + mesh, true);
     CHECK(stl.code == 3);
     CHECK(stl.says("is a mesh, not a scene or design"));
     for (const char* name : {"a.scad", "a.amf", "a.csv"}) {
