@@ -30,7 +30,7 @@ struct CellProof {
 // Evaluates and splits cells; remembers the nearest pair of elements that it has met.
 class CellBounds {
 public:
-    CellBounds(const ScrewedPair& pair, const RangeSearchOptions& options) : pair_(pair), options_(options) {}
+    explicit CellBounds(const ScrewedPair& pair) : pair_(pair) {}
 
     RangeSearchResult result;
 
@@ -54,10 +54,10 @@ public:
                     .direction;
         }
         CellProof proof{0, {n}};
-        RangeBound best = box.along(n, a, b, element_a, element_b, options_.loss_scale);
+        RangeBound best = box.along(n, a, b, element_a, element_b, 1);
         if (elements && pair_.count > 0 && !(best.lower >= wanted)) {
             std::vector<Vector3> normals = corner_normals(box, cell, *element_a, *element_b);
-            const RangeBound other = box.along(normals, *element_a, *element_b, options_.loss_scale);
+            const RangeBound other = box.along(normals, *element_a, *element_b, 1);
             if (other.lower > best.lower) {
                 best = other;
                 proof.normals = std::move(normals);
@@ -133,7 +133,6 @@ private:
     }
 
     const ScrewedPair& pair_;
-    const RangeSearchOptions& options_;
 };
 
 // Samples, and downhill from the best: along each coordinate to and fro, with steps that shrink.
@@ -211,7 +210,7 @@ private:
 
 class RangeSearch {
 public:
-    RangeSearch(const ScrewedPair& pair, const RangeSearchOptions& options) : pair_(pair), options_(options), cells_(pair, options) {}
+    RangeSearch(const ScrewedPair& pair, const RangeSearchOptions& options) : pair_(pair), options_(options), cells_(pair) {}
 
     RangeSearchResult run() {
         Descent(pair_, cells_).run();
@@ -295,7 +294,7 @@ private:
 RangeSearchResult search_ranges(const ScrewedPair& pair, const RangeSearchOptions& options) { return RangeSearch(pair, options).run(); }
 
 certificate::RangeProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options) {
-    CellBounds cells(pair, options);
+    CellBounds cells(pair);
     certificate::RangeProof proof;
     std::vector<Cell> pending{cells.root()};
     while (!pending.empty()) {

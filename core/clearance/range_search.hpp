@@ -17,7 +17,6 @@ struct RangeSearchOptions {
     double tolerance = 1e-6;  ///< [m]
     double minimum = 0;       ///< greater than 0: goes on below the tolerance until it does not lie between the bounds
     long max_bounds = 4'000'000;
-    double loss_scale = 1;  ///< less than 1 breaks the proof: for tests that must notice
     std::function<bool()> should_stop;
 };
 

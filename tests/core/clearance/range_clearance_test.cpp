@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "fettle/core/clearance/range_search.hpp"
+#include "fettle/core/clearance/range_bound.hpp"
 #include "fettle/tests/core/clearance/random_trees.hpp"
 
 namespace fettle::core::clearance::range_clearance_test {
@@ -192,11 +192,8 @@ TEST_CASE("ranges: a bound without its losses is found out", "[ranges]") {
         const ScrewedPair pair = screwed_pair(a, b, tree.ranges.linkage, linked_pair(tree.ranges.linkage, tree.a, tree.b),
                                               tree.model.bodies[static_cast<std::size_t>(tree.a)].pose_start,
                                               tree.model.bodies[static_cast<std::size_t>(tree.b)].pose_start);
-        CoordinateBox box = pair.ranges;
-        RangeSearchOptions options;
-        options.loss_scale = 0;
         // The best that the whole box proves, without its losses: more than is there.
-        const BoxBound whole(pair, box);
+        const BoxBound whole(pair, pair.ranges);
         const Vector3 n = Vector3(kinematics::world_position(whole.middle_a(), a.pieces[0].center) -
                                   kinematics::world_position(whole.middle_b(), b.pieces[0].center))
                               .normalized() *
