@@ -8,10 +8,14 @@ MechanismGradient zero_mechanism_gradient(const core::model::Mechanism& mechanis
     MechanismGradient g;
     g.frames.resize(mechanism.set.frames.size());
     g.term_coefficient.assign(mechanism.terms.size(), 0);
-    g.term_reference = g.term_coefficient;
+    g.term_reference = g.term_rate = g.term_coefficient;
     for (const core::model::MeasureTerm& term : mechanism.terms) g.term_values.emplace_back(term.curve.values.size(), 0.0);
     g.row_constant.assign(mechanism.rows.size(), 0);
-    for (const core::constraint::Row& row : mechanism.rows) g.row_values.emplace_back(row.curve.values.size(), 0.0);
+    g.row_rate = g.row_constant;
+    for (const core::constraint::Row& row : mechanism.rows) {
+        g.row_values.emplace_back(row.curve.values.size(), 0.0);
+        g.row_factors.emplace_back(row.parts.size(), 0.0);
+    }
     return g;
 }
 
@@ -31,7 +35,10 @@ void add(MechanismGradient& sum, const MechanismGradient& part) {
     add(sum.term_coefficient, part.term_coefficient);
     add(sum.term_reference, part.term_reference);
     add(sum.term_values, part.term_values);
+    add(sum.term_rate, part.term_rate);
     add(sum.row_constant, part.row_constant);
+    add(sum.row_rate, part.row_rate);
+    add(sum.row_factors, part.row_factors);
     add(sum.row_values, part.row_values);
 }
 

@@ -14,6 +14,8 @@ namespace fettle::adjoint {
 struct TrajectoryGradient {
     /// [t][body], t = 0 .. steps: derivative with respect to the pose matrix P = [R q], entry by entry (3x4).
     std::vector<std::vector<Matrix34>> pose_bar;
+    /// [step]: derivative with respect to the multipliers of the step's rows (of the potential times its weight); empty: of none.
+    std::vector<VectorX> multiplier_bar;
 };
 TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
 
@@ -36,8 +38,11 @@ struct MechanismGradient {
     std::vector<double> term_coefficient;              ///< stiffness, damping, friction, factor of a force
     std::vector<double> term_reference;                ///< rest or limit; 0 of others
     std::vector<std::vector<double>> term_values;      ///< values of a force's curve
+    std::vector<double> term_rate;                     ///< rate of a force's curve
     std::vector<double> row_constant;
-    std::vector<std::vector<double>> row_values;  ///< values of a motor's curve
+    std::vector<std::vector<double>> row_factors;  ///< of each part
+    std::vector<std::vector<double>> row_values;   ///< values of a motor's curve
+    std::vector<double> row_rate;                  ///< rate of a motor's curve
 };
 
 struct ModelGradient {

@@ -22,11 +22,12 @@ Vector6 tangent_of(const Matrix34& bar, const Matrix3& rotation) {
 class Assembled {
 public:
     Assembled(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent, const std::vector<Pose>& written,
-              const std::vector<Pose>& poses)
+              const std::vector<Pose>& poses, std::vector<double> angles)
         : problem_(problem),
           written_(written),
           poses_(poses),
           frames_(placed(problem.set.frames, poses)),
+          angles_(std::move(angles)),
           solver_(problem.index, problem.count) {
         for (std::size_t i = 0; i < problem.rows.size(); ++i) {
             const auto is_this = [&](const DependentRow& d) { return d.row == static_cast<int>(i); };
@@ -110,15 +111,21 @@ private:
             rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses_[f.body].rotation);
         out.frames.resize(problem_.set.frames.size());
         out.targets_bar = VectorX::Zero(static_cast<Eigen::Index>(problem_.rows.size()));
+        for (const Row& row : problem_.rows) out.factors_bar.emplace_back(row.parts.size(), 0.0);
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             out.targets_bar[kept_[i]] += mu[i];
-            for (const core::constraint::RowPart& part : rows_[i].parts) {
+            for (std::size_t k = 0; k < rows_[i].parts.size(); ++k) {
+                const core::constraint::RowPart& part = rows_[i].parts[k];
                 const core::measure::Measure& m = problem_.set.measures[part.measure];
                 const core::measure::VectorFunction f = vector_function(m, frames_);
                 Vector12 motion = Vector12::Zero();
                 const int a = problem_.set.frames[m.a].body, b = problem_.set.frames[m.b].body;
                 if (a != core::measure::world) motion.head<6>() = lambda[a];
                 if (b != core::measure::world) motion.tail<6>() = lambda[b];
+                const core::measure::PoseGradients g = pose_gradients(m, f, frames_);
+                const double change = tangent_gradient(g.a).dot(motion.head<6>()) + tangent_gradient(g.b).dot(motion.tail<6>());
+                out.factors_bar[kept_[i]][k] -=
+                    multipliers_[i] * change + mu[i] * core::constraint::value_at(problem_.set, part.measure, frames_, angles_);
                 add_placement_gradient(f, -part.factor * mu[i], rotations, out.frames);
                 add_placement_gradient_of_change(m, f, -part.factor * multipliers_[i], {frames_, rotations}, motion, out.frames);
             }
@@ -128,6 +135,7 @@ private:
     const AssemblyProblem& problem_;
     const std::vector<Pose>&written_, &poses_;
     const std::vector<PlacedFrame> frames_;
+    const std::vector<double> angles_;
     std::vector<int> kept_;  // places in the problem's rows
     std::vector<Row> rows_;
     core::constraint::RowJacobian jacobian_;
@@ -140,8 +148,9 @@ private:
 
 AssemblyGradient assembly_adjoint(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent,
                                   const std::vector<Pose>& written, const std::vector<Pose>& assembled,
-                                  const std::vector<Matrix34>& pose_bar) {
-    return Assembled(problem, dependent, written, assembled).reverse(pose_bar);
+                                  const std::vector<Matrix34>& pose_bar, std::vector<double> angles) {
+    if (angles.empty()) angles = core::constraint::angles_at(problem.set, assembled, core::constraint::angles_at(problem.set, written, {}));
+    return Assembled(problem, dependent, written, assembled, std::move(angles)).reverse(pose_bar);
 }
 
 }  // namespace fettle::adjoint::constraint

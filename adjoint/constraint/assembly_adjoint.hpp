@@ -17,15 +17,17 @@ struct AssemblyGradient {
     std::vector<Vector6> written_bar;  ///< per body: of the poses as written, (q, phi)
     std::vector<Matrix4> moments_bar;
     std::vector<core::measure::FrameGradient> frames;
-    VectorX targets_bar;  ///< per row of the problem; 0 of those that follow from others
+    VectorX targets_bar;                           ///< per row of the problem; 0 of those that follow from others
+    std::vector<std::vector<double>> factors_bar;  ///< per row and part; 0 of the same
 };
 
 /// @param problem   its rows as they were assembled; `dependent` those that were left out.
 /// @param assembled where they are met, `written` what was written.
 /// @param pose_bar  per body: derivative in the assembled pose's matrix, entry by entry.
+/// @param angles    of the measures, with their turns, where the rows are met; empty: the nearest to those as written.
 AssemblyGradient assembly_adjoint(const core::constraint::AssemblyProblem& problem,
                                   const std::vector<core::constraint::DependentRow>& dependent,
                                   const std::vector<core::kinematics::Pose>& written, const std::vector<core::kinematics::Pose>& assembled,
-                                  const std::vector<Matrix34>& pose_bar);
+                                  const std::vector<Matrix34>& pose_bar, std::vector<double> angles = {});
 
 }  // namespace fettle::adjoint::constraint

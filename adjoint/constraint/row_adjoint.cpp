@@ -36,19 +36,26 @@ void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Ve
     for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
         const Row& row = mechanism.rows[i];
         const std::vector<double> weights = core::scene::curve_weights(row.curve, at.problem.mechanism.end_time);
+        const double running_time = core::scene::curve_running_time(row.curve, at.problem.mechanism.end_time);
         for (std::size_t s = 0; s < motion.size(); ++s) {
             MechanismGradient& bar = model_bar[s].mechanism;
             bar.row_constant[i] += mu[s][i];
+            bar.row_rate[i] += running_time * mu[s][i];
             for (std::size_t k = 0; k < weights.size(); ++k) bar.row_values[i][k] += weights[k] * mu[s][i];
         }
-        for (const RowPart& part : row.parts) {
+        for (std::size_t k = 0; k < row.parts.size(); ++k) {
+            const RowPart& part = row.parts[k];
             const Measure& m = mechanism.set.measures[part.measure];
             const core::measure::VectorFunction f = vector_function(m, frames);
+            const core::measure::PoseGradients g = pose_gradients(m, f, frames);
+            const double value = core::constraint::value_at(mechanism.set, part.measure, frames, at.problem.mechanism.angles);
             for (std::size_t s = 0; s < motion.size(); ++s) {
                 std::vector<core::measure::FrameGradient>& bars = model_bar[s].mechanism.frames;
+                const Vector12 moved = motion_of(mechanism, m, motion[s]);
                 add_placement_gradient(f, -part.factor * mu[s][i], rotations, bars);
-                add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], {frames, rotations},
-                                                 motion_of(mechanism, m, motion[s]), bars);
+                add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], {frames, rotations}, moved, bars);
+                const double change = tangent_gradient(g.a).dot(moved.head<6>()) + tangent_gradient(g.b).dot(moved.tail<6>());
+                model_bar[s].mechanism.row_factors[i][k] -= at.multipliers[i] * change + mu[s][i] * value;
             }
         }
     }
@@ -57,26 +64,32 @@ void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Ve
 VectorX add_rows_tangent(const RowsAtEnd& at, const std::vector<Matrix34>& poses_dot, const ModelTangent& direction,
                          contact::PoseGradientTangent& out) {
     const Mechanism& mechanism = at.problem.model->mechanism;
+    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, at.poses);
     VectorX change = VectorX::Zero(static_cast<Eigen::Index>(mechanism.rows.size()));
     for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
         const Row& row = mechanism.rows[i];
-        for (const RowPart& part : row.parts) {
+        for (std::size_t k = 0; k < row.parts.size(); ++k) {
+            const RowPart& part = row.parts[k];
             const Measure& m = mechanism.set.measures[part.measure];
             const measure::MeasureTangent t = measure::measure_tangent(mechanism.set, m, {at.poses, poses_dot, direction.mechanism.frames});
             const double weight = part.factor * at.multipliers[i];
+            const double factor_dot = direction.mechanism.row_factors[i][k], weight_dot = factor_dot * at.multipliers[i];
             const int a = mechanism.set.frames[m.a].body, b = mechanism.set.frames[m.b].body;
             if (a != core::measure::world) {
                 out.value[a] += weight * t.gradient_a;
-                out.dot[a] += weight * t.gradient_a_dot;
+                out.dot[a] += weight * t.gradient_a_dot + weight_dot * t.gradient_a;
             }
             if (b != core::measure::world) {
                 out.value[b] += weight * t.gradient_b;
-                out.dot[b] += weight * t.gradient_b_dot;
+                out.dot[b] += weight * t.gradient_b_dot + weight_dot * t.gradient_b;
             }
             change[i] += part.factor * t.value_dot;
+            if (factor_dot != 0)
+                change[i] += factor_dot * core::constraint::value_at(mechanism.set, part.measure, frames, at.problem.mechanism.angles);
         }
         const std::vector<double> weights = core::scene::curve_weights(row.curve, at.problem.mechanism.end_time);
-        change[i] -= direction.mechanism.row_constant[i];
+        const double running_time = core::scene::curve_running_time(row.curve, at.problem.mechanism.end_time);
+        change[i] -= direction.mechanism.row_constant[i] + running_time * direction.mechanism.row_rate[i];
         for (std::size_t k = 0; k < weights.size(); ++k) change[i] -= weights[k] * direction.mechanism.row_values[i][k];
     }
     return change;

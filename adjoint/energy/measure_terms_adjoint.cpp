@@ -74,8 +74,9 @@ private:
     void subtract_curve(std::size_t k, double change, MechanismGradient& bar) const {
         const MeasureTerm& term = mechanism_.terms[k];
         const std::vector<double> weights = core::scene::curve_weights(term.curve, at_.problem.mechanism.end_time);
-        for (std::size_t i = 0; i < weights.size(); ++i)
-            bar.term_values[k][i] += at_.problem.weight * term.coefficient * weights[i] * change;
+        const double along = at_.problem.weight * term.coefficient * change;
+        for (std::size_t i = 0; i < weights.size(); ++i) bar.term_values[k][i] += along * weights[i];
+        bar.term_rate[k] += along * core::scene::curve_running_time(term.curve, at_.problem.mechanism.end_time);
     }
 
     // m_slip_bar, into the start's poses and the frames.
@@ -116,7 +117,8 @@ double first_dot(const StepEnd& at, std::size_t k, const LawValue& law, double m
     if (term.kind != LawKind::force) return out - law.second * dot.term_reference[k];
     const std::vector<double> weights = core::scene::curve_weights(term.curve, at.problem.mechanism.end_time);
     for (std::size_t i = 0; i < weights.size(); ++i) out -= at.problem.weight * term.coefficient * weights[i] * dot.term_values[k][i];
-    return out;
+    const double running_time = core::scene::curve_running_time(term.curve, at.problem.mechanism.end_time);
+    return out - at.problem.weight * term.coefficient * running_time * dot.term_rate[k];
 }
 
 void add_tangent_of_measure_terms(const StepEnd& at, const StepTangent& step, const ModelTangent& direction,

@@ -76,7 +76,7 @@ private:
     Errors step_back(int t) {
         const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
         if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
-        solve(step);
+        solve(t, step);
         for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
             for (auto& bodies : *bars)
                 for (Matrix34& bar : bodies) bar.setZero();
@@ -94,10 +94,11 @@ private:
     }
 
     // y_bar, lambda, and lambda's motion (dq, phi) of each body.
-    void solve(const LinearisedStep& step) {
+    void solve(int t, const LinearisedStep& step) {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i)
             left_jacobian_[i] = core::kinematics::left_jacobian(step.points[i].rotation_vector);
         MatrixX rhs(dofs_.count, static_cast<Eigen::Index>(seeds_.size()));
+        MatrixX of_rows = MatrixX::Zero(step.rows.count(), rhs.cols());
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 y_bar_[s][i].head<3>() = end_[s][i].col(3);
@@ -105,8 +106,10 @@ private:
                     left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
             rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
+            if (const auto& bar = seeds_[s].multiplier_bar; !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
+                of_rows.col(static_cast<Eigen::Index>(s)) = bar[static_cast<std::size_t>(t)];
         }
-        const auto [lambda, mu] = solver_.solve(step, rhs, MatrixX::Zero(step.rows.count(), rhs.cols()));
+        const auto [lambda, mu] = solver_.solve(step, rhs, of_rows);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             if (step.rows.count() > 0) mu_[s] = mu.col(static_cast<Eigen::Index>(s));
             core::solver::scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
@@ -130,10 +133,9 @@ private:
         const Vector3 lambda_theta = lambda_[s][i].tail<3>(), phi = motion_[s][i].tail<3>();
         const Matrix3 back = core::kinematics::left_jacobian_inverse(theta).transpose();
         const Vector3 torque = back * step.derivatives.gradient[i].tail<3>();
-        const core::kinematics::RotationDerivatives r = core::kinematics::rotation_derivatives(theta);
-        const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), r);
+        const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), theta);
         const Vector3 end_bar = back * (increment_bar.tail<3>() + curvature * lambda_theta) + 0.5 * phi.cross(torque);
-        const Vector3 base_bar = r.value.transpose() * end_bar;
+        const Vector3 base_bar = core::kinematics::rotation(theta).transpose() * end_bar;
         start_[s][i].leftCols<3>() += 0.5 * cross_matrix(base_bar) * trajectory_.poses[t][i].rotation;
     }
 

@@ -13,6 +13,8 @@ bool reaches_past_start(const TrajectoryGradient& seed) {
             if (!bar.isZero(0)) return true;
         }
     }
+    for (const VectorX& bar : seed.multiplier_bar)
+        if (bar.size() > 0 && !bar.isZero(0)) return true;
     return false;
 }
 

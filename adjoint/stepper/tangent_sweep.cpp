@@ -68,6 +68,7 @@ public:
     }
 
     std::vector<std::vector<Vector6>> take() { return std::move(out_); }
+    std::vector<VectorX> take_multipliers() { return std::move(multipliers_); }
 
 private:
     std::vector<Vector6> tangents(int t) const {
@@ -141,7 +142,9 @@ private:
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);
         const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
-        core::solver::scatter(dofs_, solver_.solve(step, rhs, -row_dot).y.col(0), y_dot);
+        const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
+        core::solver::scatter(dofs_, solution.y.col(0), y_dot);
+        multipliers_.push_back(step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX());
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, r[i], k);
         advance(t, end_dot);
@@ -167,14 +170,17 @@ private:
     std::vector<Matrix4> moments_dot_;
     std::vector<Matrix34> poses_dot_, velocities_dot_;  // at the current step's start
     std::vector<std::vector<Vector6>> out_;
+    std::vector<VectorX> multipliers_;
 };
 
 }  // namespace
 
-Result<std::vector<std::vector<Vector6>>> tangent_sweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction) {
+Result<std::vector<std::vector<Vector6>>> tangent_sweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction,
+                                                        std::vector<VectorX>* multipliers) {
     if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
     TangentSweep sweep(model, trajectory, direction);
     if (Errors errors = sweep.run(); !errors.empty()) return errors;
+    if (multipliers != nullptr) *multipliers = sweep.take_multipliers();
     return sweep.take();
 }
 

@@ -52,6 +52,17 @@ void write_segment(JsonWriter& out, const SegmentProof& proof) {
     out.text += '}';
 }
 
+void write_export(JsonWriter& out, const ExportedFile& exported) {
+    out.text += '{';
+    out.key("file");
+    out.string(exported.file);
+    out.key("hash");
+    out.string(exported.hash);
+    out.key("rounding");
+    out.number(exported.rounding);
+    out.text += '}';
+}
+
 void write_pair(JsonWriter& out, const PairCertificate& pair) {
     out.text += "{\"a\": " + std::to_string(pair.a) + ", \"b\": " + std::to_string(pair.b);
     for (const auto& [name, value] : {std::pair<const char*, double>{"lower", pair.lower},
@@ -175,6 +186,10 @@ base::Errors write_certificate(const std::filesystem::path& path, const Certific
         out.numbers(certificate.bodies[i].cuts);
         out.text += '}';
     });
+    if (!certificate.exports.empty()) {
+        out.key("exports");
+        out.list(certificate.exports.size(), ",\n ", [&](std::size_t i) { write_export(out, certificate.exports[i]); });
+    }
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
@@ -185,7 +200,7 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     auto document = files::JsonDocument::read(path.string());
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    root.allow_keys({"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "pairs"});
+    root.allow_keys({"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "exports", "pairs"});
     root.require("fettle_certificate").integer(2, 2);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate;
@@ -196,6 +211,9 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     certificate.motion = root.require("motion").boolean().value_or(false);
     for (const JsonNode& body : root.require("bodies").elements())
         certificate.bodies.push_back({whole_numbers(body.require("elements")), whole_numbers(body.require("cuts"))});
+    for (const JsonNode& exported : root["exports"].elements())
+        certificate.exports.push_back({exported.require("file").string().value_or(""), exported.require("hash").string().value_or(""),
+                                       exported.require("rounding").number(files::not_negative).value_or(0)});
     for (const JsonNode& pair : root.require("pairs").elements()) certificate.pairs.push_back(read_pair(pair));
     if (!document->errors().empty()) return document->errors();
     return certificate;

@@ -81,6 +81,13 @@ struct BodyPieces {
     std::vector<int> cuts;
 };
 
+/// A file of the bodies' meshes, for a printer or another program, that the certificate speaks of too.
+struct ExportedFile {
+    std::string file;     ///< relative to the certificate's folder, or absolute
+    std::string hash;     ///< files::hash_of its bytes
+    double rounding = 0;  ///< how far a vertex of the file may be from that of the trajectory [m]: every bound is wider by 2 of it there
+};
+
 struct Certificate {
     int version = 2;
     std::uint64_t geometry_hash = 0;  ///< of the bodies (records/trajectory_io.hpp)
@@ -90,6 +97,7 @@ struct Certificate {
     bool motion = false;              ///< over the trajectory; false: at its first poses
     std::vector<BodyPieces> bodies;   ///< one per body of the model; empty lists for those of no pair
     std::vector<PairCertificate> pairs;
+    std::vector<ExportedFile> exports{};
 };
 
 /// Pairs of `bodies` bodies that the certificate says nothing of, a < b.
@@ -97,6 +105,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 
 /// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
 ///   fettle_certificate 2, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
+///   exports (optional) [{file, hash, rounding}],
 ///   pairs [{a, b, lower, upper, solids, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
 /// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
 /// others, which it writes `:`. Written whole or not at all.

@@ -29,17 +29,27 @@ kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const 
     return held;
 }
 
-bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, int index) {
-    const auto usable = [](const auto& x) { return x.size() == 0 || (x.allFinite() && x.cwiseAbs().maxCoeff() < 1e30); };
-    if (!usable(body.mesh.vertices)) return false;
-    return std::all_of(places.begin(), places.end(), [&](const PathPlace& place) {
-        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][index];
-        if (!usable(pose.rotation) || !usable(pose.position)) return false;
+std::vector<char> have_usable_numbers(const model::Model& model, const stepper::Trajectory& trajectory,
+                                      const std::vector<PathPlace>& places) {
+    const auto is_usable = [](const auto& x) { return (x.array().abs() < 1e30).all(); };  // false of what is no number
+    const auto are_usable = [&](const PathPlace& place, std::size_t body) {
+        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][body];
+        if (!is_usable(pose.rotation) || !is_usable(pose.position)) return false;
         if (place.step < 0) return true;
         const auto& nodes = trajectory.steps[place.step].nodes;
-        const auto good = [&](int k) { return usable(nodes[k][index].position) && usable(nodes[k][index].rotation_vector); };
-        return good(place.segment) && good(place.segment + 1);
+        const auto is_good = [&](const kinematics::ChartPoint& p) { return is_usable(p.position) && is_usable(p.rotation_vector); };
+        return is_good(nodes[place.segment][body]) && is_good(nodes[place.segment + 1][body]);
+    };
+    const std::size_t count = model.bodies.size();
+    std::vector<char> usable(count, 1);
+    parallel_for(static_cast<int>((count + bodies_at_once - 1) / bodies_at_once), 1, [&](int block) {
+        const std::size_t first = static_cast<std::size_t>(block) * bodies_at_once, last = std::min(count, first + bodies_at_once);
+        for (std::size_t i = first; i < last; ++i) usable[i] = is_usable(model.bodies[i].mesh.vertices) ? 1 : 0;
+        for (const PathPlace& place : places)
+            for (std::size_t i = first; i < last; ++i)
+                if (usable[i] != 0 && !are_usable(place, i)) usable[i] = 0;
     });
+    return usable;
 }
 
 std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<int>& bodies) {

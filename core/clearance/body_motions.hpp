@@ -23,8 +23,13 @@ std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int fi
 /// The segment of a body at a place.
 kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const PathPlace& place, int body);
 
-/// Finite, and small enough that no product of a few of them overflows: as the checker's limit (certificate/interval_motion.hpp).
-bool has_usable_numbers(const model::Body& body, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, int index);
+/// [body] Are its numbers finite, and small enough that no product of a few of them overflows? As the checker's limit
+/// (certificate/interval_motion.hpp).
+std::vector<char> have_usable_numbers(const model::Model& model, const stepper::Trajectory& trajectory,
+                                      const std::vector<PathPlace>& places);
+
+/// Bodies are taken so many at a time, all at one place after another: as their poses lie in memory.
+inline constexpr int bodies_at_once = 32;
 
 /// A body's pieces and solid, those of its first copy if it is one of several parts of the same mesh; null: the body was not asked for.
 struct BodyShape {

@@ -28,10 +28,11 @@ struct BodyMotion {
 std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
                                      const std::vector<int>& bodies, const std::vector<BodyShape>& shapes) {
     std::vector<BodyMotion> motions(model.bodies.size());
+    const std::vector<char> usable = have_usable_numbers(model, trajectory, places);
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const int body = bodies[i];
         motions[body].shape = shapes[body];
-        if (!has_usable_numbers(model.bodies[body], trajectory, places, body)) return;
+        if (usable[static_cast<std::size_t>(body)] == 0) return;
         motions[body].segments.reserve(places.size());
         for (const PathPlace& place : places) motions[body].segments.push_back(body_segment(segment_at(trajectory, place, body)));
     });
@@ -262,11 +263,24 @@ private:
                 known.last = is_new ? part.last : std::max(known.last, part.last);
             }
         }
-        parallel_for(static_cast<int>(bodies_.size()), 8, [&](int body) {
-            Stretch& known = bodies_[static_cast<std::size_t>(body)];
-            known.segments.reserve(static_cast<std::size_t>(known.last - known.first));
-            for (int i = known.first; i < known.last; ++i)
-                known.segments.push_back(body_segment(segment_at(trajectory_, places_[static_cast<std::size_t>(i)], body)));
+        const auto count = static_cast<int>(bodies_.size());
+        parallel_for((count + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
+            const int first = block * bodies_at_once, last = std::min(count, first + bodies_at_once);
+            int begin = static_cast<int>(places_.size()), end = 0;
+            for (int body = first; body < last; ++body) {
+                Stretch& known = bodies_[static_cast<std::size_t>(body)];
+                if (known.first == known.last) continue;
+                known.segments.reserve(static_cast<std::size_t>(known.last - known.first));
+                begin = std::min(begin, known.first);
+                end = std::max(end, known.last);
+            }
+            for (int i = begin; i < end; ++i) {
+                const PathPlace& place = places_[static_cast<std::size_t>(i)];
+                for (int body = first; body < last; ++body) {
+                    Stretch& known = bodies_[static_cast<std::size_t>(body)];
+                    if (known.first <= i && i < known.last) known.segments.push_back(body_segment(segment_at(trajectory_, place, body)));
+                }
+            }
         });
     }
 

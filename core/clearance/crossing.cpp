@@ -2,6 +2,7 @@
 #include "fettle/core/clearance/crossing.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace fettle::core::clearance {
 namespace {
@@ -20,8 +21,8 @@ PairSegment part_of(const PairSegment& whole, double s0, double s1) {
         return out;
     };
     PairSegment result = whole;
-    result.a = body_segment(part(whole.a.path));
-    result.b = body_segment(part(whole.b.path));
+    result.a = std::make_shared<const BodySegment>(body_segment(part(whole.a->path)));
+    result.b = std::make_shared<const BodySegment>(body_segment(part(whole.b->path)));
     return result;
 }
 

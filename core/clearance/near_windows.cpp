@@ -70,11 +70,8 @@ public:
         spans_.segments = static_cast<int>(places.size());
         spans_.count = std::clamp(most_boxes / std::max(bodies_, 1), 1, std::min(spans_.segments, most_time_spans));
         boxes_.resize(static_cast<std::size_t>(bodies_));
-        usable_.resize(static_cast<std::size_t>(bodies_));
-        parallel_for(bodies_, 1, [&](int i) {
-            boxes_[i] = box_of(model.bodies[i].mesh);
-            usable_[i] = has_usable_numbers(model.bodies[i], trajectory, places, i) ? 1 : 0;
-        });
+        usable_ = have_usable_numbers(model, trajectory, places);
+        parallel_for(bodies_, 1, [&](int i) { boxes_[i] = box_of(model.bodies[i].mesh); });
     }
 
     NearWindows run() {

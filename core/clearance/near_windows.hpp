@@ -22,7 +22,7 @@ using PairFilter = std::function<bool(int a, int b)>;
 /// Bodies a < b, which are wanted and may be nearer than the reach in segments [first, last) of the path.
 struct NearWindow {
     int a = 0, b = 0, first = 0, last = 0;
-    bool measurable = true;  ///< false: numbers of a body's path are of no use (has_usable_numbers); then the window is the whole path
+    bool measurable = true;  ///< false: numbers of a body's path are of no use (have_usable_numbers); then the window is the whole path
 };
 
 struct NearWindows {

@@ -73,7 +73,7 @@ public:
         : a_(a), b_(b), at_(instant_at(segment, s)), slack_(segment.slack) {
         to_a_ = at_.rotation_a.inverse() * at_.rotation_b;
         shift_a_ = at_.rotation_a.inverse() * at_.offset;
-        const double norms = segment.a.base_norm * segment.b.base_norm;
+        const double norms = segment.a->base_norm * segment.b->base_norm;
         stretch_ = norms * norms * rounded_up;
     }
 

@@ -23,8 +23,8 @@ double most_slack(const PairMotion& pair) {
 // more than a thousandth of what is to be told apart, or a million radians in one segment.
 bool is_measurable(const PairMotion& pair) {
     return std::all_of(pair.segments.begin(), pair.segments.end(), [&](const PairSegment& segment) {
-        const double apart = (segment.a.poses[0].position - segment.b.poses[0].position).norm();
-        return segment.slack <= 1e-3 * (pair.a.radius() + pair.b.radius() + apart) && segment.a.speed <= 1e6 && segment.b.speed <= 1e6;
+        const double apart = (segment.a->poses[0].position - segment.b->poses[0].position).norm();
+        return segment.slack <= 1e-3 * (pair.a.radius() + pair.b.radius() + apart) && segment.a->speed <= 1e6 && segment.b->speed <= 1e6;
     });
 }
 
@@ -171,7 +171,7 @@ private:
         auto overlap = clearance::overlap_at({pair_.a, pair_.solid_a}, {pair_.b, pair_.solid_b}, segment, at.s, cells);
         if (!overlap) return overlap;
         overlap->time = time_of(pair_, at.segment, at.s);
-        overlap->center += kinematics::pose_at(segment.b.path, at.s).position;
+        overlap->center += kinematics::pose_at(segment.b->path, at.s).position;
         return overlap;
     }
 

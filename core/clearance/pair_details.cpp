@@ -35,7 +35,7 @@ Witness witness_of(const PairMotion& pair, const Encounter& encounter) {
     w.vertex_on_a = found.kind_a == Primitive::vertex;
     w.primitive_a = primitive_index(pair.a, encounter.element_a, found.kind_a, found.corner_a);
     w.primitive_b = primitive_index(pair.b, encounter.element_b, found.kind_b, found.corner_b);
-    const Vector3 origin = kinematics::pose_at(segment.b.path, encounter.s).position;
+    const Vector3 origin = kinematics::pose_at(segment.b->path, encounter.s).position;
     w.point_a = origin + found.point_a;
     w.point_b = origin + found.point_b;
     w.distance = found.distance;

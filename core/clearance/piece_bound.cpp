@@ -53,11 +53,11 @@ IntervalBound::IntervalBound(const PairSegment& segment, const Instant& start, c
     const Vector3 first = third * (4 * middle.offset - end.offset), second = third * (4 * middle.offset - start.offset);
     for (int k = 0; k < 3; ++k) offset_[static_cast<std::size_t>(k)] << start.offset[k], first[k], second[k], end.offset[k];
     const double half = 0.5 * length_, cube = length_ * length_ * length_ / 36 * rounded_up;
-    drift_ = half * (segment.a.path.position_step - segment.b.path.position_step).norm() * rounded_up;
-    rate_a_ = half * segment.a.speed * segment.a.base_norm * rounded_up;
-    rate_b_ = half * segment.b.speed * segment.b.base_norm * rounded_up;
-    rest_a_ = cube * segment.a.speed * segment.a.speed * segment.a.speed * segment.a.base_norm;
-    rest_b_ = cube * segment.b.speed * segment.b.speed * segment.b.speed * segment.b.base_norm;
+    drift_ = half * (segment.a->path.position_step - segment.b->path.position_step).norm() * rounded_up;
+    rate_a_ = half * segment.a->speed * segment.a->base_norm * rounded_up;
+    rate_b_ = half * segment.b->speed * segment.b->base_norm * rounded_up;
+    rest_a_ = cube * segment.a->speed * segment.a->speed * segment.a->speed * segment.a->base_norm;
+    rest_b_ = cube * segment.b->speed * segment.b->speed * segment.b->speed * segment.b->base_norm;
 }
 
 double IntervalBound::motion(const Piece& a, const Piece& b) const {

@@ -21,35 +21,35 @@ struct Rest {
 
 // `i`: 0, 1, 2 for s = 0, 1/2, 1.
 RelativePose relative_pose(const PairSegment& segment, std::size_t i) {
-    const Matrix3 back = segment.b.poses[i].rotation.transpose();
-    return {back * segment.a.poses[i].rotation, back * (segment.a.poses[i].position - segment.b.poses[i].position)};
+    const Matrix3 back = segment.b->poses[i].rotation.transpose();
+    return {back * segment.a->poses[i].rotation, back * (segment.a->poses[i].position - segment.b->poses[i].position)};
 }
 
 Rest difference(const RelativePose& x, const RelativePose& y) { return {(x.rotation - y.rotation).norm(), (x.offset - y.offset).norm()}; }
 
 // Upper bound of |q_a - q_b| over the segment.
 double reach_of_offset(const PairSegment& segment) {
-    const auto apart = [&](std::size_t i) { return (segment.a.poses[i].position - segment.b.poses[i].position).norm(); };
+    const auto apart = [&](std::size_t i) { return (segment.a->poses[i].position - segment.b->poses[i].position).norm(); };
     return std::max(apart(0), apart(2)) * rounded_up;
 }
 
 // Of one segment, beside its chord.
 Rest rest_of_segment(const PairSegment& segment, const RelativePose& start, const RelativePose& end) {
     const RelativePose middle = relative_pose(segment, 1);
-    const double wa = segment.a.speed, wb = segment.b.speed, w = wa + wb;
-    const double travel = (segment.a.path.position_step - segment.b.path.position_step).norm();
-    const double third_turn = w * w * w * segment.a.base_norm;
+    const double wa = segment.a->speed, wb = segment.b->speed, w = wa + wb;
+    const double travel = (segment.a->path.position_step - segment.b->path.position_step).norm();
+    const double third_turn = w * w * w * segment.a->base_norm;
     const double third_shift = wb * wb * (wb * reach_of_offset(segment) + 3 * travel);
-    return {0.5 * (2 * middle.rotation - start.rotation - end.rotation).norm() + segment.b.base_norm * third_turn / 124,
-            0.5 * (2 * middle.offset - start.offset - end.offset).norm() + segment.b.base_norm * third_shift / 124};
+    return {0.5 * (2 * middle.rotation - start.rotation - end.rotation).norm() + segment.b->base_norm * third_turn / 124,
+            0.5 * (2 * middle.offset - start.offset - end.offset).norm() + segment.b->base_norm * third_shift / 124};
 }
 
 double pose_rounding(const PairSegment& segment, double radius_a, double radius_b) {
-    const kinematics::PathSegment &a = segment.a.path, &b = segment.b.path;
-    const double norms = segment.a.base_norm * segment.b.base_norm;
+    const kinematics::PathSegment &a = segment.a->path, &b = segment.b->path;
+    const double norms = segment.a->base_norm * segment.b->base_norm;
     const double positions = a.position_t0.norm() + a.position_step.norm() + b.position_t0.norm() + b.position_step.norm();
     const double size = 2 * radius_a + 2 * radius_b + reach_of_offset(segment);
-    return 8 * norms * ((segment.a.rounding + segment.b.rounding + 64 * unit_roundoff) * size + 8 * unit_roundoff * positions);
+    return 8 * norms * ((segment.a->rounding + segment.b->rounding + 64 * unit_roundoff) * size + 8 * unit_roundoff * positions);
 }
 
 void set_node(SpanGroup& group, int j, const RelativePose& pose, SegmentEnd place) {
@@ -126,10 +126,9 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, double ra
     FETTLE_ASSERT(!segments.empty(), "spans of no time");
     const Chain chain(segments);
     const auto total = static_cast<int>(segments.size());
-    for (const Rest& rest : chain.rests) mean_rest_ += (rest.shift + radius_a * rest.turn) / total;
     double norm = 1;
     for (const PairSegment& segment : segments) {
-        norm = std::max(norm, segment.b.base_norm);
+        norm = std::max(norm, segment.b->base_norm);
         slack_ = std::max(slack_, pose_rounding(segment, radius_a, radius_b));
     }
     slack_ = (slack_ + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
@@ -220,6 +219,32 @@ SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane
         }
         return Block(low - high);
     });
+}
+
+bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
+    // Rotations leave their chords alike in both frames; offsets do not.
+    const auto rest_of_offset = [](const PairSegment& segment, const BodySegment& frame) {
+        const auto offset = [&](std::size_t i) {
+            return Vector3(frame.poses[i].rotation.transpose() * (segment.a->poses[i].position - segment.b->poses[i].position));
+        };
+        return 0.5 * (2 * offset(1) - offset(0) - offset(2)).norm();
+    };
+    const auto rest_of_rotation = [](const PairSegment& segment) {
+        const auto rotation = [&](std::size_t i) {
+            return Matrix3(segment.b->poses[i].rotation.transpose() * segment.a->poses[i].rotation);
+        };
+        return 0.5 * (2 * rotation(1) - rotation(0) - rotation(2)).norm();
+    };
+    double as_frame_a = 0, as_frame_b = 0;
+    for (const PairSegment& segment : segments) {
+        as_frame_a += rest_of_offset(segment, *segment.a);
+        as_frame_b += rest_of_offset(segment, *segment.b);
+        if (radius_a == radius_b) continue;
+        const double turn = rest_of_rotation(segment);
+        as_frame_a += radius_b * turn;
+        as_frame_b += radius_a * turn;
+    }
+    return as_frame_a < as_frame_b;
 }
 
 std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments) {

@@ -81,9 +81,6 @@ public:
     /// `deviation_scale`: of the rests, 1 but in tests that show that a bound without them is found out.
     RelativeSpans(const std::vector<PairSegment>& segments, double radius_a, double radius_b, double deviation_scale = 1);
 
-    /// How far bodies leave the chords of their segments, on average [m]: tells which of the two is the better frame.
-    double mean_rest() const { return mean_rest_; }
-
     const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }
     /// The group that holds all segments.
     int root() const { return static_cast<int>(groups_.size()) - 1; }
@@ -100,8 +97,12 @@ private:
                       const AtNodes& at_nodes) const;
 
     std::vector<SpanGroup> groups_;  // level by level
-    double slack_ = 0, shrink_ = 1, mean_rest_ = 0;
+    double slack_ = 0, shrink_ = 1;
 };
+
+/// Do points of b leave the chords of their segments by less as seen from a than points of a as seen from b? Then bounds are better with a
+/// as the frame, of exchanged(segments).
+bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b);
 
 /// The same pair with the bodies in the other order.
 std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments);

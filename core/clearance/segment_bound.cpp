@@ -47,15 +47,13 @@ BodySegment body_segment(const kinematics::PathSegment& path) {
     BodySegment body;
     body.path = path;
     const Vector3& w = path.rotation_vector_step;
-    body.sweep = cross_matrix(w) * path.base;
-    body.sweep_columns = body.sweep.colwise().norm();
     body.speed = w.norm() * rounded_up;
     body.twist = path.rotation_vector_t0.cross(w).norm() * rounded_up + 8 * unit_roundoff * path.rotation_vector_t0.norm() * body.speed;
     // |B|^2 is the largest eigenvalue of B^T B, at most 1 + |B^T B - I|.
     const double excess = (path.base.transpose() * path.base - Matrix3::Identity()).norm();
     body.base_norm = std::sqrt(1 + excess) * rounded_up;
     body.rounding = (160 + 48 * (path.rotation_vector_t0.norm() + body.speed)) * unit_roundoff;
-    body.poses[0] = kinematics::pose_at(path, 0);
+    body.poses[0] = path.rotation_vector_t0.isZero(0) ? kinematics::Pose{path.base, path.position_t0} : kinematics::pose_at(path, 0);
     const bool still = body.speed == 0 && path.position_step == Vector3::Zero();
     body.poses[1] = still ? body.poses[0] : kinematics::pose_at(path, 0.5);
     body.poses[2] = still ? body.poses[0] : kinematics::pose_at(path, 1);
@@ -64,18 +62,21 @@ BodySegment body_segment(const kinematics::PathSegment& path) {
 
 PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radius_a, double radius_b) {
     PairSegment pair;
-    pair.a = a;
-    pair.b = b;
-    const double ra = 2 * radius_a * pair.a.base_norm, rb = 2 * radius_b * pair.b.base_norm;
+    pair.a = {std::shared_ptr<const BodySegment>{}, &a};  // owns nothing, counts nothing
+    pair.b = {std::shared_ptr<const BodySegment>{}, &b};
+    const double ra = 2 * radius_a * a.base_norm, rb = 2 * radius_b * b.base_norm;
     const double p = a.path.position_t0.norm() + a.path.position_step.norm() + b.path.position_t0.norm() + b.path.position_step.norm();
-    pair.slack =
-        ((pair.a.rounding + 48 * unit_roundoff) * ra + (pair.b.rounding + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) * rounded_up +
-        std::numeric_limits<double>::min();
+    pair.slack = ((a.rounding + 48 * unit_roundoff) * ra + (b.rounding + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) * rounded_up +
+                 std::numeric_limits<double>::min();
     return pair;
 }
 
 PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b) {
-    return pair_segment(body_segment(a), body_segment(b), radius_a, radius_b);
+    const auto own_a = std::make_shared<const BodySegment>(body_segment(a)), own_b = std::make_shared<const BodySegment>(body_segment(b));
+    PairSegment pair = pair_segment(*own_a, *own_b, radius_a, radius_b);
+    pair.a = own_a;
+    pair.b = own_b;
+    return pair;
 }
 
 Instant instant_at(const PairSegment& segment, double s) {
@@ -83,13 +84,14 @@ Instant instant_at(const PairSegment& segment, double s) {
         if (s == 0 || s == 0.5 || s == 1) return body.poses[static_cast<std::size_t>(2 * s)];
         return kinematics::pose_at(body.path, s);
     };
-    const kinematics::Pose a = pose(segment.a), b = pose(segment.b);
+    const kinematics::Pose a = pose(*segment.a), b = pose(*segment.b);
     return {s, a.rotation, b.rotation, a.position - b.position};
 }
 
 Reach corners_reach(const BodySegment& body, const Matrix3& corners) {
     const double radius = std::sqrt(corners.colwise().squaredNorm().maxCoeff()) * rounded_up;
-    const double swept = std::sqrt((body.sweep * corners).colwise().squaredNorm().maxCoeff());
+    const Matrix3 sweep = cross_matrix(body.path.rotation_vector_step) * body.path.base;  // |w x base X| = |sweep X|
+    const double swept = std::sqrt((sweep * corners).colwise().squaredNorm().maxCoeff());
     return {radius, (swept + 32 * unit_roundoff * body.speed * body.base_norm * radius) * rounded_up};
 }
 
@@ -128,8 +130,8 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
 SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach,
                            double deviation_scale) {
     const auto& [a, b] = reach;
-    const double rest_a = std::max(third_derivative(segment.a, plane.n0, a), third_derivative(segment.a, plane.n1, a));
-    const double rest_b = std::max(third_derivative(segment.b, plane.n0, b), third_derivative(segment.b, plane.n1, b));
+    const double rest_a = std::max(third_derivative(*segment.a, plane.n0, a), third_derivative(*segment.a, plane.n1, a));
+    const double rest_b = std::max(third_derivative(*segment.b, plane.n0, b), third_derivative(*segment.b, plane.n1, b));
     const double rest = deviation_scale * h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;
     SegmentBound bound;
     bound.at_ends = least_of(c[0], c[3]);

@@ -39,6 +39,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "fettle/core/clearance/piece_tree.hpp"
 #include "fettle/core/kinematics/path.hpp"
@@ -48,19 +49,17 @@ namespace fettle::core::clearance {
 /// A body on one path segment, with what its bounds need.
 struct BodySegment {
     kinematics::PathSegment path;
-    std::array<kinematics::Pose, 3> poses;    ///< at s = 0, 1/2, 1
-    Matrix3 sweep = Matrix3::Zero();          ///< [w] base: |w x base X| = |sweep X|
-    Vector3 sweep_columns = Vector3::Zero();  ///< norms of its columns
-    double speed = 0;                         ///< |w|, rounded up
-    double twist = 0;                         ///< k = |theta0 x w|, rounded up
-    double base_norm = 1;                     ///< >= the norm of the stored base, which is a rotation up to rounding only
-    double rounding = 0;                      ///< how far a computed rotation may be off, by norm: see the top of the file
+    std::array<kinematics::Pose, 3> poses;  ///< at s = 0, 1/2, 1
+    double speed = 0;                       ///< |w|, rounded up
+    double twist = 0;                       ///< k = |theta0 x w|, rounded up
+    double base_norm = 1;                   ///< >= the norm of the stored base, which is a rotation up to rounding only
+    double rounding = 0;                    ///< how far a computed rotation may be off, by norm: see the top of the file
 };
 
 /// A pair of bodies on one path segment.
 struct PairSegment {
     int step = -1, segment = 0;  ///< -1: the start pose, held
-    BodySegment a, b;
+    std::shared_ptr<const BodySegment> a, b;
     double slack = 0;  ///< [m] see the top of the file
 };
 
@@ -72,7 +71,9 @@ struct Instant {
 };
 
 BodySegment body_segment(const kinematics::PathSegment& path);
+/// Refers to both bodies' segments, which must outlive it: a body's is shared by all its pairs.
 PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radius_a, double radius_b);
+/// Keeps what it is made of.
 PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b);
 Instant instant_at(const PairSegment& segment, double s);
 

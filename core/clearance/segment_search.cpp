@@ -11,7 +11,7 @@ namespace {
 
 constexpr int max_halvings = 48;  // so that every parameter is a double exactly
 
-bool is_still(const PairSegment& s) { return s.a.speed == 0 && s.b.speed == 0 && s.a.path.position_step == s.b.path.position_step; }
+bool is_still(const PairSegment& s) { return s.a->speed == 0 && s.b->speed == 0 && s.a->path.position_step == s.b->path.position_step; }
 
 template <class Interval>
 bool can_halve(const Interval& interval) {
@@ -126,7 +126,7 @@ SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0
     const Matrix3 &x = corners_a(entry.a).x, &y = corners_b(entry.b).x;
     const MovingPlane plane = moving_plane(instants_[interval.start], instants_[interval.middle], instants_[interval.end], n0, n1);
     return segment_bound(segment, length(interval), plane, corner_coefficients(plane, x, y),
-                         {corners_reach(segment.a, x), corners_reach(segment.b, y)}, front_.options.deviation_scale);
+                         {corners_reach(*segment.a, x), corners_reach(*segment.b, y)}, front_.options.deviation_scale);
 }
 
 // The entry's elements with the closest points' directions at the interval's ends.

@@ -21,11 +21,11 @@ const Corners& corners(const PieceTree& tree, const Piece& piece) { return tree.
 }  // namespace
 
 SpanSearch::SpanSearch(SearchFront& front, SegmentSearch& segments)
-    : front_(front), segments_(segments), spans_(front.segments, front.a.radius(), front.b.radius(), front.options.deviation_scale) {
-    RelativeSpans other(exchanged(front.segments), front.b.radius(), front.a.radius(), front.options.deviation_scale);
-    exchanged_ = other.mean_rest() < spans_.mean_rest();
-    if (exchanged_) spans_ = std::move(other);
-}
+    : front_(front),
+      segments_(segments),
+      exchanged_(is_better_frame_a(front.segments, front.a.radius(), front.b.radius())),
+      spans_(exchanged_ ? exchanged(front.segments) : front.segments, (exchanged_ ? front.b : front.a).radius(),
+             (exchanged_ ? front.a : front.b).radius(), front.options.deviation_scale) {}
 
 void SpanSearch::try_root() { try_pieces(whole_group(spans_.root(), 0, 0, -infinity)); }
 
@@ -140,7 +140,7 @@ double SpanSearch::halve_span(const Entry& entry, int span) {
 void SpanSearch::measure_at(Entry& entry, int node) {
     const SegmentEnd& place = spans_.group(entry.group).node[static_cast<std::size_t>(node)];
     const PairSegment& segment = front_.segments[static_cast<std::size_t>(place.segment)];
-    const Matrix3& frame = (exchanged_ ? segment.a : segment.b).poses[place.at_end ? 2 : 0].rotation;
+    const Matrix3& frame = (exchanged_ ? segment.a : segment.b)->poses[place.at_end ? 2 : 0].rotation;
     const Separation found = segments_.measure_at(place, entry.a, entry.b);
     entry.nearest = node;
     entry.open_nodes &= ~(1U << node);

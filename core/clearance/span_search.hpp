@@ -48,8 +48,8 @@ private:
 
     SearchFront& front_;
     SegmentSearch& segments_;
+    bool exchanged_;  // body a is the frame of the spans, instead of b
     RelativeSpans spans_;
-    bool exchanged_ = false;  // body a is the frame of the spans, instead of b
     EntryPool<Entry> entries_;
 };
 

@@ -27,8 +27,8 @@ double distance_rate(const PairSegment& segment, const Corners& corners_a, const
     const ElementPairDistance pair = placed_distance(at, corners_a, corners_b);
     if (!(pair.distance > 0)) return 0;
     const Vector3 arm_a = pair.point_a - at.offset, arm_b = pair.point_b;
-    const Vector3 velocity = angular_rate(segment.a.path, s).cross(arm_a) - angular_rate(segment.b.path, s).cross(arm_b) +
-                             (segment.a.path.position_step - segment.b.path.position_step);
+    const Vector3 velocity = angular_rate(segment.a->path, s).cross(arm_a) - angular_rate(segment.b->path, s).cross(arm_b) +
+                             (segment.a->path.position_step - segment.b->path.position_step);
     return velocity.dot(pair.difference) / pair.distance;
 }
 

@@ -162,8 +162,7 @@ void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, cons
         if (!sum.touched[i]) continue;
         to_tangent[i].bottomRightCorner<3, 3>() = kinematics::left_jacobian(rotation_vectors[i]);
         hessian.diagonal[i] += to_tangent[i].transpose() * sum.diagonal[i] * to_tangent[i];
-        hessian.diagonal[i].bottomRightCorner<3, 3>() +=
-            chart_curvature(sum.arms[i], kinematics::rotation_derivatives(rotation_vectors[i]));
+        hessian.diagonal[i].bottomRightCorner<3, 3>() += kinematics::chart_curvature(sum.arms[i], rotation_vectors[i]);
     }
     for (kinematics::OffDiagonalBlock& b : sum.blocks)
         b.block = to_tangent[static_cast<std::size_t>(b.a)].transpose() * b.block * to_tangent[static_cast<std::size_t>(b.b)];

@@ -30,11 +30,12 @@ Matrix6 positive_part(const Matrix6& h) {
     return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-// (dq, dtheta) -> (dq, phi).
-Matrix6 chart_to_tangent(const Vector3& theta) {
-    Matrix6 t = Matrix6::Identity();
-    t.bottomRightCorner<3, 3>() = kinematics::left_jacobian(theta);
-    return t;
+// h from (dq, phi) of the rows' and of the columns' body to (dq, dtheta): phi = J dtheta.
+void pull_back(const Matrix3& j_rows, const Matrix3& j_columns, Matrix6& h) {
+    const Eigen::Matrix<double, 6, 3> columns = h.rightCols<3>().lazyProduct(j_columns);
+    h.rightCols<3>() = columns;
+    const Eigen::Matrix<double, 3, 6> rows = j_rows.transpose().lazyProduct(h.bottomRows<3>());
+    h.bottomRows<3>() = rows;
 }
 
 TermDerivatives sum_of_terms(const DerivativesAt& at) {
@@ -76,25 +77,36 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     out.gradient.resize(n);
     if (kind != contact::HessianKind::none) out.hessian.diagonal.resize(n);
     out.force_magnitude.resize(n);
-    std::vector<Matrix6> to_tangent(n);
+    std::vector<Matrix3> jacobian(n);
     base::parallel_for(static_cast<int>(n), bodies_a_piece, [&](int i) {
         const Vector3& theta = points[i].rotation_vector;
-        to_tangent[i] = chart_to_tangent(theta);
+        jacobian[i] = kinematics::left_jacobian(theta);
         out.force_magnitude[i] = d.coupling[i].force.norm() + d.own_magnitude[i];
         const kinematics::PoseGradient gradient{d.coupling[i].force + d.own[i].force, d.coupling[i].arm + d.own[i].arm};
-        out.gradient[i] = to_tangent[i].transpose() * tangent_gradient(gradient);
-        out.gradient[i].tail<3>() += d.chart_gradient[i];
+        out.gradient[i] = tangent_gradient(gradient);
+        const Vector3 turning = jacobian[i].transpose() * out.gradient[i].tail<3>();
+        out.gradient[i].tail<3>() = turning + d.chart_gradient[i];
         if (kind == contact::HessianKind::none) return;
-        Matrix6 own = to_tangent[i].transpose() * d.own_hessian[i] * to_tangent[i];
-        own.bottomRightCorner<3, 3>() += chart_curvature(gradient.arm, kinematics::rotation_derivatives(theta));
-        if (kind == contact::HessianKind::projected) own = positive_part(own);
-        out.hessian.diagonal[i] = own + to_tangent[i].transpose() * d.coupling_hessian.diagonal[i] * to_tangent[i];
+        const Matrix3 curvature = kinematics::chart_curvature(gradient.arm, theta);
+        Matrix6& sum = out.hessian.diagonal[i];
+        if (kind == contact::HessianKind::projected) {
+            Matrix6 own = d.own_hessian[i];
+            pull_back(jacobian[i], jacobian[i], own);
+            own.bottomRightCorner<3, 3>() += curvature;
+            sum = d.coupling_hessian.diagonal[i];
+            pull_back(jacobian[i], jacobian[i], sum);
+            sum += positive_part(own);
+        } else {
+            sum = d.own_hessian[i] + d.coupling_hessian.diagonal[i];
+            pull_back(jacobian[i], jacobian[i], sum);
+            sum.bottomRightCorner<3, 3>() += curvature;
+        }
     });
     if (kind == contact::HessianKind::none) return out;
     out.hessian.off_diagonal = std::move(d.coupling_hessian.off_diagonal);
     base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {
         kinematics::OffDiagonalBlock& b = out.hessian.off_diagonal[k];
-        b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
+        pull_back(jacobian[b.a], jacobian[b.b], b.block);
     });
     return out;
 }

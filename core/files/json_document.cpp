@@ -208,7 +208,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
 
 void JsonNode::allow_keys(const std::vector<std::string_view>& known) const {
     for (const auto& [key, node] : members()) {
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        if (key.starts_with('#') || std::find(known.begin(), known.end(), key) != known.end()) continue;
         node.fail(ErrorCode::unknown_key, "unknown key `" + key + "`; " + did_you_mean(key, known, '`'));
     }
 }

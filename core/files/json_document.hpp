@@ -64,7 +64,8 @@ public:
     std::vector<JsonNode> elements() const;                         ///< of an array; wrong_type otherwise; empty if absent
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
 
-    /// unknown_key for every member that is not listed, with the nearest one that is (or all of them if none is near).
+    /// unknown_key for every member that is not listed, with the nearest one that is (or all of them if none is near). Keys that start with
+    /// `#` are comments.
     void allow_keys(const std::vector<std::string_view>& known) const;
     /// As allow_keys, but warns, and passes over keys that start with `#` (comments in the paper's format).
     void warn_of_other_keys(const std::vector<std::string_view>& known) const;

@@ -75,6 +75,7 @@ ValueCoefficients value_coefficients(double z) {
 
 Coefficients coefficients(double z) {
     const auto [cosine, a, b] = value_coefficients(z);
+    if (z == 0) return {1, 1, 0.5, g_series[0], h_series[0], b_g_series[0], b_h_series[0]};
     if (z <= derivative_series_limit) {
         return {cosine,
                 a,
@@ -164,6 +165,20 @@ RotationDerivatives rotation_derivatives(const Vector3& theta) {
         }
     }
     return d;
+}
+
+// <s, [v]> = turn.v, <s, e_i u^T + u e_i^T> = (both u)_i.
+Matrix3 rotation_curvature(const Matrix3& s, const Vector3& theta) {
+    const Coefficients k = coefficients(theta.squaredNorm());
+    const Matrix3 both = s + s.transpose();
+    const Vector3 turn(s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1)), along = both * theta;
+    const double trace = s.trace(), turned = turn.dot(theta), stretched = 0.5 * theta.dot(along);
+    const double radial = -k.a * trace + k.a_g * turned + k.b_g * stretched;
+    const double radial_twice = -k.a_g * trace + k.a_h * turned + k.b_h * stretched;
+    const Vector3 mixed = 0.5 * radial_twice * theta + k.a_g * turn + k.b_g * along;
+    Matrix3 c = k.b * both + theta * mixed.transpose() + mixed * theta.transpose();
+    c.diagonal().array() += radial;
+    return c;
 }
 
 Matrix3 left_jacobian(const Vector3& theta) {

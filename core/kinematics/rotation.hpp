@@ -25,6 +25,9 @@ struct RotationDerivatives {
 };
 RotationDerivatives rotation_derivatives(const Vector3& theta);
 
+/// C with  C_ab = <s, d2R/dtheta_a dtheta_b>  (sum over the entries): without the second derivatives themselves, at a tenth of their cost.
+Matrix3 rotation_curvature(const Matrix3& s, const Vector3& theta);
+
 /// J with  dR(theta) = [J dtheta] R(theta)   (left Jacobian of SO(3)); identity at 0, singular at |theta| = 2 pi k, k >= 1.
 Matrix3 left_jacobian(const Vector3& theta);
 

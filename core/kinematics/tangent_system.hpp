@@ -40,16 +40,7 @@ inline Vector6 tangent_gradient(const PoseGradient& g) {
 inline Matrix3 tangent_curvature(const Matrix3& arm) { return 0.5 * (arm + arm.transpose()) - arm.trace() * Matrix3::Identity(); }
 
 /// Curvature of the rotation in the chart: entry (a, b) = <S, d2R(theta)/dtheta_a dtheta_b R(theta)^T>.
-inline Matrix3 chart_curvature(const Matrix3& arm, const RotationDerivatives& r) {
-    const Matrix3 s = arm * r.value;
-    Matrix3 c;
-    const auto entry = [&](int k) { return s.cwiseProduct(r.hessian[k]).sum(); };
-    c << entry(0), entry(1), entry(2), 0, entry(3), entry(4), 0, 0, entry(5);
-    c(1, 0) = c(0, 1);
-    c(2, 0) = c(0, 2);
-    c(2, 1) = c(1, 2);
-    return c;
-}
+inline Matrix3 chart_curvature(const Matrix3& arm, const Vector3& theta) { return rotation_curvature(arm * rotation(theta), theta); }
 
 /// Off-diagonal 6x6 block of two bodies, a < b: rows of a, columns of b.
 struct OffDiagonalBlock {

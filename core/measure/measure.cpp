@@ -216,6 +216,23 @@ void add_placement_gradient(const VectorFunction& f, double weight, const std::v
     }
 }
 
+// d(f_z . dz) = (f'' dz + f_z x phi) . (psi x z) + (f'' dz) . dq.
+Vector12 pose_gradient_of_change(const Measure& m, const VectorFunction& f, const Frames& frames, const Vector12& motion) {
+    std::array<Vector3, 3> changes;
+    for (int i = 0; i < f.count; ++i)
+        changes[static_cast<std::size_t>(i)] = change_of(m, f.vectors[static_cast<std::size_t>(i)], frames, motion);
+    Vector12 out = Vector12::Zero();
+    for (int i = 0; i < f.count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const FrameVector& v = f.vectors[k];
+        const int at = is_of_b(v, m) ? 6 : 0;
+        const Vector3 force = times_hessian(f, i, changes), bar = force + f.gradient[k].cross(motion.segment<3>(at + 3));
+        if (v.is_point()) out.segment<3>(at) += force;
+        out.segment<3>(at + 3) += vector_of(v, frames).cross(bar);
+    }
+    return out;
+}
+
 // With z = R X: d(f_z . dz)/dX = R^T (f'' dz + f_z x phi), for dz holds phi x z.
 void add_placement_gradient_of_change(const Measure& m, const VectorFunction& f, double weight, const PlacedAndTurned& at,
                                       const Vector12& motion, std::vector<FrameGradient>& gradients) {

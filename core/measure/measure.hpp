@@ -103,6 +103,11 @@ struct PlacedAndTurned {
     const std::vector<Matrix3>& rotations;  ///< per frame, as above
 };
 
+/// d(dm . v)/d(poses) along (q, phi) of a, then of b, the motion v held.
+/// @param motion  v: (dq, phi) of a, then of b.
+Vector12 pose_gradient_of_change(const Measure& measure, const VectorFunction& f, const std::vector<PlacedFrame>& frames,
+                                 const Vector12& motion);
+
 /// Adds weight d(dm . v)/d(placement), where dm . v is the measure's change along a motion (dq, phi) of both bodies.
 /// @param motion  of a, then of b.
 void add_placement_gradient_of_change(const Measure& measure, const VectorFunction& f, double weight, const PlacedAndTurned& at,

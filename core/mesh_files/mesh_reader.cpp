@@ -126,13 +126,29 @@ void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::
     }
 }
 
-}  // namespace
+/// The vertices and polygons of item `i`, as a file of their own.
+RawMesh item_of(const RawMesh& raw, std::size_t i) {
+    const RawItem& item = raw.items[i];
+    const bool last = i + 1 == raw.items.size();
+    const std::size_t vertices_end = last ? raw.vertices.size() : raw.items[i + 1].first_vertex,
+                      polygons_end = last ? raw.polygon_ends.size() : raw.items[i + 1].first_polygon;
+    RawMesh out;
+    out.metres_per_unit = raw.metres_per_unit;
+    out.groups = raw.groups;
+    const auto from = [](const auto& list, std::size_t at) { return list.begin() + static_cast<std::ptrdiff_t>(at); };
+    out.vertices.assign(from(raw.vertices, item.first_vertex), from(raw.vertices, vertices_end));
+    std::size_t corner = item.first_polygon == 0 ? 0 : static_cast<std::size_t>(raw.polygon_ends[item.first_polygon - 1]);
+    for (std::size_t p = item.first_polygon; p < polygons_end; ++p) {
+        for (; corner < static_cast<std::size_t>(raw.polygon_ends[p]); ++corner)
+            out.corners.push_back(raw.corners[corner] - static_cast<int>(item.first_vertex));
+        out.polygon_ends.push_back(static_cast<int>(out.corners.size()));
+        out.polygon_group.push_back(raw.polygon_group[p]);
+    }
+    return out;
+}
 
-Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
-    FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
-    Result<RawMesh> found = read_raw(path);
-    if (!found) return found.errors();
-    RawMesh& raw = *found;
+/// @param name  of the mesh.
+Result<Mesh> mesh_of(RawMesh& raw, const std::string& name, const std::string& path, const MeshReadOptions& options) {
     if (raw.vertices.empty()) return Error{ErrorCode::mesh_invalid, path, "has no vertices, so no triangles; is it the right file?"};
     // Scaled before anything is compared: rounding can make equal what was not in the file.
     const double unit = raw.metres_per_unit > 0 ? raw.metres_per_unit : options.unit;
@@ -141,7 +157,6 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
     auto faces = grouped_triangles(raw, options.weld, path);
     if (!faces) return faces.errors();
 
-    const std::string name = std::filesystem::path(path).filename().string();
     Matrix3X vertices(3, static_cast<Eigen::Index>(raw.vertices.size()));
     for (std::size_t i = 0; i < raw.vertices.size(); ++i) vertices.col(static_cast<Eigen::Index>(i)) = raw.vertices[i];
     Mesh mesh;
@@ -155,6 +170,35 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
     }
     name_shells(mesh, faces->group, raw.groups);
     return mesh;
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
+    FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
+    Result<RawMesh> raw = read_raw(path);
+    if (!raw) return raw.errors();
+    return mesh_of(*raw, std::filesystem::path(path).filename().string(), path, options);
+}
+
+Result<std::vector<Mesh>> read_mesh_parts(const std::string& path, const MeshReadOptions& options) {
+    FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
+    Result<RawMesh> raw = read_raw(path);
+    if (!raw) return raw.errors();
+    std::vector<Mesh> parts;
+    Errors errors;
+    const auto add = [&](RawMesh& part, const std::string& name) {
+        Result<Mesh> mesh = mesh_of(part, name, path, options);
+        errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
+        if (mesh) parts.push_back(std::move(*mesh));
+    };
+    for (std::size_t i = 0; i < raw->items.size(); ++i) {
+        RawMesh item = item_of(*raw, i);
+        add(item, raw->items[i].name);
+    }
+    if (raw->items.empty()) add(*raw, std::filesystem::path(path).stem().string());
+    if (!errors.empty()) return errors;
+    return parts;
 }
 
 }  // namespace fettle::core::mesh_files

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/geometry/mesh.hpp"
@@ -37,5 +38,9 @@ struct MeshReadOptions {
 ///              crosses itself).
 /// Contract: options.unit > 0.
 Result<geometry::Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+/// The parts of a file: of a 3MF one mesh for each item that its build places, where it places it, named after its object (two items of one
+/// object have one name); of every other format the one mesh, named after the file without its extension. Errors: as read_mesh.
+Result<std::vector<geometry::Mesh>> read_mesh_parts(const std::string& path, const MeshReadOptions& options = {});
 
 }  // namespace fettle::core::mesh_files

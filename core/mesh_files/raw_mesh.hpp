@@ -11,6 +11,12 @@
 
 namespace fettle::core::mesh_files {
 
+/// What the build of a 3MF places: the vertices and polygons from these up to the next item's.
+struct RawItem {
+    std::string name;  ///< of its object
+    std::size_t first_vertex = 0, first_polygon = 0;
+};
+
 struct RawMesh {
     std::vector<Vector3> vertices;      ///< in the file's unit; may be NaN or infinite
     std::vector<int> corners;           ///< vertex indices of all polygons, one after the other, 0-based
@@ -18,6 +24,7 @@ struct RawMesh {
     std::vector<int> polygon_group;     ///< per polygon: index into `groups`, -1 for none
     std::vector<std::string> groups;    ///< objects of the file, as it names them
     std::vector<geometry::Edge> edges;  ///< polylines
+    std::vector<RawItem> items;         ///< of 3MF; else empty: the file is one thing
     double metres_per_unit = 0;         ///< 0: the file does not say
 };
 

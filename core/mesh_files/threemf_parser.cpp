@@ -62,7 +62,12 @@ public:
             parts_to_read_.pop_back();
             if (parts_.insert(part).second) read_part(part, part == *root);
         }
-        for (const Component& item : build_) place(item, Placement{}, 0);
+        for (const Component& item : build_) {
+            const auto object = objects_.find(item.object);
+            mesh_.items.push_back({object == objects_.end() ? "" : object->second.name, mesh_.vertices.size(), mesh_.polygon_ends.size()});
+            place(item, Placement{}, 0);
+            if (mesh_.items.back().first_vertex == mesh_.vertices.size()) mesh_.items.pop_back();  // support, or nothing
+        }
         if (!errors_.empty()) return errors_;
         return std::move(mesh_);
     }

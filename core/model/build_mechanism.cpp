@@ -47,13 +47,16 @@ public:
     }
 
     Errors build() {
-        for (const scene::Joint& joint : scene_.mechanism.joints)
+        const scene::Mechanism& from = scene_.mechanism;
+        for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
             if (has_rows_of_its_own(joint.kind)) add_joint(joint);
-        for (const scene::Joint& joint : scene_.mechanism.joints)
+        });
+        for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
             if (!has_rows_of_its_own(joint.kind)) add_coupling(joint);
-        for (const scene::Spring& spring : scene_.mechanism.springs) add_spring(spring);
-        for (const scene::Motor& motor : scene_.mechanism.motors) add_motor(motor);
-        for (const scene::PointLoad& load : scene_.mechanism.loads) add_load(load);
+        });
+        for_each(from.springs, Origin::List::spring, [&](const scene::Spring& spring) { add_spring(spring); });
+        for_each(from.motors, Origin::List::motor, [&](const scene::Motor& motor) { add_motor(motor); });
+        for_each(from.loads, Origin::List::load, [&](const scene::PointLoad& load) { add_load(load); });
         std::sort(out_.not_colliding.begin(), out_.not_colliding.end());
         out_.not_colliding.erase(std::unique(out_.not_colliding.begin(), out_.not_colliding.end()), out_.not_colliding.end());
         return std::move(errors_);
@@ -65,6 +68,14 @@ private:
         int frame_a = 0, frame_b = 0;
         int a = measure::world, b = measure::world;
     };
+
+    template <class Part, class Add>
+    void for_each(const std::vector<Part>& list, Origin::List name, const Add& add) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            origin_ = {name, static_cast<int>(i)};
+            add(list[i]);
+        }
+    }
 
     void fail(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
 
@@ -117,6 +128,7 @@ private:
         align(frame_a, frame_b);
         out_.set.frames.push_back(frame_a);
         out_.set.frames.push_back(frame_b);
+        out_.ends.push_back(origin_);
         const int first = static_cast<int>(out_.set.frames.size()) - 2;
         return Ends{first, first + 1, *a, *b};
     }
@@ -146,6 +158,7 @@ private:
         Joint joint;
         joint.name = from.name;
         joint.kind = from.kind;
+        joint.origin = origin_;
         joint.a = ends->a;
         joint.b = ends->b;
         joint.frame_a = ends->frame_a;
@@ -194,13 +207,13 @@ private:
         const double start = value_as_written(measure);
         if (from.stiffness > 0) {
             const double rest = from.rest.value_or(start - from.preload / from.stiffness);
-            out_.terms.push_back({LawKind::spring, measure, from.stiffness, rest, 1, length, {}, name});
+            out_.terms.push_back({LawKind::spring, measure, from.stiffness, rest, 1, length, {}, name, origin_});
         }
-        if (from.damping > 0) out_.terms.push_back({LawKind::damper, measure, from.damping, 0, 1, length, {}, name});
-        if (from.friction > 0) out_.terms.push_back({LawKind::friction, measure, from.friction, 0, 1, length, {}, name});
+        if (from.damping > 0) out_.terms.push_back({LawKind::damper, measure, from.damping, 0, 1, length, {}, name, origin_});
+        if (from.friction > 0) out_.terms.push_back({LawKind::friction, measure, from.friction, 0, 1, length, {}, name, origin_});
         if (!from.limits) return;
-        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[0], 1, length, {}, name});
-        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[1], -1, length, {}, name});
+        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[0], 1, length, {}, name, origin_});
+        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[1], -1, length, {}, name, origin_});
     }
 
     // A joint by name, with a coordinate.
@@ -232,6 +245,7 @@ private:
         Joint joint;
         joint.name = from.name;
         joint.kind = from.kind;
+        joint.origin = origin_;
         out_.joints.push_back(joint);
         out_.rows.push_back({static_cast<int>(out_.joints.size()) - 1, parts, constant, {}, length});
     }
@@ -270,7 +284,7 @@ private:
         const int coordinate = joint->coordinate;
         const double length = turns(joint->kind) ? lever(joint->a, joint->b) : 1;
         if (from.kind == scene::MotorKind::effort) {
-            out_.terms.push_back({LawKind::force, coordinate, 1, 0, 1, length, from.curve, from.name});
+            out_.terms.push_back({LawKind::force, coordinate, 1, 0, 1, length, from.curve, from.name, origin_});
             return;
         }
         if (turns(joint->kind) && largest_stride(from.curve) > 0.9 * std::numbers::pi)
@@ -281,6 +295,7 @@ private:
         Joint motor = *joint;
         motor.name = from.name;
         motor.is_motor = true;
+        motor.origin = origin_;
         out_.joints.push_back(motor);
         out_.rows.push_back(
             {static_cast<int>(out_.joints.size()) - 1, {{coordinate, 1}}, value_as_written(coordinate), from.curve, length});
@@ -297,13 +312,14 @@ private:
         scene::Curve constant;
         constant.times = {0};
         constant.values = {from.force.norm()};
-        out_.terms.push_back({LawKind::force, along, 1, 0, 1, 1, constant, from.name});
+        out_.terms.push_back({LawKind::force, along, 1, 0, 1, 1, constant, from.name, origin_});
     }
 
     const scene::Scene& scene_;
     Model& model_;
     Mechanism& out_;
     double stop_stiffness_ = 0;
+    Origin origin_;  // of what is being added
     std::map<std::string, int> body_of_name_, joint_of_name_;
     Errors errors_;
 };

@@ -13,6 +13,13 @@
 
 namespace fettle::core::model {
 
+/// What of a scene's mechanism something was made from: a place in one of its lists. Derivatives go back by it (adjoint/model).
+struct Origin {
+    enum class List { joint, spring, motor, load };
+    List list = List::joint;
+    int index = -1;
+};
+
 enum class LawKind {
     spring,   ///< 1/2 c (m - reference)^2
     damper,   ///< the force -c dm/dt
@@ -31,6 +38,7 @@ struct MeasureTerm {
     double length = 1;   ///< [m] that one unit of the measure is worth: 1 of lengths, a lever of angles
     scene::Curve curve;  ///< force
     std::string name;    ///< of the joint, spring or motor
+    Origin origin;
 };
 
 struct Joint {
@@ -40,16 +48,27 @@ struct Joint {
     int frame_a = -1, frame_b = -1;              ///< none of gears and racks
     int coordinate = -1;                         ///< measure; -1: the joint has none
     bool is_motor = false;                       ///< a row of a motor's: what `name` is
+    Origin origin;
+};
+
+/// The start before bodies were put where their joints are met; empty where there are no joints.
+struct WrittenStart {
+    std::vector<kinematics::Pose> poses;
+    /// (v, omega) per body, of prescribed coordinates what their curves say; none in quasi-statics, or without rows.
+    std::vector<Vector6> velocities;
+    std::vector<bool> is_velocity_changed;  ///< per body: did its velocity have to change?
 };
 
 struct Mechanism {
     measure::MeasureSet set;
+    std::vector<Origin> ends;                ///< of frames 2 k, end a, and 2 k + 1, end b
     std::vector<constraint::Row> rows;       ///< independent; Row::owner is a place in `joints`
     std::vector<constraint::Row> dependent;  ///< what follows from `rows`: looked at after each step, not solved for
     std::vector<MeasureTerm> terms;
     std::vector<Joint> joints;                       ///< and the motors that drive coordinates
     std::vector<std::pair<int, int>> not_colliding;  ///< bodies that joints join, (a < b), sorted
     std::vector<double> angles_start;                ///< of the measures, at the start
+    WrittenStart written;
     bool empty() const { return rows.empty() && terms.empty() && joints.empty(); }
 };
 

@@ -24,19 +24,6 @@ std::vector<kinematics::Pose> start_poses(const Model& model) {
     return out;
 }
 
-AssemblyProblem assembly_problem(const Model& model) {
-    AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
-    out.targets.resize(static_cast<Eigen::Index>(out.rows.size()));
-    for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[static_cast<Eigen::Index>(i)] = target_at(out.rows[i], 0);
-    for (const Body& body : model.bodies) {
-        out.moments.push_back(body.moments);
-        std::array<int, 6> index{};
-        for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? out.count++ : -1;
-        out.index.push_back(index);
-    }
-    return out;
-}
-
 // Names of the joints of these rows, each once.
 std::string names_of(const Mechanism& mechanism, const std::vector<int>& rows) {
     std::set<std::string> names;
@@ -109,11 +96,6 @@ void move_bodies(const Assembly& found, Model& model) {
     }
 }
 
-double rate_at_start(const scene::Curve& curve, double h) {
-    const double step = 1e-6 * h;
-    return (curve_value(curve, step) - curve_value(curve, 0)) / step;
-}
-
 // What the motors' curves do at once is no start velocity of the bodies: it is the first step's.
 void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Model& model) {
     const std::vector<kinematics::Pose> poses = start_poses(model);
@@ -131,6 +113,8 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
                        (1e-6 * model.timestep);
         velocities.push_back(v);
     }
+    model.mechanism.written.velocities = velocities;
+    model.mechanism.written.is_velocity_changed.assign(model.bodies.size(), false);
     const std::vector<Vector6> agreed = compatible_velocities(problem, poses, found.dependent, rates, velocities);
     std::string moved;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -138,6 +122,7 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
         const Vector6 change = agreed[i] - velocities[i];
         const double speed = change.head<3>().norm() + change.tail<3>().norm() * body.radius;
         if (body.type != scene::BodyType::dynamic_body || speed == 0) continue;
+        model.mechanism.written.is_velocity_changed[i] = true;
         body.velocity_start << cross_matrix(agreed[i].tail<3>()) * body.pose_start.rotation, agreed[i].head<3>();
         if (speed > 1e-9 * model.diagonal) moved += (moved.empty() ? "`" : ", `") + body.name + "`";
     }
@@ -148,12 +133,31 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
 
 }  // namespace
 
+constraint::AssemblyProblem start_problem(const Model& model) {
+    AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
+    out.targets.resize(static_cast<Eigen::Index>(out.rows.size()));
+    for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[static_cast<Eigen::Index>(i)] = target_at(out.rows[i], 0);
+    for (const Body& body : model.bodies) {
+        out.moments.push_back(body.moments);
+        std::array<int, 6> index{};
+        for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? out.count++ : -1;
+        out.index.push_back(index);
+    }
+    return out;
+}
+
+double rate_at_start(const scene::Curve& curve, double timestep) {
+    const double step = 1e-6 * timestep;
+    return (curve_value(curve, step) - curve_value(curve, 0)) / step;
+}
+
 Errors settle_start(const scene::Scene& scene, Model& model) {
     Mechanism& mechanism = model.mechanism;
     const std::vector<kinematics::Pose> written = start_poses(model);
     mechanism.angles_start = constraint::angles_at(mechanism.set, written, {});
+    mechanism.written.poses = written;
     if (mechanism.rows.empty()) return {};
-    const AssemblyProblem problem = assembly_problem(model);
+    const AssemblyProblem problem = start_problem(model);
     const Assembly found = assemble(problem, written);
     if (!found.is_met) return describe_gaps(scene, model, problem, found);
     if (found.has_moved) move_bodies(found, model);

@@ -8,8 +8,6 @@
 namespace fettle::core::scene {
 namespace {
 
-double within(const Curve& curve, double time) { return curve.stop_time ? std::min(time, *curve.stop_time) : time; }
-
 // Distance as a share, of time as a share: thirds of even acceleration, even speed, even deceleration.
 double trapezoid_share(double s) {
     constexpr double ramp = 1.0 / 3, top_speed = 1 / (1 - ramp);
@@ -68,18 +66,20 @@ void add_stretch(const Curve& curve, double time, std::vector<double>& weights) 
 
 }  // namespace
 
+double curve_running_time(const Curve& curve, double time) { return curve.stop_time ? std::min(time, *curve.stop_time) : time; }
+
 std::vector<double> curve_weights(const Curve& curve, double time) {
     std::vector<double> weights(curve.values.size(), 0.0);
     if (curve.values.empty()) return weights;
     if (curve.kind == CurveKind::control_points)
-        add_spline(curve, within(curve, time), weights);
+        add_spline(curve, curve_running_time(curve, time), weights);
     else
-        add_stretch(curve, within(curve, time), weights);
+        add_stretch(curve, curve_running_time(curve, time), weights);
     return weights;
 }
 
 double curve_value(const Curve& curve, double time) {
-    double sum = curve.rate * within(curve, time);
+    double sum = curve.rate * curve_running_time(curve, time);
     const std::vector<double> weights = curve_weights(curve, time);
     for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * curve.values[k];
     return sum;

@@ -25,6 +25,9 @@ struct Curve {
 
 double curve_value(const Curve& curve, double time);
 
+/// du/d(rate) at `time` [s].
+double curve_running_time(const Curve& curve, double time);
+
 /// du/d(values[k]) at `time`: u is linear in its values.
 std::vector<double> curve_weights(const Curve& curve, double time);
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "fettle/core/scene/angles.hpp"
+#include "fettle/core/scene/joint_kind.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -147,11 +148,11 @@ private:
         Joint joint;
         joint.where = node.where();
         joint.name = read_name(node);
-        static const std::vector<std::string_view> kinds{"ball",  "revolute", "prismatic", "cylindrical", "planar",
-                                                         "fixed", "screw",    "gear",      "rack"};
-        const auto kind = node.require("type").choice(kinds);
+        std::vector<std::string_view> names;
+        for (const JointKindInfo& info : joint_kinds()) names.push_back(info.name);
+        const auto kind = node.require("type").choice(names);
         if (!kind) return;
-        joint.kind = static_cast<JointKind>(std::find(kinds.begin(), kinds.end(), *kind) - kinds.begin());
+        joint.kind = static_cast<JointKind>(std::find(names.begin(), names.end(), *kind) - names.begin());
         if (joint.kind == JointKind::gear || joint.kind == JointKind::rack)
             read_coupling(node, joint);
         else
@@ -160,18 +161,20 @@ private:
         out_.joints.push_back(std::move(joint));
     }
 
-    static bool has_coordinate(JointKind kind) {
-        return kind == JointKind::revolute || kind == JointKind::screw || kind == JointKind::prismatic || kind == JointKind::cylindrical;
+    static const JointKindInfo& info_of(JointKind kind) { return joint_kinds()[static_cast<std::size_t>(kind)]; }
+    static bool has_coordinate(JointKind kind) { return !info_of(kind).coordinate.empty(); }
+
+    static std::vector<std::string_view> keys_of(JointKind kind) {
+        std::vector<std::string_view> keys{"name", "type"};
+        keys.insert(keys.end(), info_of(kind).keys.begin(), info_of(kind).keys.end());
+        return has_coordinate(kind) ? with_forces(keys) : keys;
     }
 
     CoordinateUnit unit_of(JointKind kind) const { return {kind == JointKind::revolute || kind == JointKind::screw, unit_}; }
 
     void read_lower_pair(const JsonNode& node, Joint& joint) {
-        std::vector<std::string_view> keys{"name", "type", "a", "b", "point", "point_a", "point_b", "collide"};
         const bool has_axis = joint.kind != JointKind::ball && joint.kind != JointKind::fixed;
-        if (has_axis) keys.insert(keys.end(), {"axis", "axis_a", "axis_b"});
-        if (joint.kind == JointKind::screw) keys.push_back("pitch");
-        node.allow_keys(has_coordinate(joint.kind) ? with_forces(keys) : keys);
+        node.allow_keys(keys_of(joint.kind));
         read_ends(node, has_axis, joint.a, joint.b);
         if (!has_axis) joint.b.axis = pose_of(joint.b.body).rotation.transpose() * (pose_of(joint.a.body).rotation * joint.a.axis);
         if (joint.kind == JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
@@ -181,8 +184,7 @@ private:
 
     void read_coupling(const JsonNode& node, Joint& joint) {
         const bool gear = joint.kind == JointKind::gear;
-        node.allow_keys(gear ? std::vector<std::string_view>{"name", "type", "of", "ratio", "teeth"}
-                             : std::vector<std::string_view>{"name", "type", "of", "radius"});
+        node.allow_keys(keys_of(joint.kind));
         const std::vector<JsonNode> of = node.require("of").elements();
         if (of.size() == 2)
             for (std::size_t k = 0; k < 2; ++k) joint.of[k] = read_choice(of[k], joint_names_, "joint before this one");

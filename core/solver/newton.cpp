@@ -123,13 +123,30 @@ private:
         value_ = potential(at_);
     }
 
-    // A round that needed no step has met its own normal forces: the fixed point.
-    bool another_round() const {
+    // A round that needed no step has met its own normal forces: the fixed point. One that ends where an earlier one did would only be
+    // followed by what has followed that one: normal forces that go to and fro.
+    bool another_round() {
         if (result_.status != NewtonStatus::converged) return false;
         if (problem_.friction.pairs.empty() && at_.contacts.count == 0) return false;
-        const bool settled = result_.friction_rounds > 1 && result_.iterations == first_of_round_;
         const int rounds = model_.friction.rounds;
-        return rounds > 0 ? result_.friction_rounds < rounds : !settled && result_.friction_rounds < most_friction_rounds;
+        if (rounds > 0) return result_.friction_rounds < rounds;
+        const bool settled = result_.friction_rounds > 1 && result_.iterations == first_of_round_;
+        if (settled || result_.friction_rounds >= most_friction_rounds || has_been_here()) return false;
+        ends_of_rounds_.push_back(at_.points);
+        return true;
+    }
+
+    // To the tolerance.
+    bool has_been_here() const {
+        const double enough = velocity_tolerance() * model_.timestep;
+        return std::any_of(ends_of_rounds_.begin(), ends_of_rounds_.end(), [&](const std::vector<ChartPoint>& end) {
+            for (std::size_t i = 0; i < end.size(); ++i) {
+                Vector6 way;
+                way << at_.points[i].position - end[i].position, at_.points[i].rotation_vector - end[i].rotation_vector;
+                if (!(motion_of(model_.bodies[i], way) <= enough)) return false;
+            }
+            return true;
+        });
     }
 
     // A step is due unless this round has made one, or an earlier round has and this one starts where it ended.
@@ -384,6 +401,7 @@ private:
     Caution caution_;
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction
+    std::vector<std::vector<ChartPoint>> ends_of_rounds_;
     int projected_iterations_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
     int since_least_ = 0;

@@ -89,7 +89,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         if (options.outputs) out.outputs.push_back(std::move(result.outputs));
         state = std::move(result.state);
         out.trajectory.poses.push_back(state.history.poses);
-        if (options.on_step) options.on_step({t + 1, steps});
+        if (options.on_step) options.on_step({t + 1, steps, &out});
     }
     out.report.phase_seconds = workspace.clock.seconds();
     out.report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -23,8 +23,9 @@ enum class SimulationStatus {
 const char* to_string(SimulationStatus status);
 
 struct Progress {
-    int step = 0;   ///< steps done
-    int steps = 0;  ///< of how many
+    int step = 0;                               ///< steps done
+    int steps = 0;                              ///< of how many
+    const struct Simulation* so_far = nullptr;  ///< what there is by now: trajectory up to this step, last checkpoint
 };
 
 /// A simulation up to a step from which it goes on with the same bits.

@@ -99,9 +99,10 @@ Json relations_json(const description::Design& design, const optimisers::Rows& r
 std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console) {
     std::string text;
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
-        const auto& [name, bounds, tolerance, at] = design.relations[static_cast<size_t>(i)];
-        const bool met = description::violation(design.relations[static_cast<size_t>(i)], relations.values[i]) <= 0;
-        text += formatted("  %-40s is %.9g, required [%g, %g]: ", name.c_str(), relations.values[i] / bounds.unit,
+        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const description::Bounds& bounds = relation.bounds;
+        const bool met = description::violation(relation, relations.values[i]) <= 0;
+        text += formatted("  %-40s is %.9g, required [%g, %g]: ", relation.name.c_str(), relations.values[i] / bounds.unit,
                           bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
                 console.coloured(met ? "met" : "VIOLATED", met) + "\n";
     }

@@ -13,6 +13,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
@@ -27,6 +28,7 @@ using core::clearance::PairStatus;
 struct ClearanceArguments {
     SubjectOptions subject;
     PairOptions pairs;
+    std::vector<std::string> files;
     std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
     bool no_report = false;
@@ -134,9 +136,14 @@ bool is_finite(const core::stepper::Trajectory& trajectory) {
 }
 
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
-Errors write_proof(const std::string& path, const core::certificate::Certificate& certificate, const Subject& subject) {
+Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
         return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
+    if (!subject.files.empty()) {  // meshes: their files are what the proof is about
+        auto named = named_files(subject.files, path);
+        if (!named) return named.errors();
+        certificate.exports = std::move(*named);
+    }
     const Errors errors = core::certificate::write_certificate(path, certificate);
     if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
     return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
@@ -210,7 +217,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
         core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection, certify.margin_curve), certify);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
-    certificate.source = subject->source == SubjectSource::trajectory ? "" : options.subject.path;
+    certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     Errors errors;
     if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
@@ -234,7 +241,9 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
 }
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
-    app.option("FILE", options.subject.path, "Scene, design (at its values), or trajectory").required();
+    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, as they lie")
+        .required();
+    app.option("--unit", options.subject.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum,
                "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
     app.option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
@@ -274,9 +283,14 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
     add_options(app, *options);
     app.closing_words(
         quantities::process_table() +
-        "Example:  fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
+        "Example:  fettle clearance bracket.stl lid.stl --unit mm --minimum 0.3mm     exit code 1: closer than that\n"
+        "          fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
-    return {app, [options, &common](Console& console) { return run_clearance(*options, common, console); }};
+    return {app, [options, &common](Console& console) {
+                options->subject.path = options->files.front();
+                options->subject.more.assign(options->files.begin() + 1, options->files.end());
+                return run_clearance(*options, common, console);
+            }};
 }
 
 }  // namespace fettle::design::cli

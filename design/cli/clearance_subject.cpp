@@ -15,6 +15,7 @@
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/mesh_subject.hpp"
 
 namespace fettle::design::cli {
 
@@ -92,6 +93,35 @@ void simulate(int steps, Subject& subject, Console& console) {
         subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
 }
 
+std::vector<std::string> all_paths(const SubjectOptions& options) {
+    std::vector<std::string> paths{options.path};
+    paths.insert(paths.end(), options.more.begin(), options.more.end());
+    return paths;
+}
+
+// What goes with meshes, and with them alone.
+Errors check_inputs(const SubjectOptions& options, bool meshes) {
+    if (meshes && (options.motion || options.kinematic))
+        return {{ErrorCode::inconsistent, options.path, "meshes do not move; --poses FILE moves them, or write a scene"}};
+    if (meshes) return {};
+    if (!options.more.empty())
+        return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
+    if (!options.unit.empty()) return {{ErrorCode::inconsistent, "--unit", "is of meshes; this file says its own"}};
+    return {};
+}
+
+Result<LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common,
+                                  Subject& subject) {
+    Result<MeshSubject> meshes = load_meshes(paths, unit, common);
+    if (!meshes) return meshes.errors();
+    subject.files = std::move(meshes->files);
+    LoadedModel loaded;
+    loaded.kind = FileKind::mesh;
+    loaded.model = std::move(meshes->model);
+    loaded.warnings = std::move(meshes->warnings);
+    return loaded;
+}
+
 }  // namespace
 
 const char* to_string(SubjectSource source) {
@@ -111,11 +141,14 @@ const char* to_string(SubjectSource source) {
 }
 
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console) {
-    if (file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
-    Result<LoadedModel> loaded = load_model(options.path, common, false);
+    const std::vector<std::string> paths = all_paths(options);
+    const bool meshes = are_meshes(paths);
+    if (const Errors errors = check_inputs(options, meshes); !errors.empty()) return errors;
+    if (!meshes && file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
+    Subject subject;
+    Result<LoadedModel> loaded = meshes ? loaded_meshes(paths, options.unit, common, subject) : load_model(options.path, common, false);
     if (!loaded) return loaded.errors();
     tell_warnings(console, loaded->warnings);
-    Subject subject;
     subject.model = std::move(loaded->model);
     subject.scene_path = loaded->scene_path;
     const auto& bodies = subject.model.bodies;

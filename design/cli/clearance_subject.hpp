@@ -13,7 +13,9 @@
 namespace fettle::design::cli {
 
 struct SubjectOptions {
-    std::string path;               ///< scene, design or trajectory
+    std::string path;               ///< scene, design, trajectory, mesh or folder of meshes
+    std::vector<std::string> more;  ///< meshes beside it
+    std::string unit;               ///< of meshes that state none
     std::string poses, poses_unit;  ///< file of poses, and the unit of its lengths where it does not say; empty: none
     bool motion = false;            ///< simulate a scene or design
     bool kinematic = false;         ///< follow scripts, no dynamics
@@ -31,6 +33,7 @@ struct Subject {
     std::string scene_path;
     std::string incomplete;          ///< why the motion is not whole; empty: it is, or there is none
     std::vector<std::string> notes;  ///< what the reader of a report should know
+    std::vector<std::string> files;  ///< the meshes, where nothing else was read
 
     /// Without steps there is none, wherever the poses come from.
     bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }

@@ -61,6 +61,27 @@ CLI::Option* number_option(CLI::App& app, const std::string& names, Value& value
     return option;
 }
 
+OptionFacts facts_of(const CLI::Option& option) {
+    OptionFacts facts;
+    facts.by_place = option.get_positional();
+    facts.required = option.get_required();
+    facts.description = option.get_description();
+    if (facts.by_place) {
+        facts.names = {option.get_name(true)};
+    } else {
+        for (const std::string& name : option.get_snames()) facts.names.push_back("-" + name);
+        for (const std::string& name : option.get_lnames()) facts.names.push_back("--" + name);
+    }
+    if (option.get_items_expected_max() > 0) facts.value = option.get_type_name();
+    if (facts.value.find('|') == std::string::npos) return facts;
+    for (std::size_t at = 0; at <= facts.value.size();) {
+        const std::size_t bar = std::min(facts.value.find('|', at), facts.value.size());
+        facts.words.push_back(facts.value.substr(at, bar - at));
+        at = bar + 1;
+    }
+    return facts;
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -84,10 +105,14 @@ Option& Option::between(double low, double high) {
 }
 
 Option& Option::one_of(std::vector<std::string> words) {
-    option_->check([words = std::move(words)](const std::string& text) -> std::string {
+    std::string listed;
+    for (const std::string& word : words) listed += (listed.empty() ? "" : "|") + word;
+    const auto check = [words = std::move(words)](const std::string& text) -> std::string {
         if (std::find(words.begin(), words.end(), text) != words.end()) return {};
         return "\"" + text + "\" is not one of " + core::base::joined(words);
-    });
+    };
+    option_->type_name(listed);
+    option_->check(check);
     return *this;
 }
 
@@ -150,6 +175,15 @@ Option CommandLine::flag(const std::string& names, bool& value, const std::strin
 void CommandLine::version(const std::string& text) { app_->set_version_flag("--version", text); }
 
 void CommandLine::closing_words(const std::string& text) { app_->footer(text); }
+
+void CommandLine::group(const std::string& name) { app_->group(name); }
+
+CommandFacts CommandLine::facts() const {
+    CommandFacts facts{app_->get_name(), app_->get_description(), app_->get_group(), app_->get_footer(), {}, {}};
+    for (const CLI::Option* option : static_cast<const CLI::App*>(app_)->get_options()) facts.options.push_back(facts_of(*option));
+    for (CLI::App* command : app_->get_subcommands({})) facts.commands.push_back(CommandLine(command).facts());
+    return facts;
+}
 
 const std::string& CommandLine::name() const { return app_->get_name(); }
 

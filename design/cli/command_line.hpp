@@ -39,6 +39,21 @@ private:
     CLI::Option* option_;
 };
 
+/// What help, manual and shell completion say of an option and of a command.
+struct OptionFacts {
+    std::vector<std::string> names;  ///< "--out"; of what is told by its place "FILE"
+    bool by_place = false;
+    bool required = false;
+    std::string value;               ///< "TEXT", "INT", "FLOAT"; empty: a flag
+    std::vector<std::string> words;  ///< the only values; empty: any
+    std::string description;
+};
+struct CommandFacts {
+    std::string name, description, group, closing_words;
+    std::vector<OptionFacts> options;
+    std::vector<CommandFacts> commands;
+};
+
 /// The options of the program, or of one of its commands. A copy speaks of the same.
 class CommandLine {
 public:
@@ -46,6 +61,8 @@ public:
 
     CommandLine command(const std::string& name, const std::string& description);
     void also_called(const std::string& name);
+    /// Under which heading of the program's help.
+    void group(const std::string& name);
 
     /// @param names  "--out", several with commas, or in capitals for what is told by its place. Numbers must be numbers, whole ones whole.
     Option option(const std::string& names, std::string& value, const std::string& description);
@@ -60,6 +77,8 @@ public:
     /// What --help ends with.
     void closing_words(const std::string& text);
     const std::string& name() const;
+    /// Of this command and those below it, in the order in which they were added.
+    CommandFacts facts() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;
 

@@ -26,23 +26,60 @@ bool no_color() {
 Console::Console(const ConsoleOptions& options) : options_(options) {
     terminal_ = ::isatty(STDERR_FILENO) != 0;
     colours_ = ::isatty(STDOUT_FILENO) != 0 && !no_color();
+    if (options.log.empty()) return;
+    if (std::FILE* file = std::fopen(options.log.c_str(), "w")) log_ = {file, std::fclose};
+}
+
+void Console::log(const std::string& line) {
+    if (!log_) return;
+    std::fprintf(log_.get(), "%8.1f s  %s\n", std::chrono::duration<double>(Clock::now() - begun_).count(), line.c_str());
+    std::fflush(log_.get());
 }
 
 void Console::narrate(const std::string& line) {
+    log(line);
     if (options_.quiet) return;
     end_progress();
     std::fprintf(stderr, "%s\n", line.c_str());
 }
 
+std::string Console::pace(int done, int of) const {
+    const double seconds = std::chrono::duration<double>(Clock::now() - progress_begun_).count();
+    if (seconds < 1 || done <= first_done_) return "";
+    const double rate = (done - first_done_) / seconds, left = (of - done) / rate;
+    char text[80];
+    if (left < 100) {
+        std::snprintf(text, sizeof text, ", %.3g/s, %.0f s left", rate, left);
+    } else {
+        std::snprintf(text, sizeof text, ", %.3g/s, %.0f min left", rate, left / 60);
+    }
+    return text;
+}
+
 void Console::progress(const std::string& what, int done, int of) {
-    if (options_.quiet || !terminal_ || of <= 0) return;
+    if (of <= 0) return;
+    const Clock::time_point now = Clock::now();
+    if (what != progress_of_ || done < first_done_) {
+        progress_of_ = what;
+        progress_begun_ = line_written_ = now;
+        first_done_ = done;
+    }
+    constexpr std::chrono::seconds between_lines{10};
+    const bool line_due = now - line_written_ >= between_lines;
+    if (line_due) {
+        const std::string line = what + " " + std::to_string(done) + "/" + std::to_string(of) + pace(done, of);
+        line_written_ = now;
+        log(line);
+        if (!options_.quiet && !terminal_) std::fprintf(stderr, "%s\n", line.c_str());
+    }
+    if (options_.quiet || !terminal_) return;
     const int permille = static_cast<int>(1000.0 * done / of);
     if (permille == bar_permille_ && done < of) return;
     bar_permille_ = permille;
     constexpr int width = 30;
-    const int filled = width * done / of;
-    std::fprintf(stderr, "\r%s [%s%s] %d/%d \033[K", what.c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
-                 std::string(static_cast<size_t>(width - filled), '.').c_str(), done, of);
+    const int filled = static_cast<int>(static_cast<long>(width) * done / of);
+    std::fprintf(stderr, "\r%s [%s%s] %d/%d%s \033[K", what.c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
+                 std::string(static_cast<size_t>(width - filled), '.').c_str(), done, of, pace(done, of).c_str());
     std::fflush(stderr);
     bar_shown_ = true;
     if (done >= of) end_progress();

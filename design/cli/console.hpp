@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
-/// Progress bars appear on a terminal only; nothing is coloured when NO_COLOR is set or stdout is no terminal.
+/// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
+/// NO_COLOR is set or stdout is no terminal.
 #pragma once
 
+#include <chrono>
+#include <cstdio>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -22,6 +26,7 @@ enum ExitCode {
 struct ConsoleOptions {
     bool json = false;
     bool quiet = false;
+    std::string log;  ///< file that gets narration and progress too, line by line; empty: none
 };
 
 class Console {
@@ -49,7 +54,17 @@ public:
     std::string coloured(const std::string& text, bool good) const;
 
 private:
+    using Clock = std::chrono::steady_clock;
+    void log(const std::string& line);
+    /// ", 35/s, 25 s left"; empty where nothing can be said.
+    std::string pace(int done, int of) const;
+
     ConsoleOptions options_;
+    std::shared_ptr<std::FILE> log_;
+    Clock::time_point begun_ = Clock::now();
+    std::string progress_of_;  ///< what the bar is about
+    Clock::time_point progress_begun_, line_written_;
+    int first_done_ = 0;
     bool terminal_ = false, colours_ = false, bar_shown_ = false;
     int bar_permille_ = -1;
 };

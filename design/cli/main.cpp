@@ -10,6 +10,7 @@
 #include "fettle/core/base/shared_library.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/session.hpp"
 
 namespace {
@@ -59,9 +60,28 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.option("--threads", common.threads, "How many threads (default: all of the machine's); changes no bit of a result")
         .between(1, 4096);
     program.flag("--json", common.json, "Answer with one JSON object on stdout, and nothing else there");
+    program.option("--log", common.log, "Write narration and progress to this file too, --quiet or not");
     program.flag("--quiet", common.quiet, "No narration, no progress bars");
     program.flag("--strict", common.strict, "Meshes: what is mended or a warning else (copies, turned triangles, gaps, ...) is an error");
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
+}
+
+// By what people want to do.
+std::vector<Command> add_commands(CommandLine& program, const CommonOptions& common) {
+    std::vector<Command> all;
+    const auto add = [&](const char* group, std::vector<Command> commands) {
+        for (Command& command : commands) {
+            command.line.group(group);
+            all.push_back(std::move(command));
+        }
+    };
+    add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
+    add("Check what there is", {add_validate(program, common), add_clearance(program, common)});
+    add("Move and tune", {add_simulate(program, common), add_optimise(program, common), add_gradient(program, common)});
+    add("See and pass on",
+        {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
+    add("About the program", {add_ccd(program), add_completion(program), add_manual(program)});
+    return all;
 }
 
 int run(int argc, char** argv) {
@@ -70,13 +90,7 @@ int run(int argc, char** argv) {
     CommonOptions common;
     common.command = typed(argc, argv);
     add_common_options(program, common);
-    const std::vector<Command> commands{add_validate(program, common),
-                                        add_simulate(program, common),
-                                        add_clearance(program, common),
-                                        add_gradient(program, common),
-                                        add_optimise(program, common),
-                                        add_report(program, common),
-                                        add_ccd(program)};
+    const std::vector<Command> commands = add_commands(program, common);
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
         "Exit codes: 0 done, requirements certified; 1 a requirement is violated; 2 undecided or not converged;\n"
@@ -84,10 +98,14 @@ int run(int argc, char** argv) {
     const ParseOutcome parsed = line.parse(argc, argv);
     if (!parsed.run) {
         if (parsed.message.empty()) return parsed.exit_code;  // --help, --version
-        Console console({asks_for_json(argc, argv), false});
+        Console console({asks_for_json(argc, argv), false, {}});
         return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed.message, commands, argc, argv)}});
     }
-    Console console({common.json, common.quiet});
+    if (!common.log.empty()) {
+        const Errors errors = try_output_file(common.log);
+        if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
+    }
+    Console console({common.json, common.quiet, common.log});
     try {
         std::optional<core::base::ThreadLimit> limit;
         if (common.threads > 0) limit.emplace(common.threads);

@@ -16,6 +16,7 @@ struct CommonOptions {
     bool json = false, quiet = false;
     bool strict = false;  ///< faults of meshes that are warnings else are errors
     std::vector<std::string> mesh_dirs;
+    std::string log;      ///< file for narration and progress; empty: none
     std::string command;  ///< what was typed, for those who read its results
 };
 
@@ -25,9 +26,19 @@ struct Command {
     std::function<int(Console&)> run;
 };
 
+Command add_clearance(CommandLine& program, const CommonOptions& common);
+Command add_completion(CommandLine& program);
+Command add_draw(CommandLine& program, const CommonOptions& common);
+Command add_export(CommandLine& program, const CommonOptions& common);
+Command add_import(CommandLine& program, const CommonOptions& common);
+Command add_joints(CommandLine& program);
+Command add_manual(CommandLine& program);
+Command add_new(CommandLine& program);
+Command add_optimisers(CommandLine& program);
+Command add_quantities(CommandLine& program);
+Command add_shapes(CommandLine& program);
 Command add_validate(CommandLine& program, const CommonOptions& common);
 Command add_simulate(CommandLine& program, const CommonOptions& common);
-Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
 Command add_report(CommandLine& program, const CommonOptions& common);

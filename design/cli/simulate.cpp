@@ -12,10 +12,12 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/path_proof.hpp"
 #include "fettle/design/cli/report_made.hpp"
+#include "fettle/design/exports/glb_writer.hpp"
 
 namespace fettle::design::cli {
 
@@ -101,6 +103,9 @@ Errors write_motion(const SimulateArguments& options, const core::model::Model& 
     for (const auto& [name, text] : tables) {
         if (errors.empty()) errors = core::files::write_file_atomically(folder / name, text);
     }
+    if (errors.empty())
+        errors = core::files::write_file_atomically(folder / "motion.glb",
+                                                    exports::glb_bytes(exports::assembly_of(model, simulation.trajectory)));
     return errors;
 }
 
@@ -166,20 +171,28 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+struct FinishedRun {
+    const LoadedModel& loaded;
+    const Simulation& simulation;
+    const Simulation& earlier;                  // that it went on with
+    std::optional<GrowingTrajectory>& growing;  // with --out
+};
+
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
-int finish(const SimulateArguments& options, const CommonOptions& common, const LoadedModel& loaded, const Simulation& simulation,
-           const Simulation& earlier, Json json, Console& console) {
-    const core::model::Model& model = loaded.model;
+int finish(const SimulateArguments& options, const CommonOptions& common, const FinishedRun& run, Json json, Console& console) {
+    const Simulation &simulation = run.simulation, &earlier = run.earlier;
+    const core::model::Model& model = run.loaded.model;
     const auto& report = simulation.report;
     // Stopped before it got as far as the run that it goes on with: that run stays.
     const bool writes_out = !options.out.empty() && simulation.trajectory.steps.size() >= earlier.trajectory.steps.size();
     if (!options.out.empty() && !writes_out)
         console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
     Errors errors;
-    if (writes_out) errors = write_motion(options, model, simulation, earlier, loaded.scene_path, console);
+    if (writes_out) errors = write_motion(options, model, simulation, earlier, run.loaded.scene_path, console);
     if (errors.empty() && !options.poses.empty())
         errors = core::records::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
     if (!errors.empty()) return console.input_errors(errors);
+    if (run.growing) run.growing->remove();
     console.narrate("certifying the path");
     const auto begin = std::chrono::steady_clock::now();
     const PathProof proof = prove_path(model, simulation, interrupted);
@@ -201,13 +214,14 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         errors = write_result(options.out, json, common);
         if (!errors.empty()) return console.input_errors(errors);
         if (!options.no_report)
-            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory}, loaded.scene_path);
+            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory}, run.loaded.scene_path);
     }
     console.result(json, told);
     return outcome.exit_code;
 }
 
-int run_simulate(const SimulateArguments& options, const CommonOptions& common, Console& console) {
+int run_simulate(SimulateArguments options, const CommonOptions& common, Console& console) {
+    options.earlier = run_to_continue(options.earlier);
     const auto begin = std::chrono::steady_clock::now();
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
@@ -217,7 +231,11 @@ int run_simulate(const SimulateArguments& options, const CommonOptions& common, 
     simulate_options.steps = options.steps >= 0  ? options.steps
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
-    simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
+    std::optional<GrowingTrajectory> growing;
+    simulate_options.on_step = [&](const core::stepper::Progress& p) {
+        if (growing) growing->write(*p.so_far, console);
+        console.progress("simulating", p.step, p.steps);
+    };
     simulate_options.should_stop = interrupted;
     simulate_options.outputs = !options.out.empty() || !model.mechanism.joints.empty();
     Simulation earlier;
@@ -233,8 +251,9 @@ int run_simulate(const SimulateArguments& options, const CommonOptions& common, 
     json["status"] = "";
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
+    if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
     const Simulation simulation = core::stepper::simulate(model, simulate_options);
-    return finish(options, common, *loaded, simulation, earlier, std::move(json), console);
+    return finish(options, common, {*loaded, simulation, earlier, growing}, std::move(json), console);
 }
 
 }  // namespace
@@ -247,9 +266,11 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);
     app.option("--out", options->out,
                "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
-               "(forces between bodies) and drives.csv (what motors and guides supply); and report.html");
+               "(forces between bodies), drives.csv (what motors and guides supply); motion.glb and report.html; while it runs, "
+               "trajectory.running.json");
     app.flag("--no-report", options->no_report, "With --out: no report.html");
-    app.option("--continue", options->earlier, "trajectory.json of an earlier run of this scene: goes on to --steps or --time in all");
+    app.option("--continue", options->earlier,
+               "An earlier run of this scene, its trajectory or its folder (of a killed one too): goes on to --steps or --time in all");
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
     app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"

@@ -7,6 +7,8 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
@@ -83,6 +85,33 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     return {true, "stale: the meshes of " + certificate.source + " have changed since"};
 }
 
+/// The files that the certificate names: still what they were?
+struct ExportCheck {
+    Json list = Json::array();       // file, status, rounding
+    std::vector<std::string> stale;  // what has changed; empty: nothing
+    std::vector<std::string> notes;
+};
+
+ExportCheck check_exports(const Certificate& certificate, const std::string& path) {
+    ExportCheck check;
+    for (const core::certificate::ExportedFile& exported : certificate.exports) {
+        const std::filesystem::path file = std::filesystem::path(path).parent_path() / exported.file;  // an absolute one stays as it is
+        const Result<std::string> bytes = core::files::read_file(file);
+        const char* status = !bytes ? "not there" : core::files::hash_of(*bytes) == exported.hash ? "same" : "changed";
+        check.list.push_back({{"file", exported.file}, {"status", status}, {"rounding", exported.rounding}});
+        if (!bytes) {
+            check.notes.push_back(exported.file + ", a file of its bodies, is not there or cannot be read");
+        } else if (std::string_view(status) == "changed") {
+            check.stale.push_back("stale: " + exported.file + ", a file of its bodies, has changed since");
+        } else if (exported.rounding > 0) {
+            check.notes.push_back(exported.file +
+                                  formatted(": its vertices are rounded by up to %.2g m; between its parts bounds are wider by twice that",
+                                            exported.rounding));
+        }
+    }
+    return check;
+}
+
 Result<std::optional<double>> read_minimum(const std::string& text) {
     if (text.empty()) return std::optional<double>{};
     const Result<double> length = core::base::parse_length(text, "--minimum");
@@ -122,6 +151,12 @@ void check(const Certificate& certificate, const core::records::StoredTrajectory
         answer.stale = true;
         answer.add_fault("/source", source.note);
     }
+    const ExportCheck exports = check_exports(certificate, question.path);
+    for (const std::string& stale : exports.stale) {
+        answer.stale = true;
+        answer.add_fault("/exports", stale);
+    }
+    if (!certificate.exports.empty()) answer.json["exports"] = exports.list;
     const bool accepted = answer.faults.empty();
     answer.json["leaves"] = report.leaves;
     answer.json["motion"] = certificate.motion;
@@ -135,6 +170,7 @@ void check(const Certificate& certificate, const core::records::StoredTrajectory
     }
     answer.json["notes"] = Json::array();
     if (!source.stale && !source.note.empty()) answer.json["notes"].push_back(source.note);
+    for (const std::string& note : exports.notes) answer.json["notes"].push_back(note);
     if (!accepted) return;
     answer.code = exit_done;
     answer.text +=

@@ -5,6 +5,28 @@
 
 namespace fettle::design::description {
 
+bool is_vector(MoveTarget target) {
+    switch (target) {
+        case MoveTarget::position:
+        case MoveTarget::turn:
+        case MoveTarget::velocity:
+        case MoveTarget::angular_velocity:
+        case MoveTarget::force:
+        case MoveTarget::gravity:
+        case MoveTarget::point_a:
+        case MoveTarget::point_b:
+        case MoveTarget::axis_a:
+        case MoveTarget::axis_b:
+        case MoveTarget::load_point:
+        case MoveTarget::load_force:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool is_of_mechanism(MoveTarget target) { return target >= MoveTarget::point_a; }
+
 VectorX values_of(const std::vector<Parameter>& parameters) {
     VectorX p(static_cast<Eigen::Index>(parameters.size()));
     for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;

@@ -27,6 +27,7 @@ struct Relation {
     /// Of all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads at once.
     /// Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
+    std::string formula = {};  ///< what `at` was read from (reading/expression.hpp); empty: made by a program
 };
 
 /// max(0, lower - value, value - upper) in units of the bounds, 0 within the tolerance; infinity for a value that is not a number.

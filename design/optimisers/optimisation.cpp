@@ -27,8 +27,22 @@ const char* to_string(OptimiserStatus status) {
 }
 
 const std::vector<std::string>& optimiser_names() {
-    static const std::vector<std::string> names{"ipopt", "mma", "ccsaq", "slsqp", "cobyla"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list;
+        for (const OptimiserInfo& info : optimiser_table()) list.push_back(info.name);
+        return list;
+    }();
     return names;
+}
+
+const std::vector<OptimiserInfo>& optimiser_table() {
+    static const std::vector<OptimiserInfo> table{
+        {"ipopt", "sequential quadratic steps in a trust region, each solved by Ipopt; the default"},
+        {"mma", "method of moving asymptotes (NLopt); uses gradients, inequality constraints"},
+        {"ccsaq", "conservative convex separable approximations with a quadratic term (NLopt); uses gradients, inequality constraints"},
+        {"slsqp", "sequential least-squares quadratic programming (NLopt); uses gradients"},
+        {"cobyla", "linear approximations of the values alone (NLopt); uses no gradient"}};
+    return table;
 }
 
 Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const std::string& where) {

@@ -49,7 +49,12 @@ struct OptimiserReport {
 /// Throws what Problem::evaluate throws (Interrupted excepted).
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options);
 
-const std::vector<std::string>& optimiser_names();
+struct OptimiserInfo {
+    std::string name, description;
+};
+/// All there are; the first is the default.
+const std::vector<OptimiserInfo>& optimiser_table();
+const std::vector<std::string>& optimiser_names();  ///< of the table
 /// Errors: an unknown name (out_of_range), the message lists those known.
 Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const std::string& where = {});
 

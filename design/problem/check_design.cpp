@@ -5,6 +5,9 @@
 #include <cmath>
 #include <set>
 
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/design/problem/mechanism_moves.hpp"
+
 namespace fettle::design::problem {
 
 namespace {
@@ -53,47 +56,40 @@ public:
     }
 
 private:
-    // What follows from the start as written through the assembly is not chained to parameters yet: refused, never left out.
+    // What is not differentiated of joints and springs: refused, never left out.
     void check_joints() {
-        for (size_t i = 0; i < design_.scene.bodies.size() && i < model_.bodies.size(); ++i) {
-            const core::scene::Body& written = design_.scene.bodies[i];
-            const core::model::Body& body = model_.bodies[i];
-            const Vector3 place = core::kinematics::world_position(written.pose, body.reference_point);
-            Matrix34 velocity;
-            velocity << cross_matrix(written.angular_velocity) * written.pose.rotation, written.linear_velocity;
-            if (body.pose_start.position != place || body.pose_start.rotation != written.pose.rotation)
-                add(ErrorCode::unsupported, "body `" + body.name + "`",
-                    "it was moved to meet its joints, which cannot be differentiated in a design yet; write it where they are met");
-            else if (body.velocity_start != velocity)
-                add(ErrorCode::unsupported, "body `" + body.name + "`",
-                    "its start velocity was changed to agree with joints and motors, which cannot be differentiated in a design yet; "
-                    "write it as it must be, or let motors start from rest");
+        for (const core::model::Body& body : model_.bodies) {
+            const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+            if (body.type != core::scene::BodyType::dynamic_body || (body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
+            add(ErrorCode::unsupported, "body `" + body.name + "`",
+                "beside joints and springs a body's mass must be that of a solid of its density: that of wires, shells, points and meshes "
+                "with openings cannot be differentiated");
         }
+        const auto& terms = model_.mechanism.terms;
+        const auto is_stop = [](const model::MeasureTerm& term) { return term.kind == model::LawKind::stop; };
+        if (model_.area_weighted && std::any_of(terms.begin(), terms.end(), is_stop))
+            add(ErrorCode::unsupported, "contact/area_weighted",
+                "stops of joints have a stiffness that follows from the bodies' masses where the barrier is area-weighted: that cannot be "
+                "differentiated; switch `area_weighted` off");
         for (const Parameter& parameter : design_.parameters)
             for (const Move& move : parameter.moves)
-                if (has_body(move.body)) check_joined_move(parameter, move);
+                if (move.target == MoveTarget::dimension && has_body(move.body)) check_joined_dimension(parameter, move);
     }
 
-    void check_joined_move(const Parameter& parameter, const Move& move) {
-        const core::scene::Mechanism& mechanism = design_.scene.mechanism;
+    // Stops and friction of angles act at the radius of the bodies.
+    void check_joined_dimension(const Parameter& parameter, const Move& move) {
         const std::string& body = design_.scene.bodies[static_cast<size_t>(move.body)].name;
-        const auto joins = [&](const core::scene::Joint& j) { return j.a.body == body || j.b.body == body; };
-        const auto stretches = [&](const core::scene::Spring& s) { return s.joint.empty() && (s.a.body == body || s.b.body == body); };
-        const bool is_joined = std::any_of(mechanism.joints.begin(), mechanism.joints.end(), joins);
-        const bool is_sprung = std::any_of(mechanism.springs.begin(), mechanism.springs.end(), stretches);
-        if (move.target == MoveTarget::position && (is_joined || is_sprung))
-            add(ErrorCode::unsupported, place(parameter),
-                "it moves the start of body `" + body + "`, which joints or springs hold: that cannot be differentiated yet");
-        // Stops and friction of angles act at the radius of the bodies.
-        const auto acts = [](const model::MeasureTerm& term) {
-            return term.length != 1 && (term.kind == model::LawKind::stop || term.kind == model::LawKind::friction);
+        const auto acts = [&](const model::MeasureTerm& term) {
+            if (term.length == 1 || (term.kind != model::LawKind::stop && term.kind != model::LawKind::friction)) return false;
+            const core::measure::Measure& m = model_.mechanism.set.measures[static_cast<size_t>(term.measure)];
+            const auto of = [&](int frame) { return model_.mechanism.set.frames[static_cast<size_t>(frame)].body; };
+            return of(m.a) == move.body || of(m.b) == move.body;
         };
         const auto& terms = model_.mechanism.terms;
-        if (move.target == MoveTarget::dimension && is_joined && std::any_of(terms.begin(), terms.end(), acts))
+        if (std::any_of(terms.begin(), terms.end(), acts))
             add(ErrorCode::unsupported, place(parameter),
                 "it changes the size of body `" + body +
-                    "`, by which stops and friction of turning joints are measured: that cannot be "
-                    "differentiated yet");
+                    "`, by which stops and friction of turning joints are measured: that cannot be differentiated yet");
     }
 
     static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
@@ -128,7 +124,12 @@ private:
         if (!in_order || !std::isfinite(parameter.lower) || !std::isfinite(parameter.upper))
             add(ErrorCode::out_of_range, place(parameter), "its bounds are finite, and its value lies within them");
         for (const Move& move : parameter.moves) {
-            if (!has_body(move.body)) {
+            if (is_of_mechanism(move.target)) {
+                const std::string reason = misfit(design_.scene.mechanism, move);
+                if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
+            } else if (move.target == MoveTarget::gravity) {
+                continue;
+            } else if (!has_body(move.body)) {
                 add(ErrorCode::out_of_range, place(parameter), "it moves body " + std::to_string(move.body) + ", which is not there");
             } else {
                 check_move(parameter, move);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
+#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/problem/mechanism_moves.hpp"
 
 namespace fettle::design::problem {
 
@@ -38,8 +41,11 @@ public:
         for (size_t k = 0; k < parameters_.size(); ++k) {
             for (const Move& move : parameters_[k].moves) apply(static_cast<int>(k), move);
         }
-        finish_positions();
         finish_rates();
+        finish_vectors();
+        finish_turns();
+        finish_numbers();
+        if (Errors bad = check_mechanism(); !bad.empty()) return bad;
         const Errors errors = make_shapes();
         if (!errors.empty()) return errors;
         std::stable_sort(moved_.changes.begin(), moved_.changes.end(), [](const BodyChange& a, const BodyChange& b) {
@@ -49,12 +55,42 @@ public:
     }
 
 private:
-    struct PositionSum {
+    // A vector's components that are moved.
+    struct VectorSum {
+        Move move;
         Vector3 value = Vector3::Zero();
         std::array<bool, 3> set{false, false, false};
     };
+    struct NumberSum {
+        Move move;
+        double value = 0;
+    };
+    // What is moved: two moves of one target have one key.
+    using Key = std::tuple<MoveTarget, int, core::model::Origin::List, int, int>;
+    static Key key_of(const Move& move) {
+        const bool of_mechanism = is_of_mechanism(move.target);
+        const bool of_body = !of_mechanism && move.target != MoveTarget::gravity;
+        return {move.target, of_body ? move.body : 0, of_mechanism ? move.part.list : core::model::Origin::List::joint,
+                of_mechanism ? move.part.index : 0, move.target == MoveTarget::curve_value ? move.entry : 0};
+    }
 
     void apply(int k, const Move& move) {
+        if (is_vector(move.target)) add_to_vector(move, p_[k]);
+        if (is_of_mechanism(move.target) || move.target == MoveTarget::gravity) {
+            if (!is_vector(move.target)) add_to_number(move, p_[k]);
+            moved_.linear_changes.push_back({k, move});
+            return;
+        }
+        apply_to_body(k, move);
+    }
+
+    void add_to_number(const Move& move, double p) {
+        NumberSum& sum = numbers_[key_of(move)];
+        sum.move = move;
+        sum.value += move.scale * p + move.offset;
+    }
+
+    void apply_to_body(int k, const Move& move) {
         const double value = move.scale * p_[k] + move.offset;
         core::scene::Body& body = moved_.scene.bodies[static_cast<size_t>(move.body)];
         BodyChange& change = change_of(moved_.changes, k, move.body);
@@ -64,7 +100,6 @@ private:
                 break;
             case MoveTarget::position:
                 change.position_dot += move.scale * move.direction;
-                add_position(move, p_[k]);
                 break;
             case MoveTarget::density:
                 body.density = densities_[move.body] += value;
@@ -74,11 +109,16 @@ private:
                 rates_[{move.body, move.dof}] += value;
                 change.rate_dot[move.dof] += move.scale;
                 break;
+            case MoveTarget::turn:
+                break;  // finish_turns, when all are known
+            default:
+                moved_.linear_changes.push_back({k, move});
         }
     }
 
-    void add_position(const Move& move, double p) {
-        PositionSum& sum = positions_[move.body];
+    void add_to_vector(const Move& move, double p) {
+        VectorSum& sum = vectors_[key_of(move)];
+        sum.move = move;
         for (int i = 0; i < 3; ++i) {
             if (move.direction[i] == 0) continue;
             sum.value[i] += move.scale * move.direction[i] * p + move.position_offset[i];
@@ -86,12 +126,63 @@ private:
         }
     }
 
-    void finish_positions() {
-        for (const auto& [body, sum] : positions_) {
+    Vector3& moved_vector(const Move& move) {
+        if (is_of_mechanism(move.target)) return vector_of(move, moved_.scene.mechanism);
+        core::scene::Body& body = moved_.scene.bodies[static_cast<size_t>(move.body)];
+        switch (move.target) {
+            case MoveTarget::gravity:
+                return moved_.scene.gravity;
+            case MoveTarget::velocity:
+                return body.linear_velocity;
+            case MoveTarget::angular_velocity:
+                return body.angular_velocity;
+            case MoveTarget::force:
+                return body.force;
+            default:
+                FETTLE_ASSERT(move.target == MoveTarget::position, "a vector that is replaced");
+                return body.pose.position;
+        }
+    }
+
+    void finish_vectors() {
+        for (const auto& [key, sum] : vectors_) {
+            if (sum.move.target == MoveTarget::turn) continue;
+            Vector3& vector = moved_vector(sum.move);
             for (int i = 0; i < 3; ++i) {
-                if (sum.set[static_cast<size_t>(i)]) moved_.scene.bodies[static_cast<size_t>(body)].pose.position[i] = sum.value[i];
+                if (sum.set[static_cast<size_t>(i)]) vector[i] = sum.value[i];
             }
         }
+    }
+
+    // R = exp([theta]) R0, dR = [J dtheta] R, J the left Jacobian.
+    void finish_turns() {
+        for (const auto& [key, sum] : vectors_) {
+            if (sum.move.target != MoveTarget::turn) continue;
+            Matrix3& rotation = moved_.scene.bodies[static_cast<size_t>(sum.move.body)].pose.rotation;
+            rotation = core::kinematics::rotation(sum.value) * rotation;
+        }
+        for (size_t k = 0; k < parameters_.size(); ++k) {
+            for (const Move& move : parameters_[k].moves) {
+                if (move.target != MoveTarget::turn) continue;
+                const Matrix3& rotation = moved_.scene.bodies[static_cast<size_t>(move.body)].pose.rotation;
+                const Matrix3 left = core::kinematics::left_jacobian(vectors_.at(key_of(move)).value);
+                change_of(moved_.changes, static_cast<int>(k), move.body).rotation_dot +=
+                    cross_matrix(left * (move.scale * move.direction)) * rotation;
+            }
+        }
+    }
+
+    void finish_numbers() {
+        for (const auto& [key, sum] : numbers_) set_number(sum.move, sum.value, moved_.scene.mechanism);
+    }
+
+    Errors check_mechanism() const {
+        Errors errors;
+        for (const LinearChange& change : moved_.linear_changes) {
+            if (!is_of_mechanism(change.move.target)) continue;
+            for (Error& error : moved_badly(moved_.scene.mechanism, change.move)) errors.push_back(std::move(error));
+        }
+        return errors;
     }
 
     void finish_rates() {
@@ -152,7 +243,8 @@ private:
     const VectorX& p_;
     MovedScene moved_;
     std::map<int, std::map<std::string, double>> dimensions_;
-    std::map<int, PositionSum> positions_;
+    std::map<Key, VectorSum> vectors_;
+    std::map<Key, NumberSum> numbers_;
     std::map<int, double> densities_;
     std::map<std::pair<int, int>, double> rates_;
 };
@@ -177,6 +269,46 @@ double motor_part(const BodyChange& change, const core::model::Model& model, con
     return sum;
 }
 
+Matrix3 written_rotation(const core::model::Model& model, size_t i) {
+    const auto& written = model.mechanism.written.poses;
+    return written.empty() ? model.bodies[i].pose_start.rotation : written[i].rotation;
+}
+
+// Entry by entry; without joints nothing stands between what was written and the start.
+Matrix34 written_pose_bar(const core::model::Model& model, const adjoint::model::WrittenStartGradient& start,
+                          const adjoint::BodyGradient& bar, size_t i) {
+    const core::model::Body& body = model.bodies[i];
+    Matrix34 out;
+    if (!model.mechanism.empty()) {
+        out << 0.5 * cross_matrix(start.pose_bar[i].tail<3>()) * written_rotation(model, i), start.pose_bar[i].head<3>();
+        return out;
+    }
+    const Matrix3 omega = body.velocity_start.leftCols<3>() * body.pose_start.rotation.transpose();
+    out = bar.pose_start_bar;
+    out.leftCols<3>() += omega.transpose() * bar.velocity_start_bar.leftCols<3>();
+    return out;
+}
+
+double linear_part(const Move& move, const adjoint::ModelGradient& gradient, const adjoint::model::WrittenStartGradient& start,
+                   const adjoint::model::SceneMechanismGradient& mechanism) {
+    const auto body = static_cast<size_t>(move.body);
+    if (is_of_mechanism(move.target)) {
+        if (!is_vector(move.target)) return move.scale * number_gradient(move, mechanism);
+        return move.scale * move.direction.dot(vector_gradient(move, mechanism));
+    }
+    switch (move.target) {
+        case MoveTarget::gravity:
+            return move.scale * move.direction.dot(gradient.gravity_bar);
+        case MoveTarget::velocity:
+            return move.scale * move.direction.dot(start.velocity_bar[body].head<3>());
+        case MoveTarget::angular_velocity:
+            return move.scale * move.direction.dot(start.velocity_bar[body].tail<3>());
+        default:
+            FETTLE_ASSERT(move.target == MoveTarget::force, "every target has its derivative");
+            return move.scale * move.direction.dot(gradient.bodies[body].force_bar);
+    }
+}
+
 }  // namespace
 
 Result<MovedScene> move_scene(const Design& design, const VectorX& p) {
@@ -184,22 +316,30 @@ Result<MovedScene> move_scene(const Design& design, const VectorX& p) {
     return Mover(design, p).run();
 }
 
-VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& gradient, int parameter_count) {
+VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& of_model, int parameter_count) {
+    adjoint::ModelGradient gradient = of_model;
+    adjoint::model::WrittenStartGradient start = adjoint::model::written_start_adjoint(model, gradient);
+    const adjoint::model::SceneMechanismGradient mechanism =
+        adjoint::model::build_mechanism_adjoint(moved.scene, model, gradient.mechanism, start);
     VectorX result = VectorX::Zero(parameter_count);
     for (const BodyChange& change : moved.changes) {
-        const adjoint::BodyGradient& bar = gradient.bodies[static_cast<size_t>(change.body)];
-        const Vector3& c = model.bodies[static_cast<size_t>(change.body)].reference_point;
+        const auto i = static_cast<size_t>(change.body);
+        const adjoint::BodyGradient& bar = gradient.bodies[i];
+        const Vector3& c = model.bodies[i].reference_point;
         double sum = 0;
         if (change.vertices_dot.cols() > 0) {
             FETTLE_ASSERT(bar.vertices_bar.cols() == change.vertices_dot.cols(), "the model keeps a part's vertices in their order");
             sum += bar.vertices_bar.cwiseProduct(change.vertices_dot).sum();
         }
-        sum += bar.pose_start_bar.leftCols<3>().cwiseProduct(change.rotation_dot).sum();
-        sum += bar.pose_start_bar.col(3).dot(change.rotation_dot * c + change.position_dot);
+        const Matrix34 pose_bar = written_pose_bar(model, start, bar, i);
+        sum += pose_bar.leftCols<3>().cwiseProduct(change.rotation_dot).sum();
+        sum += pose_bar.col(3).dot(change.rotation_dot * c + change.position_dot);
         sum += bar.density_bar * change.density_dot;
-        sum += motor_part(change, model, bar);
+        sum += motor_part(change, model, bar) + start.rate_bar[i].dot(change.rate_dot);
         result[change.parameter] += sum;
     }
+    for (const LinearChange& change : moved.linear_changes)
+        result[change.parameter] += linear_part(change.move, gradient, start, mechanism);
     return result;
 }
 

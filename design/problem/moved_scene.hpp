@@ -22,20 +22,29 @@ struct BodyChange {
     Vector6 rate_dot = Vector6::Zero();  ///< of the prescribed coordinates' rates
 };
 
+/// A move of what is linear in its parameter: numbers and vectors of joints, springs, motors and loads, velocities, forces, gravity.
+struct LinearChange {
+    int parameter = 0;
+    description::Move move;
+};
+
 struct MovedScene {
     core::scene::Scene scene;
     std::vector<BodyChange> changes;  ///< at most one per parameter and body, in that order
+    std::vector<LinearChange> linear_changes;
 };
 
 /// The scene at parameter values p (SI, one per parameter), and its derivative there.
-/// Errors: dimensions that make no valid part; `where` names the parameter's body and dimension.
+/// Errors: dimensions that make no valid part; `where` names the parameter's body and dimension. Springs, dampers and loads of 0
+/// (mechanism_moves.hpp).
 /// Contract: check_design finds nothing.
 Result<MovedScene> move_scene(const description::Design& design, const VectorX& p);
 
 /// dJ/dp from dJ/d(model data), exactly transposed to move_scene:
 ///   dJ/dp_k = sum over bodies <vertices_bar, dX/dp_k> + <R_bar, dR> + q_bar . (dR c + dx) + density_bar drho + sum_t increment_bar_t .
 ///   dincrement_t
-/// with q = R c + x for the reference point c, and the increment of a prescribed coordinate linear in its rate.
+/// with q = R c + x for the reference point c, and the increment of a prescribed coordinate linear in its rate. Of a model with joints the
+/// gradient first goes back through the start's assembly to what was written (adjoint/model).
 VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& gradient, int parameter_count);
 
 }  // namespace fettle::design::problem

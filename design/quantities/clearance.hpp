@@ -25,6 +25,8 @@ public:
     /// @param minimum  What the certificate's verdict (PairClearance::status) is about [m]; changes no bound.
     explicit Clearance(const ClearanceRange& range, double minimum = 0) : range_(range), minimum_(minimum) {}
 
+    const ClearanceRange& range() const { return range_; }
+    double minimum() const { return minimum_; }
     Dimension dimension() const override { return Dimension::length; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,

@@ -18,6 +18,10 @@ public:
     /// @param times    [s] within the simulation, as many as targets; or empty: free timing.
     MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times);
 
+    int body() const { return body_; }
+    const Vector3& point() const { return point_; }
+    const std::vector<Vector3>& targets() const { return targets_; }
+    const std::vector<double>& times() const { return times_; }
     Dimension dimension() const override { return Dimension::area; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,

@@ -21,6 +21,7 @@ public:
     /// Of these bodies of the scene, each by its own kind.
     Mass(const core::scene::Scene& scene, const std::vector<int>& bodies);
 
+    const std::vector<Of>& bodies() const { return bodies_; }
     Dimension dimension() const override { return Dimension::mass; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,

@@ -31,6 +31,9 @@ public:
     /// @param target  If given, the value is (stroke - target)^2 [m^2], else the stroke [m].
     Stroke(int body, const Vector3& axis, std::optional<double> target) : body_(body), axis_(axis), target_(target) {}
 
+    int body() const { return body_; }
+    const Vector3& axis() const { return axis_; }
+    const std::optional<double>& target() const { return target_; }
     Dimension dimension() const override { return target_ ? Dimension::area : Dimension::length; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,

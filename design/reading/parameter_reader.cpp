@@ -6,6 +6,7 @@
 
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
+#include "fettle/design/reading/mechanism_move_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -23,7 +24,8 @@ const std::vector<std::string_view> dof_names{"px", "py", "pz", "rx", "ry", "rz"
 std::vector<std::string_view> parameter_unit_names() {
     std::vector<std::string_view> names;
     for (const Dimension dimension :
-         {Dimension::length, Dimension::angle, Dimension::speed, Dimension::angular_speed, Dimension::density, Dimension::number}) {
+         {Dimension::length, Dimension::angle, Dimension::speed, Dimension::angular_speed, Dimension::acceleration, Dimension::force,
+          Dimension::torque, Dimension::stiffness, Dimension::density, Dimension::number}) {
         for (const Unit& unit : units()) {
             if (unit.dimension == dimension) names.push_back(unit.name);
         }
@@ -79,6 +81,10 @@ private:
 
     void read_move(const JsonNode& node, Parameter& parameter) {
         Move move;
+        if (is_mechanism_move(node)) {
+            if (auto read = read_mechanism_move(node, context_, parameter)) parameter.moves.push_back(std::move(*read));
+            return;
+        }
         if (node["motor"].exists()) {
             node.allow_keys({"motor", "rate", "scale", "offset"});
             read_motor(node, parameter, move);
@@ -92,9 +98,12 @@ private:
             node.allow_keys({"body", "density", "scale", "offset"});
             read_density(node, parameter, move);
         } else {
-            node.allow_keys({"body", "dimension", "position", "density", "motor", "rate", "scale", "offset"});
+            node.allow_keys({"body", "dimension", "position", "density", "turn", "velocity", "angular_velocity", "force", "motor", "rate",
+                             "joint", "spring", "damper", "load", "gravity", "scale", "offset"});
             node.fail(ErrorCode::missing_key,
-                      "a move says what it moves: `body` with `dimension`, `position` or `density`, or `motor` with `rate`");
+                      "a move says what it moves: `body` with `dimension`, `position`, `turn`, `velocity`, `angular_velocity`, `force` or "
+                      "`density`, `motor` with `rate`, `speed` or `value`, `joint`, `spring`, `damper` or `load` with what of it, or "
+                      "`gravity`");
         }
         if (const auto body = context_.body(node.require(node["motor"].exists() ? "motor" : "body"))) {
             move.body = *body;
@@ -102,22 +111,10 @@ private:
         }
     }
 
-    // scale is a pure number if parameter and target are of one kind, else the target's amount per unit of a pure number.
-    void read_scale(const JsonNode& node, const Parameter& parameter, Dimension dimension, double target_unit, Move& move) {
-        move.scale = node["scale"].number().value_or(1);
-        if (parameter.unit.dimension == Dimension::number && dimension != Dimension::number) {
-            move.scale *= target_unit;
-        } else if (parameter.unit.dimension != dimension) {
-            node.fail(ErrorCode::inconsistent, "parameter \"" + parameter.name + "\" is in " + std::string(parameter.unit.name) +
-                                                   ", which is not a measure of what it moves here; allowed: " + unit_names(dimension) +
-                                                   ", or 1");
-        }
-    }
-
     void read_dimension(const JsonNode& node, const Parameter& parameter, Move& move) {
         move.target = MoveTarget::dimension;
         move.dimension = node["dimension"].string().value_or("");
-        read_scale(node, parameter, Dimension::length, context_.length_unit, move);
+        move.scale = read_scale(node, parameter, Dimension::length, context_.length_unit);
         move.offset = node["offset"].length(context_.length_unit).value_or(0);
     }
 
@@ -125,7 +122,7 @@ private:
         move.target = MoveTarget::position;
         move.direction = node["position"].vector3().value_or(Vector3::UnitX());
         if (move.direction.norm() == 0) node["position"].fail(ErrorCode::out_of_range, "all coefficients are 0: this moves nothing");
-        read_scale(node, parameter, Dimension::length, context_.length_unit, move);
+        move.scale = read_scale(node, parameter, Dimension::length, context_.length_unit);
         move.position_offset = node["offset"].length3(context_.length_unit).value_or(Vector3::Zero());
         for (int i = 0; i < 3; ++i) {
             if (move.direction[i] == 0 && move.position_offset[i] != 0) {
@@ -138,7 +135,7 @@ private:
     void read_density(const JsonNode& node, const Parameter& parameter, Move& move) {
         move.target = MoveTarget::density;
         if (!node["density"].boolean().value_or(true)) node["density"].fail(ErrorCode::out_of_range, "`density` is true, or left out");
-        read_scale(node, parameter, Dimension::density, 1, move);
+        move.scale = read_scale(node, parameter, Dimension::density, 1);
         move.offset = node["offset"].quantity(Dimension::density, 1).value_or(0);
     }
 
@@ -148,7 +145,7 @@ private:
         move.dof = static_cast<int>(std::find(dof_names.begin(), dof_names.end(), name) - dof_names.begin());
         const Dimension dimension = move.dof >= 3 ? Dimension::angular_speed : Dimension::speed;
         const double unit = move.dof >= 3 ? to_si(1, *find_unit("deg/s")) : context_.length_unit;
-        read_scale(node, parameter, dimension, unit, move);
+        move.scale = read_scale(node, parameter, dimension, unit);
         move.offset = node["offset"].quantity(dimension, unit).value_or(0);
     }
 

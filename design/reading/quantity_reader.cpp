@@ -103,11 +103,27 @@ std::string mass_name(const JsonNode& node) {
 }  // namespace
 
 const std::vector<QuantityType>& quantity_table() {
-    static const std::vector<QuantityType> table{{"stroke", {"body", "axis", "target"}, read_stroke, stroke_name},
-                                                 {"marker_path", {"body", "point", "points", "times"}, read_marker_path, marker_name},
-                                                 {"play", {"a", "b"}, read_clearance, play_name},
-                                                 {"clearance", {"a", "b", "motion"}, read_clearance, clearance_name},
-                                                 {"mass", {"bodies"}, read_mass, mass_name}};
+    static const std::vector<QuantityType> table{
+        {"stroke",
+         {"body", "axis", "target"},
+         read_stroke,
+         stroke_name,
+         "m",
+         "how far a body travels along an axis over the motion; with `target`, in an objective, the square of what is missing"},
+        {"marker_path",
+         {"body", "point", "points", "times"},
+         read_marker_path,
+         marker_name,
+         "m^2",
+         "how far a point of a body stays from points that it should go through, at given `times` or in free timing"},
+        {"play", {"a", "b"}, read_clearance, play_name, "m", "certified least distance of two bodies as assembled, wanted small"},
+        {"clearance",
+         {"a", "b", "motion"},
+         read_clearance,
+         clearance_name,
+         "m",
+         "certified least distance of two bodies, as assembled or over the motion"},
+        {"mass", {"bodies"}, read_mass, mass_name, "kg", "mass of bodies"}};
     return table;
 }
 

@@ -20,6 +20,8 @@ struct QuantityType {
     /// @return nothing if something was wrong; the faults are with the document.
     std::shared_ptr<const description::Quantity> (*read)(const core::files::JsonNode& node, const ReadContext& context);
     std::string (*default_name)(const core::files::JsonNode& node);  ///< "stroke piston"
+    std::string_view unit;                                           ///< of its value
+    std::string_view meaning;                                        ///< for people: one line
 };
 const std::vector<QuantityType>& quantity_table();
 std::vector<std::string_view> quantity_names();

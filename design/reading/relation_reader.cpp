@@ -45,6 +45,7 @@ public:
         Relation relation;
         relation.name = unique_name(name.value_or(*text), names_);
         relation.at = [expression](const VectorX& p) { return evaluate(*expression, p); };
+        relation.formula = *text;
         read_bounds(node, expression->dimension, change(start), relation);
         return relation;
     }

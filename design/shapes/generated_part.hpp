@@ -21,6 +21,7 @@ public:
                                                                const ShapeOptions& options = {});
 
     const std::string& generator() const { return generator_; }
+    const ShapeOptions& options() const { return options_; }
     const std::vector<description::ShapeDimension>& dimensions() const override { return dimensions_; }
     Result<description::ShapeInstance> at(const std::vector<double>& values) const override;
     bool is_always_solid() const override { return true; }

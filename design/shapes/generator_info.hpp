@@ -19,6 +19,13 @@ struct DimensionInfo {
     DimensionKind kind = DimensionKind::length;
 };
 
+/// "dimension must be below limit", both at given dimensions [m].
+struct DimensionLimit {
+    std::string dimension;
+    double value = 0, limit = 0;
+    std::string reason;  ///< "or the pin leaves the disc"
+};
+
 struct GeneratorInfo {
     std::string name;
     std::string description;

@@ -102,6 +102,17 @@ std::vector<GeneratorInfo> generator_table() {
     return table;
 }
 
+std::vector<DimensionLimit> dimension_limits(const std::string& generator, const ShapeOptions& options) {
+    const Result<ShapeDefinition> definition = find_definition(generator);
+    std::vector<DimensionLimit> limits;
+    if (!definition) return limits;
+    Errors none;
+    const Dimensions values = read_dimensions(definition->info, {}, none);
+    for (const Relation& relation : definition->relations(values, options.segments))
+        limits.push_back({relation.dimension, relation.value, relation.limit, relation.reason});
+    return limits;
+}
+
 Result<GeneratedShape> generate(const std::string& generator, const std::map<std::string, double>& dimensions,
                                 const ShapeOptions& options) {
     const Result<ShapeDefinition> definition = find_definition(generator);

@@ -29,6 +29,9 @@ struct GeneratedShape {
 /// All generators with their dimensions.
 std::vector<GeneratorInfo> generator_table();
 
+/// What must hold between the dimensions of a generator for a valid solid, at its defaults; empty for a name that is none.
+std::vector<DimensionLimit> dimension_limits(const std::string& generator, const ShapeOptions& options = {});
+
 /// @param generator   Name of a row of generator_table().
 /// @param dimensions  By name [m]; those left out take their defaults.
 /// @return  The shape, or every fault: unknown_key (generator or dimension, with the nearest known one), not_finite, out_of_range (what

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "fettle/adjoint/stepper/row_multipliers.hpp"
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
@@ -160,10 +161,14 @@ ModelTangent mechanism_direction(const SweepScene& scene, std::mt19937_64& rando
         if (term.kind == core::model::LawKind::spring) m.term_reference[k] = 0.05 * unit(random);
         if (term.kind == core::model::LawKind::stop) m.term_reference[k] = 1e-3 * unit(random);
         for (double& v : m.term_values[k]) v = 0.3 * unit(random);
+        if (term.kind == core::model::LawKind::force) m.term_rate[k] = 0.3 * unit(random);
     }
     for (std::size_t i = 0; i < m.row_constant.size(); ++i) {
         m.row_constant[i] = 0.01 * unit(random);
         for (double& v : m.row_values[i]) v = 0.1 * unit(random);
+        m.row_rate[i] = 0.02 * unit(random);
+        if (m.row_factors[i].size() > 1)
+            for (double& v : m.row_factors[i]) v = 0.01 * unit(random);
     }
     return d;
 }
@@ -177,10 +182,13 @@ core::model::Model with_mechanism(core::model::Model model, const MechanismTange
     for (std::size_t k = 0; k < m.terms.size(); ++k) {
         m.terms[k].coefficient += s * d.term_coefficient[k];
         m.terms[k].reference += s * d.term_reference[k];
+        m.terms[k].curve.rate += s * d.term_rate[k];
         for (std::size_t i = 0; i < m.terms[k].curve.values.size(); ++i) m.terms[k].curve.values[i] += s * d.term_values[k][i];
     }
     for (std::size_t i = 0; i < m.rows.size(); ++i) {
         m.rows[i].constant += s * d.row_constant[i];
+        m.rows[i].curve.rate += s * d.row_rate[i];
+        for (std::size_t k = 0; k < m.rows[i].parts.size(); ++k) m.rows[i].parts[k].factor += s * d.row_factors[i][k];
         for (std::size_t k = 0; k < m.rows[i].curve.values.size(); ++k) m.rows[i].curve.values[k] += s * d.row_values[i][k];
     }
     return model;
@@ -192,10 +200,12 @@ double mechanism_pairing(const MechanismGradient& bar, const MechanismTangent& d
         sum += bar.frames[i].point.dot(dot.frames[i].point) + bar.frames[i].axes.cwiseProduct(dot.frames[i].axes).sum();
     for (std::size_t k = 0; k < dot.term_coefficient.size(); ++k) {
         sum += bar.term_coefficient[k] * dot.term_coefficient[k] + bar.term_reference[k] * dot.term_reference[k];
+        sum += bar.term_rate[k] * dot.term_rate[k];
         for (std::size_t i = 0; i < dot.term_values[k].size(); ++i) sum += bar.term_values[k][i] * dot.term_values[k][i];
     }
     for (std::size_t i = 0; i < dot.row_constant.size(); ++i) {
-        sum += bar.row_constant[i] * dot.row_constant[i];
+        sum += bar.row_constant[i] * dot.row_constant[i] + bar.row_rate[i] * dot.row_rate[i];
+        for (std::size_t k = 0; k < dot.row_factors[i].size(); ++k) sum += bar.row_factors[i][k] * dot.row_factors[i][k];
         for (std::size_t k = 0; k < dot.row_values[i].size(); ++k) sum += bar.row_values[i][k] * dot.row_values[i][k];
     }
     return sum;
@@ -205,7 +215,7 @@ double mechanism_pairing(const MechanismGradient& bar, const MechanismTangent& d
 template <class At>
 double difference_error(const At& at, double derivative) {
     double least = INFINITY;
-    for (const double s : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
+    for (const double s : {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6}) {  // below 1e-5 what is flat counts as flat still
         const double difference = (at(s) - at(-s)) / (2 * s), finer = (at(s / 2) - at(-s / 2)) / s;
         const double extrapolated = (4 * finer - difference) / 3;
         least = std::min(least, std::abs(extrapolated - derivative) / std::abs(derivative));
@@ -213,7 +223,62 @@ double difference_error(const At& at, double derivative) {
     return least;
 }
 
+// Multipliers of all rows and steps, weighted; large where forces are: of the size of what they carry.
+std::vector<VectorX> multiplier_weights(const std::vector<VectorX>& multipliers, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    double size = 0;
+    for (const VectorX& m : multipliers) size = std::max(size, m.lpNorm<Eigen::Infinity>());
+    std::vector<VectorX> out;
+    for (const VectorX& m : multipliers) {
+        out.push_back(VectorX(m.size()));
+        for (double& w : out.back()) w = unit(random) / size;
+    }
+    return out;
+}
+
+double weighted(const std::vector<VectorX>& weights, const std::vector<VectorX>& multipliers) {
+    double sum = 0;
+    for (std::size_t t = 0; t < weights.size(); ++t) sum += weights[t].dot(multipliers[t]);
+    return sum;
+}
+
 }  // namespace
+
+TEST_CASE("what joints and motors carry: backwards, forwards and differences agree", "[adjoint][joints]") {
+    for (const SweepScene& scene : joint_scenes()) {
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        std::mt19937_64 random(31);
+        TrajectoryGradient seed = random_seed(scene, random);
+        seed.multiplier_bar = multiplier_weights(row_multipliers(scene.model, trajectory), random);
+        const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
+        REQUIRE(gradients);
+        const auto check = [&](const ModelTangent& direction, const auto& at_model, const std::string& what) {
+            std::vector<VectorX> multipliers_dot;
+            const auto tangents = tangent_sweep(scene.model, trajectory, direction, &multipliers_dot);
+            REQUIRE(tangents);
+            const double backwards =
+                pairing(scene, (*gradients)[0], direction) + mechanism_pairing((*gradients)[0].mechanism, direction.mechanism);
+            const double forwards = pairing(seed, trajectory, *tangents) + weighted(seed.multiplier_bar, multipliers_dot);
+            const auto at = [&](double s) {
+                const core::model::Model model = at_model(s);
+                const core::stepper::Trajectory there = run(model, scene.steps, true).trajectory;
+                return objective(seed, there) + weighted(seed.multiplier_bar, row_multipliers(model, there));
+            };
+            const double error = difference_error(at, forwards);
+            CAPTURE(scene.name, what, backwards, forwards, error);
+            CHECK(std::abs(backwards - forwards) <= 1e-9 * std::abs(forwards));
+            CHECK(error < 1e-6);
+        };
+        const ModelTangent mechanism = mechanism_direction(scene, random);
+        check(
+            mechanism, [&](double s) { return with_mechanism(scene.model, mechanism.mechanism, s); }, "mechanism");
+        for (const ParameterKind kind : {ParameterKind::vertices, ParameterKind::gravity, ParameterKind::density}) {
+            const ModelTangent direction = random_direction(scene, kind, random);
+            check(
+                direction, [&](double s) { return moved(scene, direction, s); }, to_string(kind));
+        }
+    }
+}
 
 TEST_CASE("joints, springs and motors: backwards and forwards agree", "[adjoint][joints]") {
     for (const SweepScene& scene : joint_scenes()) {

@@ -82,10 +82,10 @@ TEST_CASE("The moving plane bounds every point of two triangles, in 50-digit ari
         const Vector3 n1 = unit_direction(n0 + random_vector(random, trial % 4 < 2 ? 0 : u(random)));
         const MovingPlane plane =
             moving_plane(instant_at(segment, s0), instant_at(segment, s0 + h / 2), instant_at(segment, s0 + h), n0, n1);
-        const SegmentBound bound =
-            segment_bound(segment, h, plane, corner_coefficients(plane, a, b), {corners_reach(segment.a, a), corners_reach(segment.b, b)});
+        const SegmentBound bound = segment_bound(segment, h, plane, corner_coefficients(plane, a, b),
+                                                 {corners_reach(*segment.a, a), corners_reach(*segment.b, b)});
         const SegmentBound without_rest = segment_bound(segment, h, plane, corner_coefficients(plane, a, b),
-                                                        {corners_reach(segment.a, a), corners_reach(segment.b, b)}, 0);
+                                                        {corners_reach(*segment.a, a), corners_reach(*segment.b, b)}, 0);
         CHECK((n0.norm() <= 1 && n1.norm() <= 1));
         for (const double v : {0.0, 0.125, 0.5, 0.625, 1.0}) {
             Exact least_a = 1e300, largest_b = -1e300;
@@ -145,7 +145,7 @@ TEST_CASE("The bound converges with the square of the interval, tilting faces in
         const auto loss_with = [&](const Vector3& n0, const Vector3& n1) {
             const MovingPlane plane = moving_plane(start, instant_at(segment, 0.5), end, n0, n1);
             const SegmentBound bound = segment_bound(segment, 1, plane, corner_coefficients(plane, corner, face),
-                                                     {corners_reach(segment.a, corner), corners_reach(segment.b, face)});
+                                                     {corners_reach(*segment.a, corner), corners_reach(*segment.b, face)});
             const double d0 = placed_distance(start, {corner, 3}, {face, 3}).distance,
                          d1 = placed_distance(end, {corner, 3}, {face, 3}).distance;
             return std::min(d0, d1) - bound.lower;

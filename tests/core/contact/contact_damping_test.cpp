@@ -77,8 +77,7 @@ Derivatives derivatives(const Setup& s, const VectorX& y, HessianKind kind = Hes
     out.gradient = to_tangent.transpose() * out.gradient;
     out.hessian = to_tangent.transpose() * out.hessian * to_tangent;
     for (int i = 0; i < 2 && kind == HessianKind::exact; ++i)
-        out.hessian.block<3, 3>(6 * i + 3, 6 * i + 3) +=
-            chart_curvature(gradients[i].arm, kinematics::rotation_derivatives(y.segment<3>(6 * i + 3)));
+        out.hessian.block<3, 3>(6 * i + 3, 6 * i + 3) += kinematics::chart_curvature(gradients[i].arm, y.segment<3>(6 * i + 3));
     return out;
 }
 

@@ -164,6 +164,23 @@ TEST_CASE("rotation, gradient and Hessian agree with 50-digit arithmetic") {
     CHECK(worst_hessian < 1e-14);
 }
 
+TEST_CASE("rotation_curvature is the Hessian summed against a matrix") {
+    Matrix3 s;
+    s << 0.3, -1.2, 2.5, 0.7, 0.1, -0.4, 1.9, 0.6, -2.2;
+    double worst = 0;
+    for (const Vector3& theta : sample_vectors(2)) {
+        const RotationDerivatives d = rotation_derivatives(theta);
+        const Matrix3 curvature = rotation_curvature(s, theta);
+        for (int a = 0, n = 0; a < 3; ++a)
+            for (int b = a; b < 3; ++b, ++n) {
+                const double expected = s.cwiseProduct(d.hessian[n]).sum();
+                worst = std::max({worst, std::abs(curvature(a, b) - expected), std::abs(curvature(b, a) - expected)});
+            }
+    }
+    CAPTURE(worst);
+    CHECK(worst < 1e-13);
+}
+
 TEST_CASE("small rotations keep the relative accuracy of every entry") {
     const Vector3 theta(1e-9, -3e-12, 2e-15);
     const RealMatrix r = reference_rotation(exact(theta));

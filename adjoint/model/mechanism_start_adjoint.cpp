@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
+
+#include "fettle/adjoint/constraint/assembly_adjoint.hpp"
+#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/model/mechanism_start.hpp"
+
+namespace fettle::adjoint::model {
+namespace {
+
+using core::constraint::AssemblyProblem;
+using core::constraint::RowPart;
+using core::kinematics::Pose;
+using core::measure::Measure;
+using core::model::Body;
+using core::model::Model;
+using Motions = std::vector<Vector6>;
+
+// <bar, [phi] R> = axial . phi.
+Vector3 axial_of(const Matrix3& bar, const Matrix3& rotation) {
+    const Matrix3 s = bar * rotation.transpose();
+    return {s(2, 1) - s(1, 2), s(0, 2) - s(2, 0), s(1, 0) - s(0, 1)};
+}
+
+Matrix34 pose_change(const Vector6& motion, const Matrix3& rotation) {
+    Matrix34 out;
+    out << cross_matrix(motion.tail<3>()) * rotation, motion.head<3>();
+    return out;
+}
+
+// A gradient entry by entry whose product with each motion is that of the tangent gradient.
+Matrix34 entries_of(const Vector6& tangent, const Matrix3& rotation) {
+    Matrix34 out;
+    out << 0.5 * cross_matrix(tangent.tail<3>()) * rotation, tangent.head<3>();
+    return out;
+}
+
+std::vector<Pose> start_poses(const Model& model) {
+    std::vector<Pose> out;
+    for (const Body& body : model.bodies) out.push_back(body.pose_start);
+    return out;
+}
+
+std::vector<Matrix3> frame_rotations(const Model& model) {
+    std::vector<Matrix3> out;
+    for (const core::measure::Frame& f : model.mechanism.set.frames)
+        out.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity())
+                                                     : model.bodies[static_cast<std::size_t>(f.body)].pose_start.rotation);
+    return out;
+}
+
+// The projection of start velocities backwards.
+class AgreedVelocities {
+public:
+    AgreedVelocities(const Model& model, const AssemblyProblem& problem, std::vector<Matrix4>& moments_bar)
+        : model_(model),
+          problem_(problem),
+          moments_bar_(moments_bar),
+          frames_(placed(model.mechanism.set.frames, start_poses(model))),
+          rotations_(frame_rotations(model)),
+          rows_(row_jacobian(problem.set, problem.rows, frames_)),
+          solver_(problem.index, problem.count) {}
+
+    // @param agreed_bar  (v, omega) of what the model has. Adds to the poses' gradients and the mechanism's.
+    void reverse(const Motions& agreed_bar, WrittenStartGradient& out, Motions& pose_bar, ModelGradient& gradient) {
+        const Motions& written = model_.mechanism.written.velocities;
+        core::kinematics::BlockHessian mass;
+        for (const Body& body : model_.bodies)
+            mass.diagonal.push_back(core::kinematics::mass_matrix(body.pose_start.rotation, body.moments));
+        if (!solver_.factorise(mass, rows_)) return;  // as forwards: nothing is made to agree
+        const auto found = solver_.solve(VectorX::Zero(problem_.count), rates() - multiply(rows_, written));
+        const auto back = solver_.solve(gathered(agreed_bar), VectorX::Zero(rows_.count()));
+        const Motions delta = scattered(found.y), lambda = scattered(back.y);
+        Motions agreed = written, reaction(written.size(), Vector6::Zero());
+        add_transposed(rows_, back.multipliers, reaction);
+        for (std::size_t i = 0; i < agreed.size(); ++i) {
+            agreed[i] += delta[i];
+            spread(i, agreed_bar[i], -reaction[i], out);
+            add_mass(i, lambda[i], delta[i], pose_bar[i]);
+        }
+        add_rows(-found.multipliers, lambda, pose_bar, gradient);
+        add_rows(-back.multipliers, agreed, pose_bar, gradient);
+        add_rates(back.multipliers, gradient.mechanism);
+    }
+
+private:
+    VectorX rates() const {
+        VectorX out(rows_.count());
+        for (int i = 0; i < rows_.count(); ++i)
+            out[i] = core::model::rate_at_start(problem_.rows[static_cast<std::size_t>(i)].curve, model_.timestep);
+        return out;
+    }
+
+    VectorX gathered(const Motions& values) const {
+        VectorX out(problem_.count);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            for (int k = 0; k < 6; ++k)
+                if (problem_.index[i][k] >= 0) out[problem_.index[i][k]] = values[i][k];
+        return out;
+    }
+
+    Motions scattered(const VectorX& y) const {
+        Motions out(problem_.index.size(), Vector6::Zero());
+        for (std::size_t i = 0; i < out.size(); ++i)
+            for (int k = 0; k < 6; ++k)
+                if (problem_.index[i][k] >= 0) out[i][k] = y[problem_.index[i][k]];
+        return out;
+    }
+
+    // Of a prescribed coordinate the rows see its curve's rate; the body has it only where its velocity had to change.
+    void spread(std::size_t i, const Vector6& of_body, const Vector6& of_rows, WrittenStartGradient& out) const {
+        const bool is_written = !model_.mechanism.written.is_velocity_changed[i];
+        for (int k = 0; k < 6; ++k) {
+            const bool is_its_own = is_free(model_.bodies[i], k);
+            (is_its_own || is_written ? out.velocity_bar : out.rate_bar)[i][k] += of_body[k];
+            (is_its_own ? out.velocity_bar : out.rate_bar)[i][k] += of_rows[k];
+        }
+    }
+
+    // - lambda . M delta = - <V_lambda moments, V_delta>, in R and in the moments.
+    void add_mass(std::size_t i, const Vector6& lambda, const Vector6& delta, Vector6& pose_bar) {
+        const Matrix3& R = model_.bodies[i].pose_start.rotation;
+        const Matrix4& moments = problem_.moments[i];
+        const Matrix34 a = pose_change(lambda, R), b = pose_change(delta, R);
+        const Matrix34 ma = a * moments, mb = b * moments;
+        pose_bar.tail<3>() += axial_of(cross_matrix(lambda.tail<3>()) * mb.leftCols<3>(), R);
+        pose_bar.tail<3>() += axial_of(cross_matrix(delta.tail<3>()) * ma.leftCols<3>(), R);
+        const Matrix4 product = a.transpose() * b;
+        moments_bar_[i] -= 0.5 * (product + product.transpose());
+    }
+
+    // sum weight_i (C motion)_i in poses and frames.
+    void add_rows(const VectorX& weights, const Motions& motion, Motions& pose_bar, ModelGradient& gradient) const {
+        const core::measure::MeasureSet& set = problem_.set;
+        for (std::size_t i = 0; i < problem_.rows.size(); ++i)
+            for (std::size_t k = 0; k < problem_.rows[i].parts.size(); ++k) {
+                const RowPart& part = problem_.rows[i].parts[k];
+                const Measure& m = set.measures[static_cast<std::size_t>(part.measure)];
+                const core::measure::VectorFunction f = vector_function(m, frames_);
+                const int a = set.frames[static_cast<std::size_t>(m.a)].body, b = set.frames[static_cast<std::size_t>(m.b)].body;
+                Vector12 v = Vector12::Zero();
+                if (a != core::measure::world) v.head<6>() = motion[static_cast<std::size_t>(a)];
+                if (b != core::measure::world) v.tail<6>() = motion[static_cast<std::size_t>(b)];
+                const double of_row = weights[static_cast<Eigen::Index>(i)], weight = part.factor * of_row;
+                add_placement_gradient_of_change(m, f, weight, {frames_, rotations_}, v, gradient.mechanism.frames);
+                const Vector12 of_poses = weight * pose_gradient_of_change(m, f, frames_, v);
+                if (a != core::measure::world) pose_bar[static_cast<std::size_t>(a)] += of_poses.head<6>();
+                if (b != core::measure::world) pose_bar[static_cast<std::size_t>(b)] += of_poses.tail<6>();
+                const core::measure::PoseGradients g = pose_gradients(m, f, frames_);
+                gradient.mechanism.row_factors[i][k] +=
+                    of_row * (tangent_gradient(g.a).dot(v.head<6>()) + tangent_gradient(g.b).dot(v.tail<6>()));
+            }
+    }
+
+    // core::model::rate_at_start, which is linear in a curve's numbers.
+    void add_rates(const VectorX& bar, MechanismGradient& out) const {
+        for (std::size_t i = 0; i < problem_.rows.size(); ++i) {
+            core::scene::Curve curve = problem_.rows[i].curve;
+            const double weight = bar[static_cast<Eigen::Index>(i)];
+            std::fill(curve.values.begin(), curve.values.end(), 0.0);
+            curve.rate = 1;
+            out.row_rate[i] += weight * core::model::rate_at_start(curve, model_.timestep);
+            curve.rate = 0;
+            for (std::size_t k = 0; k < curve.values.size(); ++k) {
+                curve.values[k] = 1;
+                out.row_values[i][k] += weight * core::model::rate_at_start(curve, model_.timestep);
+                curve.values[k] = 0;
+            }
+        }
+    }
+
+    const Model& model_;
+    const AssemblyProblem& problem_;
+    std::vector<Matrix4>& moments_bar_;
+    const std::vector<core::measure::PlacedFrame> frames_;
+    const std::vector<Matrix3> rotations_;
+    const core::constraint::RowJacobian rows_;
+    core::constraint::SaddleSolver solver_;
+};
+
+// The assembly backwards. The gradients of the poses as written take the place of those of the poses.
+void reverse_assembly(const Model& model, const AssemblyProblem& problem, Motions& pose_bar, std::vector<Matrix4>& moments_bar,
+                      MechanismGradient& mechanism) {
+    const std::vector<Pose> assembled = start_poses(model);
+    std::vector<Matrix34> entries;
+    for (std::size_t i = 0; i < assembled.size(); ++i) entries.push_back(entries_of(pose_bar[i], assembled[i].rotation));
+    const constraint::AssemblyGradient found =
+        constraint::assembly_adjoint(problem, {}, model.mechanism.written.poses, assembled, entries, model.mechanism.angles_start);
+    pose_bar = found.written_bar;
+    for (std::size_t i = 0; i < moments_bar.size(); ++i) moments_bar[i] += found.moments_bar[i];
+    for (std::size_t f = 0; f < found.frames.size(); ++f) {
+        mechanism.frames[f].point += found.frames[f].point;
+        mechanism.frames[f].axes += found.frames[f].axes;
+    }
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+        const double bar = found.targets_bar[static_cast<Eigen::Index>(i)];
+        const core::scene::Curve& curve = problem.rows[i].curve;
+        mechanism.row_constant[i] += bar;
+        const std::vector<double> weights = core::scene::curve_weights(curve, 0);
+        for (std::size_t k = 0; k < weights.size(); ++k) mechanism.row_values[i][k] += weights[k] * bar;
+        for (std::size_t k = 0; k < problem.rows[i].parts.size(); ++k) mechanism.row_factors[i][k] += found.factors_bar[i][k];
+    }
+}
+
+void add_moments(const Model& model, const std::vector<Matrix4>& moments_bar, ModelGradient& gradient) {
+    for (std::size_t i = 0; i < moments_bar.size(); ++i) {
+        if (moments_bar[i].isZero(0)) continue;
+        const Body& body = model.bodies[i];
+        const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+        gradient.bodies[i].density_bar += moments_bar[i].cwiseProduct(solid).sum();
+        geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar[i],
+                                        gradient.bodies[i].vertices_bar);
+    }
+}
+
+}  // namespace
+
+WrittenStartGradient written_start_adjoint(const Model& model, ModelGradient& gradient) {
+    const std::size_t n = model.bodies.size();
+    WrittenStartGradient out{Motions(n, Vector6::Zero()), Motions(n, Vector6::Zero()), Motions(n, Vector6::Zero())};
+    Motions velocity_bar(n, Vector6::Zero());
+    for (std::size_t i = 0; i < n; ++i) {
+        const Matrix3& R = model.bodies[i].pose_start.rotation;
+        const Matrix34 &pose = gradient.bodies[i].pose_start_bar, &velocity = gradient.bodies[i].velocity_start_bar;
+        const Matrix34& rate = model.bodies[i].velocity_start;
+        velocity_bar[i] << velocity.col(3), axial_of(velocity.leftCols<3>(), R);
+        // Pdot = [[omega] R, v] turns with R.
+        const Matrix3 omega = rate.leftCols<3>() * R.transpose();
+        out.pose_bar[i] << pose.col(3), axial_of(pose.leftCols<3>() + omega.transpose() * velocity.leftCols<3>(), R);
+    }
+    if (model.mechanism.rows.empty()) {
+        out.velocity_bar = velocity_bar;
+        return out;
+    }
+    const AssemblyProblem problem = core::model::start_problem(model);
+    std::vector<Matrix4> moments_bar(n, Matrix4::Zero());
+    if (!model.mechanism.written.velocities.empty())
+        AgreedVelocities(model, problem, moments_bar).reverse(velocity_bar, out, out.pose_bar, gradient);
+    reverse_assembly(model, problem, out.pose_bar, moments_bar, gradient.mechanism);
+    add_moments(model, moments_bar, gradient);
+    return out;
+}
+
+}  // namespace fettle::adjoint::model

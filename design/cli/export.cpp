@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+/// fettle export FILE --to FILE|FOLDER: parts and their motion for other programs. What is in the files: design/exports/export_files.hpp.
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/records/geometry_hash.hpp"
+#include "fettle/core/records/path_hash.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/mesh_subject.hpp"
+#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/shown_motion.hpp"
+#include "fettle/design/exports/export_files.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/urdf/urdf_writer.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using exports::Format;
+
+constexpr const char* csv = "csv";
+
+struct ExportArguments {
+    ShownOptions shown;
+    std::string to, formats, arrange = "assembled";
+    int every = 1;
+};
+
+/// Where the files go, which, and what they are called.
+struct Plan {
+    fs::path folder;
+    std::string stem;
+    std::vector<std::string> formats;  ///< of format_names(), and "csv"
+    bool one_file = false;             ///< --to names a file
+};
+
+std::vector<std::string> all_formats() {
+    std::vector<std::string> names = exports::format_names();
+    names.push_back(csv);
+    return names;
+}
+
+Result<std::vector<std::string>> wanted_formats(const std::string& text) {
+    const std::vector<std::string> known = all_formats();
+    if (text.empty()) return known;
+    std::vector<std::string> wanted;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        wanted.push_back(text.substr(at, comma - at));
+        at = comma + 1;
+        if (std::find(known.begin(), known.end(), wanted.back()) != known.end()) continue;
+        return Error{ErrorCode::out_of_range, "--format", "`" + wanted.back() + "` is no format; there are glb, 3mf, stl, obj, vtu, csv"};
+    }
+    return wanted;
+}
+
+Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
+    Plan plan;
+    const fs::path to = options.to;
+    std::string extension = to.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::vector<std::string> known = all_formats();
+    const std::string name = extension == ".pvd" ? "vtu" : extension.substr(extension.empty() ? 0 : 1);
+    plan.one_file = std::find(known.begin(), known.end(), name) != known.end() && !fs::is_directory(to);
+    if (!plan.one_file && !extension.empty() && !fs::exists(to))
+        return Error{ErrorCode::unsupported, "--to",
+                     "`" + extension + "` is no format; there are .glb .3mf .stl .obj .vtu .pvd .csv .urdf (a folder's name ends in /)"};
+    if (!plan.one_file) {
+        const auto formats = wanted_formats(options.formats);
+        if (!formats) return formats.errors();
+        return Plan{to, stem, *formats, false};
+    }
+    if (!options.formats.empty())
+        return Error{ErrorCode::inconsistent, "--format", "the name given by --to says the format; --format goes with a folder"};
+    if (options.arrange == "parts" && name != "glb" && name != "vtu" && name != csv)
+        return Error{ErrorCode::inconsistent, "--arrange", "a file for each part needs a folder: --to FOLDER --format " + name};
+    plan.folder = to.has_parent_path() ? to.parent_path() : ".";
+    plan.stem = to.stem().string();
+    plan.formats = {name};
+    return plan;
+}
+
+/// The time series: poses at the ends of the steps, and of a run's folder its tables.
+Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::FileSink& sink) {
+    const std::string name = plan.one_file ? plan.stem + ".csv" : "poses.csv";
+    const fs::path temporary = plan.folder / name;
+    Errors errors =
+        core::records::write_poses(temporary, shown.subject.trajectory, shown.subject.model, unit_name(shown.subject.model.length_unit));
+    if (!errors.empty()) return errors;
+    const Result<std::string> written = core::files::read_file(temporary);
+    if (!written) return written.errors();
+    errors = sink(name, *written);
+    if (plan.one_file) return errors;
+    for (const char* table : {"steps.csv", "contacts.csv", "drives.csv", "joints.csv"}) {
+        const fs::path from = fs::path(shown.file).parent_path() / table;
+        std::error_code code;
+        const bool own = shown.subject.source == SubjectSource::trajectory && fs::exists(from, code);
+        if (!errors.empty() || !own || fs::equivalent(from.parent_path(), plan.folder, code)) continue;
+        const Result<std::string> text = core::files::read_file(from);
+        errors = text ? sink(table, *text) : text.errors();
+    }
+    return errors;
+}
+
+/// Files of the bodies' meshes, which a certificate can speak of.
+bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
+
+/// Writes into the certificate which files were made of its bodies. Errors: it is about another path or other bodies.
+Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair<std::string, double>>& files) {
+    auto certificate = core::certificate::read_certificate(shown.certificate);
+    if (!certificate) return certificate.errors();
+    if (certificate->geometry_hash != core::records::geometry_hash(shown.subject.model) ||
+        certificate->path_hash != core::records::path_hash(shown.subject.trajectory))
+        return {{ErrorCode::inconsistent, shown.certificate, "is not about the bodies and the path of " + shown.file}};
+    for (const auto& [file, rounding] : files) {
+        auto named = named_files({file}, shown.certificate);
+        if (!named) return named.errors();
+        named->front().rounding = rounding;
+        std::erase_if(certificate->exports, [&](const auto& exported) { return exported.file == named->front().file; });
+        certificate->exports.push_back(named->front());
+    }
+    return core::certificate::write_certificate(shown.certificate, *certificate);
+}
+
+/// Of a scene alone: trajectories have no joints.
+int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    const Result<core::scene::Scene> scene = core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs));
+    if (!scene) return console.input_errors(scene.errors());
+    core::model::BuildOptions build;
+    build.check_start = false;
+    const Result<core::model::Model> model = core::model::build_model(*scene, build);
+    if (!model) return console.input_errors(model.errors());
+    const auto robot = urdf::robot_of_scene(*scene, *model, fs::path(options.to).stem().string());
+    if (!robot) return console.input_errors(robot.errors());
+    tell_warnings(console, robot->warnings);
+    Json files = Json::array();
+    std::string text;
+    for (const auto& [name, bytes] : robot->files) {
+        const fs::path path = fs::path(options.to).parent_path() / name;
+        const Errors errors = core::files::write_file_atomically(path, bytes);
+        if (!errors.empty()) return console.input_errors(errors);
+        files.push_back({{"file", path.string()}, {"format", "urdf"}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
+        text += path.string() + "\n";
+    }
+    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", robot->warnings}}, text);
+    return exit_done;
+}
+
+int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
+    Result<ShownMotion> shown = load_shown(options.shown, common, console);
+    if (!shown) return console.input_errors(shown.errors());
+    const Result<Plan> plan = plan_of(options, shown->stem);
+    if (!plan) return console.input_errors(plan.errors());
+    if (const Errors errors = try_output_folder(plan->folder); !errors.empty()) return console.input_errors(errors);
+    exports::ExportOptions how;
+    const auto& arrangements = exports::arrangement_names();
+    how.arrangement =
+        static_cast<exports::Arrangement>(std::find(arrangements.begin(), arrangements.end(), options.arrange) - arrangements.begin());
+    how.every = options.every;
+    Json files = Json::array();
+    std::vector<std::pair<std::string, double>> of_meshes;  // and their rounding
+    std::string text, format;
+    double rounding = 0;
+    const exports::FileSink sink = [&](const std::string& name, const std::string& bytes) -> Errors {
+        const std::string path = (plan->folder / name).string();
+        files.push_back({{"file", path}, {"format", format}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
+        text += formatted("%s  %zu bytes\n", path.c_str(), bytes.size());
+        if (has_meshes_alone(format) && !name.ends_with(".mtl")) of_meshes.emplace_back(path, rounding);
+        return core::files::write_file_atomically(plan->folder / name, bytes);
+    };
+    for (const std::string& each : plan->formats) {
+        format = each;
+        Errors errors;
+        if (each == csv) {
+            errors = export_series(*shown, *plan, sink);
+        } else {
+            const auto& names = exports::format_names();
+            const auto kind = static_cast<Format>(std::find(names.begin(), names.end(), each) - names.begin());
+            rounding = has_meshes_alone(each) ? exports::export_rounding(shown->assembly, kind) : 0;
+            errors = exports::export_files(shown->assembly, kind, how, plan->stem, sink);
+        }
+        if (!errors.empty()) return console.input_errors(errors);
+    }
+    if (!shown->certificate.empty() && !of_meshes.empty()) {
+        const Errors errors = name_in_certificate(*shown, of_meshes);
+        if (!errors.empty()) return console.input_errors(errors);
+        text += shown->certificate + " names these files of meshes: fettle validate says when one has changed\n";
+    }
+    Json json{{"status", "ok"}, {"files", std::move(files)}};
+    if (!shown->certificate.empty()) json["certificate"] = shown->certificate;
+    console.result(json, text);
+    return exit_done;
+}
+
+}  // namespace
+
+Command add_export(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("export", "Parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf");
+    auto options = std::make_shared<ExportArguments>();
+    add_shown_options(app, options->shown);
+    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: of a scene), or folder")
+        .required();
+    app.option("--format", options->formats, "Into a folder: which, with commas (default: glb,3mf,stl,obj,vtu,csv)");
+    app.option("--arrange", options->arrange,
+               "3mf, stl, obj: assembled (default), plate (side by side for printing), parts (a file each, in its own frame)")
+        .one_of(exports::arrangement_names());
+    app.option("--every", options->every, "vtu: a frame for every so many steps (default 1)").at_least(1);
+    app.closing_words(
+        "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. Of a certificate, it then names the files of\n"
+        "meshes, and fettle validate says \"stale\" when one has changed.\n"
+        "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
+        "          fettle export fit.certificate.json --to print.3mf --arrange plate");
+    return {app, [options, &common](Console& console) { return run_export(*options, common, console); }};
+}
+
+}  // namespace fettle::design::cli

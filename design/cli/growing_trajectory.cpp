@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/growing_trajectory.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/cli/output_folder.hpp"
+
+namespace fettle::design::cli {
+
+namespace fs = std::filesystem;
+
+std::string run_to_continue(const std::string& path) {
+    std::error_code code;
+    if (!fs::is_directory(path, code)) return path;
+    const fs::path running = fs::path(path) / running_file;
+    return (fs::exists(running, code) ? running : fs::path(path) / "trajectory.json").string();
+}
+
+GrowingTrajectory::GrowingTrajectory(const fs::path& folder, const core::model::Model& model, std::string scene_path,
+                                     const fs::path& continued)
+    : file_(folder / running_file), model_(model), scene_path_(std::move(scene_path)) {
+    std::error_code code;
+    replaces_ = !continued.empty() && fs::equivalent(file_, continued, code);
+}
+
+GrowingTrajectory::~GrowingTrajectory() {
+    if (handle_ >= 0) ::close(handle_);
+}
+
+bool GrowingTrajectory::put(const std::string& text) {
+    for (std::string_view left = text; !left.empty();) {
+        const ssize_t written = ::write(handle_, left.data(), left.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        left.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+// What was there stays until all of it, as far as it is gone on with, is in the new file.
+Errors GrowingTrajectory::begin(const std::string& text) {
+    if (!replaces_) {
+        const Result<std::string> kept = keep_longer_run(file_, 0);
+        if (!kept) return kept.errors();
+    }
+    Errors errors = core::files::write_file_atomically(file_, lines_->header(scene_path_) + text);
+    if (!errors.empty()) return errors;
+    handle_ = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (handle_ < 0) return {{ErrorCode::file_unreadable, file_.string(), std::generic_category().message(errno)}};
+    return {};
+}
+
+void GrowingTrajectory::write(const core::stepper::Simulation& so_far, Console& console) {
+    if (failed_) return;
+    const bool first = !lines_;
+    if (first) lines_ = std::make_unique<core::records::TrajectoryLines>(so_far.trajectory, model_);
+    std::string text;
+    for (std::size_t step = steps_; step < so_far.trajectory.steps.size(); ++step) text += lines_->next_step();
+    const bool passed = so_far.checkpoint.step != checkpoint_;
+    if (passed) text += lines_->checkpoint(so_far.checkpoint);
+    checkpoint_ = so_far.checkpoint.step;
+    std::string fault;
+    if (first) {
+        const Errors errors = begin(text);
+        if (!errors.empty()) fault = errors.front().message;
+    } else if (!put(text)) {
+        fault = std::generic_category().message(errno);
+    } else if (passed) {
+        ::fdatasync(handle_);
+    }
+    steps_ = so_far.trajectory.steps.size();
+    failed_ = !fault.empty();
+    if (failed_) console.narrate("warning: " + file_.string() + ": " + fault + "; a run that is killed from here on leaves less");
+}
+
+void GrowingTrajectory::remove() {
+    std::error_code ignored;
+    if (lines_) fs::remove(file_, ignored);
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// fettle import ROBOT.urdf --to X.scene.json: a robot description as a scene (design/urdf/urdf_scene.hpp).
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/session.hpp"
+#include "fettle/design/urdf/urdf_parser.hpp"
+#include "fettle/design/urdf/urdf_scene.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct ImportArguments {
+    std::string path, to;
+    bool floating = false;
+};
+
+int run_import(const ImportArguments& arguments, const CommonOptions& common, Console& console) {
+    const std::string ending = ".scene.json";
+    if (!arguments.to.ends_with(ending))
+        return console.input_errors({{ErrorCode::unsupported, "--to", "a scene is X" + ending + ", found " + arguments.to}});
+    const Result<std::string> text = core::files::read_file(arguments.path);
+    if (!text) return console.input_errors(text.errors());
+    const auto robot = urdf::parse_urdf(*text, arguments.path);
+    if (!robot) return console.input_errors(robot.errors());
+    urdf::ImportOptions options;
+    options.folder = fs::path(arguments.path).parent_path().string();
+    options.mesh_dirs = common.mesh_dirs;
+    const std::string name = fs::path(arguments.to).filename().string();
+    options.stem = name.substr(0, name.size() - ending.size());
+    options.floating = arguments.floating;
+    const auto scene = urdf::scene_of_robot(*robot, options);
+    if (!scene) return console.input_errors(scene.errors());
+    tell_warnings(console, scene->warnings);
+    Json files = Json::array();
+    std::string told;
+    for (const auto& [file, contents] : scene->files) {
+        const fs::path path = fs::path(arguments.to).parent_path() / file;
+        const Errors errors = core::files::write_file_atomically(path, contents);
+        if (!errors.empty()) return console.input_errors(errors);
+        files.push_back(path.string());
+        told += path.string() + "\n";
+    }
+    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", scene->warnings}}, told);
+    return exit_done;
+}
+
+}  // namespace
+
+Command add_import(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("import", "A robot description (URDF) as a scene: links, joints, limits, meshes");
+    auto options = std::make_shared<ImportArguments>();
+    app.option("FILE", options->path, "ROBOT.urdf").required();
+    app.option("--to", options->to, "Scene to write, X.scene.json; meshes go to X.meshes beside it").required();
+    app.flag("--floating", options->floating, "The root link is free (default: it does not move)");
+    app.closing_words("Example:  fettle import arm.urdf --to arm.scene.json && fettle simulate arm.scene.json --out out");
+    return {app, [options, &common](Console& console) { return run_import(*options, common, console); }};
+}
+
+}  // namespace fettle::design::cli

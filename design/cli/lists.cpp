@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+/// fettle shapes, quantities, joints, optimisers: what there is, from the tables that the readers themselves use.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/scene/joint_kind.hpp"
+#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/session.hpp"
+#include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/svg_writer.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/shapes/shape_generator.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One entry of a list: `facts` has all of it, `line` is for people; `details` is shown where its name was asked for.
+struct Entry {
+    std::string name, line, details;
+    Json facts;
+};
+
+int answer(const std::string& what, const std::vector<Entry>& entries, const std::string& name, Console& console) {
+    Json list = Json::array();
+    std::string text;
+    std::size_t width = 0;
+    std::vector<std::string_view> names;
+    for (const Entry& entry : entries) {
+        width = std::max(width, entry.name.size());
+        names.push_back(entry.name);
+    }
+    for (const Entry& entry : entries) {
+        if (!name.empty() && entry.name != name) continue;
+        list.push_back(entry.facts);
+        text += entry.name + std::string(width - entry.name.size() + 2, ' ') + entry.line + "\n" + (name.empty() ? "" : entry.details);
+    }
+    if (list.empty())
+        return console.input_errors({{ErrorCode::unknown_key, name,
+                                      "there is none of this name among the " + what + "; " + core::files::did_you_mean(name, names)}});
+    console.result({{"status", "ok"}, {what, std::move(list)}}, text);
+    return exit_done;
+}
+
+std::string millimetres(double metres) { return formatted("%.6g", metres * 1e3); }
+
+Entry shape_entry(const shapes::GeneratorInfo& info) {
+    Entry entry{info.name, info.description, "", {{"name", info.name}, {"description", info.description}}};
+    entry.facts["dimensions"] = Json::array();
+    for (const shapes::DimensionInfo& d : info.dimensions) {
+        const bool coordinate = d.kind == shapes::DimensionKind::coordinate;
+        entry.facts["dimensions"].push_back(
+            {{"name", d.name}, {"default", d.default_value}, {"kind", coordinate ? "coordinate" : "length"}, {"meaning", d.meaning}});
+        entry.details += formatted("  %-26s %9s mm  %s%s\n", d.name.c_str(), millimetres(d.default_value).c_str(), d.meaning.c_str(),
+                                   coordinate ? " (any sign)" : "");
+    }
+    entry.facts["relations"] = Json::array();
+    for (const shapes::DimensionLimit& limit : shapes::dimension_limits(info.name)) {
+        entry.facts["relations"].push_back(
+            {{"dimension", limit.dimension}, {"value", limit.value}, {"below", limit.limit}, {"reason", limit.reason}});
+        entry.details += "  " + limit.dimension + " is " + millimetres(limit.value) + " mm and must be below " + millimetres(limit.limit) +
+                         " mm" + (limit.reason.empty() ? "" : ", " + limit.reason) + "\n";
+    }
+    return entry;
+}
+
+/// At its defaults, seen obliquely.
+Errors draw_shape(const std::string& name, const std::string& file) {
+    const auto shape = shapes::generate(name, {});
+    if (!shape) return shape.errors();
+    const bool png = file.ends_with(".png");
+    if (!png && !file.ends_with(".svg")) return {{ErrorCode::unsupported, "--draw", "a picture is .png or .svg, found " + file}};
+    exports::Assembly assembly;
+    assembly.parts.push_back({name, exports::part_colour(0), shape->mesh, Vector3::Zero(), false});
+    assembly.keyframes.push_back({0, true, {core::kinematics::Pose{}}});
+    exports::PictureOptions options;
+    options.view = exports::projection_view("iso", Vector3::UnitZ(), "").value();
+    options.width = 900;
+    options.height = 700;
+    options.title = name + ", default dimensions";
+    const exports::Picture picture = exports::draw_picture(assembly, assembly.keyframes.front().poses, options);
+    return core::files::write_file_atomically(file, png ? exports::png_bytes(exports::inked(picture)) : exports::svg_text(picture));
+}
+
+struct ShapesArguments {
+    std::string name, draw;
+};
+
+int run_shapes(const ShapesArguments& options, Console& console) {
+    std::vector<Entry> entries;
+    for (const shapes::GeneratorInfo& info : shapes::generator_table()) entries.push_back(shape_entry(info));
+    const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.name == options.name; });
+    if (!options.draw.empty() && options.name.empty())
+        return console.input_errors({{ErrorCode::missing_key, "--draw", "which shape? fettle shapes NAME --draw " + options.draw}});
+    if (!options.draw.empty() && known) {
+        const Errors errors = draw_shape(options.name, options.draw);
+        if (!errors.empty()) return console.input_errors(errors);
+    }
+    return answer("shapes", entries, options.name, console);
+}
+
+int run_quantities(const std::string& name, Console& console) {
+    std::vector<Entry> entries;
+    for (const reading::QuantityType& type : reading::quantity_table()) {
+        const std::vector<std::string> keys(type.keys.begin(), type.keys.end());
+        const std::string meaning(type.meaning), unit(type.unit), own(type.name);
+        entries.push_back({own,
+                           meaning + " [" + unit + "]",
+                           "  keys: " + core::base::joined(keys) + "\n",
+                           {{"name", own}, {"keys", keys}, {"unit", unit}, {"meaning", meaning}}});
+    }
+    return answer("quantities", entries, name, console);
+}
+
+int run_joints(const std::string& name, Console& console) {
+    std::vector<Entry> entries;
+    for (const core::scene::JointKindInfo& info : core::scene::joint_kinds()) {
+        const std::vector<std::string> keys(info.keys.begin(), info.keys.end());
+        const std::string meaning(info.meaning), own(info.name), coordinate(info.coordinate);
+        std::string details = "  keys: " + core::base::joined(keys) + "\n";
+        if (!coordinate.empty())
+            details += "  its " + coordinate + " takes stiffness, rest, preload, damping, friction, limits, and motors\n";
+        entries.push_back({own,
+                           meaning,
+                           details,
+                           {{"name", own},
+                            {"meaning", meaning},
+                            {"freedoms", info.freedoms},
+                            {"coordinate", coordinate.empty() ? Json() : Json(coordinate)},
+                            {"keys", keys}}});
+    }
+    return answer("joints", entries, name, console);
+}
+
+int run_optimisers(const std::string& name, Console& console) {
+    std::vector<Entry> entries;
+    for (const optimisers::OptimiserInfo& info : optimisers::optimiser_table())
+        entries.push_back({info.name, info.description, "", {{"name", info.name}, {"description", info.description}}});
+    return answer("optimisers", entries, name, console);
+}
+
+Command add_list(CommandLine& program, const std::string& command, const std::string& description, const std::string& example,
+                 int (*run)(const std::string&, Console&)) {
+    CommandLine app = program.command(command, description);
+    auto name = std::make_shared<std::string>();
+    app.option("NAME", *name, "One of them, with all that there is to say (default: all)");
+    app.closing_words("Example:  fettle " + command + " " + example);
+    return {app, [name, run](Console& console) { return run(*name, console); }};
+}
+
+}  // namespace
+
+Command add_shapes(CommandLine& program) {
+    CommandLine app = program.command("shapes", "Generators of parts: dimensions, defaults, relations, a drawing");
+    auto options = std::make_shared<ShapesArguments>();
+    app.option("NAME", options->name, "One of them, with all its dimensions (default: all)");
+    app.option("--draw", options->draw, "Draw it at its defaults: .png or .svg");
+    app.closing_words("Example:  fettle shapes crank --draw crank.svg");
+    return {app, [options](Console& console) { return run_shapes(*options, console); }};
+}
+
+Command add_quantities(CommandLine& program) {
+    return add_list(program, "quantities", "What an objective can sum and a constraint bound", "stroke", run_quantities);
+}
+
+Command add_joints(CommandLine& program) {
+    return add_list(program, "joints", "Kinds of joint that a scene can have", "revolute", run_joints);
+}
+
+Command add_optimisers(CommandLine& program) {
+    return add_list(program, "optimisers", "Optimisers that a design can name", "ipopt", run_optimisers);
+}
+
+}  // namespace fettle::design::cli

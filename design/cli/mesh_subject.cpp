@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/mesh_subject.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
+#include "fettle/core/geometry/mesh_repair.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/design/cli/inputs.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::geometry::Mesh;
+
+std::vector<std::string> meshes_in(const fs::path& folder) {
+    std::vector<std::string> files;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code))
+        if (entry.is_regular_file(code) && file_kind(entry.path().string()) == FileKind::mesh) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+bool is_3mf(const std::string& path) {
+    const std::string extension = fs::path(path).extension().string();
+    return extension == ".3mf" || extension == ".3MF";
+}
+
+Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& paths) {
+    std::vector<std::string> files;
+    Errors errors;
+    for (const std::string& path : paths) {
+        std::error_code code;
+        if (fs::is_directory(path, code)) {
+            const std::vector<std::string> found = meshes_in(path);
+            files.insert(files.end(), found.begin(), found.end());
+            if (found.empty()) errors.push_back({ErrorCode::file_not_found, path, "there is no mesh in this folder"});
+        } else if (file_kind(path) == FileKind::mesh) {
+            files.push_back(path);
+        } else {
+            errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
+        }
+    }
+    if (!errors.empty()) return errors;
+    return files;
+}
+
+/// What lists of pairs can name, and no other body has.
+std::string body_name(std::string name, std::set<std::string>& taken) {
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ':' || c == ',' || c == '*'; }, '_');
+    if (name.empty()) name = "part";
+    std::string unique = name;
+    for (int count = 2; !taken.insert(unique).second; ++count) unique = name + " " + std::to_string(count);
+    return unique;
+}
+
+core::scene::Body body_of(Mesh mesh, const std::string& path, const CommonOptions& common, std::set<std::string>& taken,
+                          std::vector<std::string>& warnings) {
+    core::scene::Body body;
+    body.name = body_name(mesh.name, taken);
+    body.where = path;
+    body.type = core::scene::BodyType::static_body;
+    body.density_given = false;
+    if (!common.strict) {
+        body.mesh_policy = core::scene::MeshPolicy::tolerant;
+        for (const std::string& done : core::geometry::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
+    }
+    body.mesh = std::move(mesh);
+    return body;
+}
+
+}  // namespace
+
+bool are_meshes(const std::vector<std::string>& paths) {
+    if (paths.empty()) return false;
+    std::error_code code;
+    const fs::path first = paths.front();
+    if (fs::is_directory(first, code)) return !fs::exists(first / "trajectory.json", code) && !meshes_in(first).empty();
+    return file_kind(paths.front()) == FileKind::mesh;
+}
+
+Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common) {
+    const Result<std::vector<std::string>> files = mesh_files(paths);
+    if (!files) return files.errors();
+    core::scene::Scene scene;
+    scene.length_unit = 1e-3;
+    Errors errors;
+    if (!unit.empty()) {
+        const Result<double> metres = core::base::metres_per_unit(unit, "--unit");
+        if (!metres) return metres.errors();
+        scene.length_unit = *metres;
+    }
+    MeshSubject subject;
+    subject.files = *files;
+    std::set<std::string> taken;
+    for (const std::string& path : *files) {
+        if (unit.empty() && !is_3mf(path)) {
+            errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
+            continue;
+        }
+        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true});
+        errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
+        if (!parts) continue;
+        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, common, taken, subject.warnings));
+    }
+    if (!errors.empty()) return errors;
+    core::model::BuildOptions options;
+    options.check_start = false;
+    Result<core::model::Model> model = core::model::build_model(scene, options);
+    if (!model) return model.errors();
+    subject.model = std::move(*model);
+    const auto& more = subject.model.warnings;
+    subject.warnings.insert(subject.warnings.end(), more.begin(), more.end());
+    return subject;
+}
+
+Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate) {
+    std::vector<core::certificate::ExportedFile> named;
+    Errors errors;
+    const fs::path folder = fs::absolute(certificate).parent_path();
+    for (const std::string& file : files) {
+        const Result<std::string> bytes = core::files::read_file(file);
+        errors.insert(errors.end(), bytes.errors().begin(), bytes.errors().end());
+        if (!bytes) continue;
+        const fs::path full = fs::absolute(file).lexically_normal(), near = full.lexically_relative(folder.lexically_normal());
+        const bool below = !near.empty() && *near.begin() != "..";
+        named.push_back({below ? near.string() : full.string(), core::files::hash_of(*bytes), 0});
+    }
+    if (!errors.empty()) return errors;
+    return named;
+}
+
+}  // namespace fettle::design::cli

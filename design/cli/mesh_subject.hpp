@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// Mesh files as a scene: parts where the files have them, nothing moves. For checks of a CAD project without a scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/design/cli/session.hpp"
+
+namespace fettle::design::cli {
+
+/// Meshes by their extension, or a folder that holds one (and no trajectory.json). Of a list the first decides.
+bool are_meshes(const std::vector<std::string>& paths);
+
+struct MeshSubject {
+    core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
+    std::vector<std::string> files;
+    std::vector<std::string> warnings;
+};
+
+/// Bodies: one for each file, called as it without its extension; of a 3MF one for each item of its build, where the build places it,
+/// called as its object. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are written with, become `_`. A folder
+/// stands for the meshes in it (not below it), in the order of their names. Meshes are mended and judged as those of a scene.
+/// @param unit  of files that state none: "mm"; empty: not given.
+/// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
+/// neither a mesh nor a folder among meshes).
+Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common);
+
+/// The files as a certificate names them, relative to its folder where they lie below it. Errors: a file that cannot be read.
+Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate);
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/shown_motion.hpp"
+
+#include <filesystem>
+
+#include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/mesh_subject.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> up_names{"x", "-x", "y", "-y", "z", "-z"};
+
+/// Of a folder the trajectory in it, of a certificate that beside it.
+Result<std::string> file_to_read(const ShownOptions& options, std::string& certificate) {
+    const std::string& path = options.path;
+    std::error_code code;
+    if (fs::is_directory(path, code) && !are_meshes({path})) {
+        for (const char* name : {"trajectory.json", "trajectory.running.json"})
+            if (fs::exists(fs::path(path) / name, code)) return (fs::path(path) / name).string();
+        return Error{ErrorCode::file_not_found, path,
+                     "this folder has no trajectory.json and no mesh; fettle simulate SCENE --out " + path + " writes a trajectory"};
+    }
+    if (!fs::is_directory(path, code) && file_kind(path) == FileKind::certificate) {
+        certificate = path;
+        return options.trajectory.empty() ? certificate_trajectory(path) : options.trajectory;
+    }
+    return path;
+}
+
+/// "runs/fit.trajectory.json" -> "fit", "out/trajectory.json" -> "out", "parts/" -> "parts".
+std::string stem_of(const std::string& path) {
+    std::string name = fs::path(path).filename().string();
+    if (name.empty()) name = fs::path(path).parent_path().filename().string();
+    const fs::path folder = fs::absolute(path).parent_path();
+    if (name == "trajectory.json" || name == "trajectory.running.json") return folder.filename().string();
+    for (const char* ending : {".scene.json", ".design.json", ".trajectory.json", ".certificate.json", ".json"})
+        if (name.size() > std::string_view(ending).size() && name.ends_with(ending))
+            return name.substr(0, name.size() - std::string_view(ending).size());
+    return fs::is_directory(path) ? name : fs::path(name).stem().string();
+}
+
+/// A stored trajectory has no gravity; its scene has, if it is still there.
+void take_gravity(const CommonOptions& common, Subject& subject) {
+    std::error_code code;
+    if (subject.source != SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
+    if (file_kind(subject.scene_path) != FileKind::scene) return;
+    const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs));
+    if (scene) subject.model.gravity = scene->gravity;
+}
+
+}  // namespace
+
+void add_shown_options(CommandLine& app, ShownOptions& options) {
+    app.option("FILE", options.path,
+               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: of a run, or with meshes")
+        .required();
+    app.option("--unit", options.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--trajectory", options.trajectory, "Of a certificate: the path that it speaks of (default: beside it)");
+    app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
+        .one_of(up_names);
+}
+
+Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions& common, Console& console) {
+    ShownMotion shown;
+    const Result<std::string> file = file_to_read(options, shown.certificate);
+    if (!file) return file.errors();
+    shown.file = *file;
+    shown.stem = stem_of(options.path);
+    SubjectOptions subject_options;
+    subject_options.path = *file;
+    subject_options.unit = options.unit;
+    Result<Subject> subject = load_subject(subject_options, common, console);
+    if (!subject) return subject.errors();
+    shown.subject = std::move(*subject);
+    take_gravity(common, shown.subject);
+    shown.assembly = exports::assembly_of(shown.subject.model, shown.subject.trajectory);
+    if (!options.up.empty()) {
+        const int axis = options.up.back() - 'x';
+        shown.assembly.up = (options.up.size() > 1 ? -1.0 : 1.0) * Vector3::Unit(axis);
+    }
+    return shown;
+}
+
+}  // namespace fettle::design::cli

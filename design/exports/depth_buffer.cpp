@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/exports/depth_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle::design::exports {
+
+DepthBuffer::DepthBuffer(int width, int height, const core::mesh_files::Colour& background) {
+    const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    image_.width = width;
+    image_.height = height;
+    image_.pixels.assign(count, background);
+    depth_.assign(count, -std::numeric_limits<double>::infinity());
+}
+
+void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core::mesh_files::Colour& colour) {
+    const Vector3 &a = corners[0], &b = corners[1], &c = corners[2];
+    const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    if (!(std::abs(area) > 1e-12)) return;
+    const auto first = [](double x) { return std::max(0, static_cast<int>(std::ceil(std::max(x, 0.0) - 0.5))); };
+    const auto last = [](double x, int count) { return std::min(count - 1, static_cast<int>(std::floor(std::min(x, count + 1.0) - 0.5))); };
+    const int x_end = last(std::max({a.x(), b.x(), c.x()}), image_.width), y_end = last(std::max({a.y(), b.y(), c.y()}), image_.height);
+    for (int y = first(std::min({a.y(), b.y(), c.y()})); y <= y_end; ++y) {
+        for (int x = first(std::min({a.x(), b.x(), c.x()})); x <= x_end; ++x) {
+            const double px = x + 0.5, py = y + 0.5;
+            const double wb = ((px - a.x()) * (c.y() - a.y()) - (py - a.y()) * (c.x() - a.x())) / area;
+            const double wc = ((b.x() - a.x()) * (py - a.y()) - (b.y() - a.y()) * (px - a.x())) / area;
+            if (!(wb >= 0 && wc >= 0 && wb + wc <= 1)) continue;
+            const double z = a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z());
+            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
+            if (!(z > depth_[at])) continue;
+            depth_[at] = z;
+            image_.pixels[at] = colour;
+        }
+    }
+}
+
+// The line may lie on the border of what covers it: the deepest of the pixels round it counts.
+bool DepthBuffer::is_visible(const Vector3& point, double tolerance) const {
+    const int x = static_cast<int>(std::floor(point.x())), y = static_cast<int>(std::floor(point.y()));
+    double deepest = std::numeric_limits<double>::infinity();
+    for (int v = y - 1; v <= y + 1; ++v) {
+        for (int u = x - 1; u <= x + 1; ++u) {
+            if (u < 0 || v < 0 || u >= image_.width || v >= image_.height) return true;
+            deepest = std::min(deepest,
+                               depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(u)]);
+        }
+    }
+    return point.z() >= deepest - tolerance;
+}
+
+std::vector<std::array<double, 2>> DepthBuffer::visible(const Vector3& from, const Vector3& to, double tolerance) const {
+    const double length = (to - from).head<2>().norm();
+    if (!(length < 1e6)) return {};
+    const int count = std::max(1, static_cast<int>(std::ceil(length)));
+    std::vector<std::array<double, 2>> stretches;
+    bool open = false;
+    for (int i = 0; i < count; ++i) {
+        const bool seen = is_visible(from + (i + 0.5) / count * (to - from), tolerance);
+        if (seen && !open) stretches.push_back({static_cast<double>(i) / count, 1.0});
+        if (!seen && open) stretches.back()[1] = static_cast<double>(i) / count;
+        open = seen;
+    }
+    std::erase_if(stretches, [&](const auto& s) { return (s[1] - s[0]) * length < std::min(3.0, 0.9 * length); });
+    return stretches;
+}
+
+}  // namespace fettle::design::exports

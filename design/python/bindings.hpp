@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// The parts of the Python module `fettle._fettle`, one file each, in the order of the library's layers. No arithmetic: what is computed is
+/// the library's, and what is pleasant is Python's (fettle/).
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace fettle::design::python {
+
+void bind_scene(pybind11::module_& module);       ///< meshes and scenes, read
+void bind_model(pybind11::module_& module);       ///< Model
+void bind_trajectory(pybind11::module_& module);  ///< Trajectory, simulations
+void bind_clearance(pybind11::module_& module);   ///< clearances, certificates
+void bind_design(pybind11::module_& module);      ///< shapes, quantities, designs, read
+void bind_problem(pybind11::module_& module);     ///< DesignProblem
+void bind_studies(pybind11::module_& module);     ///< audits, optimisation
+void bind_for_tests(pybind11::module_& module);
+
+}  // namespace fettle::design::python

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/python/model_arrays.hpp"
+#include "fettle/design/python/motion_records.hpp"
+#include "fettle/design/python/watch.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+using core::certificate::Certificate;
+using core::clearance::ClearanceOptions;
+using core::clearance::PairClearance;
+using core::clearance::PairRequest;
+using core::model::Model;
+using core::stepper::Trajectory;
+
+namespace {
+
+std::vector<PairRequest> pairs_that_may_collide(const Model& model, double minimum) {
+    std::vector<PairRequest> pairs;
+    const int bodies = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < bodies; ++a)
+        for (int b = a + 1; b < bodies; ++b)
+            if (core::model::may_collide(model, a, b)) pairs.push_back({.a = a, .b = b, .minimum = minimum});
+    return pairs;
+}
+
+void check_request(const Model& model, const Trajectory& trajectory, const std::vector<PairRequest>& pairs, bool motion) {
+    if (trajectory.body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
+    if (motion && trajectory.steps.empty()) throw py::value_error("the trajectory has no steps, and so no motion");
+    for (const PairRequest& pair : pairs) {
+        body_at(model, pair.a), body_at(model, pair.b);
+        if (pair.a == pair.b) throw py::value_error("a pair is of two bodies");
+    }
+}
+
+struct ClearanceArguments {
+    const Model& model;
+    const Trajectory& trajectory;
+    const std::vector<PairRequest>& pairs;
+};
+
+std::vector<PairClearance> certify(const ClearanceArguments& about, ClearanceOptions options, const py::object& progress) {
+    check_request(about.model, about.trajectory, about.pairs, options.motion);
+    Watch watch(progress);
+    std::vector<PairClearance> found;
+    {
+        const py::gil_scoped_release unlocked;
+        options.on_pair = watch.on_count();
+        options.should_stop = watch.should_stop();
+        found = core::clearance::certify_clearance(about.model, about.trajectory, about.pairs, options);
+    }
+    watch.end();
+    return found;
+}
+
+std::shared_ptr<Trajectory> or_as_assembled(const std::shared_ptr<Trajectory>& trajectory, const Model& model) {
+    return trajectory ? trajectory : std::make_shared<Trajectory>(core::clearance::as_assembled(model));
+}
+
+}  // namespace
+
+void bind_clearance(py::module_& module) {
+    py::class_<Certificate, std::shared_ptr<Certificate>>(module, "Certificate", "The proof of clearances as data.")
+        .def(py::init<>())
+        .def_readonly("motion", &Certificate::motion)
+        .def(
+            "write",
+            [](const Certificate& self, const std::string& path) { raise_if_any(core::certificate::write_certificate(path, self)); },
+            py::arg("path"))
+        .def_static(
+            "read", [](const std::string& path) { return value_or_raise(core::certificate::read_certificate(path)); }, py::arg("path"))
+        .def(
+            "check",
+            [](const Certificate& self, const Model& model, const Trajectory& trajectory) {
+                if (trajectory.body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
+                const py::gil_scoped_release unlocked;
+                return core::certificate::check_certificate(self, model, trajectory);
+            },
+            py::arg("model"), py::arg("trajectory"), "Checked by code that shares nothing with the search: a CertificateReport.");
+    module.def(
+        "certify_clearance",
+        [](const Model& model, const std::shared_ptr<Trajectory>& trajectory, const std::optional<std::vector<PairRequest>>& pairs,
+           double minimum, double tolerance, bool margin_curve, const std::shared_ptr<Certificate>& certificate,
+           const py::object& progress) {
+            const std::shared_ptr<Trajectory> path = or_as_assembled(trajectory, model);
+            ClearanceOptions options;
+            options.tolerance = tolerance;
+            options.motion = trajectory != nullptr;
+            options.margin_curve = margin_curve;
+            options.certificate = certificate.get();
+            const auto wanted = pairs ? *pairs : pairs_that_may_collide(model, minimum);
+            return certify({model, *path, wanted}, options, progress);
+        },
+        py::arg("model"), py::arg("trajectory") = py::none(), py::arg("pairs") = py::none(), py::arg("minimum") = 0.0,
+        py::arg("tolerance") = 1e-6, py::arg("margin_curve") = false, py::arg("certificate") = py::none(), py::arg("progress") = py::none(),
+        "Proven bounds [m] of the least distance of pairs of bodies, rounding included: over the continuous motion of the trajectory, or, "
+        "without one, as assembled. pairs: PairRequests; None: all that may collide, with `minimum`. certificate: gets the proofs.");
+}
+
+}  // namespace fettle::design::python

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/design_records.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/reading/design_text.hpp"
+#include "fettle/design/reading/expression.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+using description::Relation;
+using description::RelationValue;
+
+namespace {
+
+// at(p) -> (value, gradient).
+std::function<RelationValue(const VectorX&)> relation_function(py::handle callable) {
+    return [function = shared_object(callable)](const VectorX& p) {
+        const py::gil_scoped_acquire locked;
+        const auto [value, gradient] = (*function)(p).cast<std::pair<double, VectorX>>();
+        return RelationValue{value, gradient};
+    };
+}
+
+description::Design design_round_trip(description::Design design) { return with_formulas(std::move(design)); }
+
+}  // namespace
+
+Relation relation_from_python(py::handle source) {
+    Relation relation;
+    relation.name = source.attr("name").cast<std::string>();
+    relation.bounds = source.attr("bounds").cast<description::Bounds>();
+    relation.tolerance = source.attr("tolerance").cast<double>();
+    relation.formula = source.attr("formula").cast<std::string>();
+    const py::object at = source.attr("at");
+    if (!at.is_none()) relation.at = relation_function(at);
+    return relation;
+}
+
+py::object relation_to_python(const Relation& relation) {
+    py::dict members;
+    members["name"] = relation.name;
+    members["bounds"] = relation.bounds;
+    members["tolerance"] = relation.tolerance;
+    members["formula"] = relation.formula;
+    if (relation.formula.empty() && relation.at) {
+        members["at"] = py::cpp_function([at = relation.at](const VectorX& p) {
+            const RelationValue found = at(p);
+            return py::make_tuple(found.value, found.gradient);
+        });
+    }
+    return record_class("Relation")(**members);
+}
+
+description::Design with_formulas(description::Design design) {
+    for (Relation& relation : design.relations) {
+        if (relation.at || relation.formula.empty()) continue;
+        auto expression = std::make_shared<const reading::Expression>(
+            value_or_raise(reading::parse_expression(relation.formula, design.parameters, "relation `" + relation.name + "`")));
+        relation.at = [expression](const VectorX& p) { return reading::evaluate(*expression, p); };
+    }
+    return design;
+}
+
+void bind_design(py::module_& module) {
+    using Paths = std::vector<std::string>;
+    bind_shapes(module);
+    bind_quantities(module);
+    const py::call_guard<py::gil_scoped_release> unlocked;
+    module.def(
+        "read_design", [](const std::string& path, const Paths& dirs) { return value_or_raise(reading::read_design(path, {dirs})); },
+        py::arg("path"), py::arg("mesh_dirs") = Paths(), unlocked, "The DesignFile of a *.design.json, with its scene.");
+    module.def(
+        "parse_design",
+        [](const std::string& text, const std::string& path, const Paths& dirs) {
+            return value_or_raise(reading::parse_design(text, path, {dirs}));
+        },
+        py::arg("text"), py::arg("path"), py::arg("mesh_dirs") = Paths(), unlocked,
+        "The same of a text; `path` says where its scene is looked for.");
+    module.def(
+        "design_text",
+        [](const reading::DesignFile& file, const VectorX& values, const std::string& directory) {
+            if (values.size() != static_cast<Eigen::Index>(file.design.parameters.size()))
+                throw py::value_error("one value for each parameter");
+            return reading::design_text(file, values, directory);
+        },
+        py::arg("file"), py::arg("values"), py::arg("directory") = ".",
+        "The design's file with other values of its parameters (SI), to be written in that folder.");
+    module.def("as_library_has_it", &design_round_trip, py::arg("design"), "For tests.");
+    module.def(
+        "to_si", [](double number, const Unit& unit) { return core::base::to_si(number, unit); }, py::arg("number"), py::arg("unit"));
+    module.def("from_si", &description::from_si, py::arg("si"), py::arg("unit"));
+}
+
+}  // namespace fettle::design::python

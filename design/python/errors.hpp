@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// Errors of the library as Python exceptions: a failed Result is thrown with what it holds, and becomes fettle.Error, whose `errors` have
+/// code, where and message.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <utility>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::design::python {
+
+/// Carries errors to Python. Thrown with or without the interpreter's lock.
+class RaisedErrors : public std::exception {
+public:
+    explicit RaisedErrors(Errors errors) : errors_(std::move(errors)) {}
+    const char* what() const noexcept override { return "fettle.Error"; }
+    const Errors& errors() const { return errors_; }
+
+private:
+    Errors errors_;
+};
+
+template <class T>
+T value_or_raise(Result<T> result) {
+    if (!result) throw RaisedErrors(result.errors());
+    return std::move(result).value();
+}
+inline void raise_if_any(const Errors& errors) {
+    if (!errors.empty()) throw RaisedErrors(errors);
+}
+
+/// What a Python callable raised as fettle.Error or ValueError, as errors of the library; others are thrown on.
+/// Contract: the interpreter's lock is held.
+Errors errors_of(pybind11::error_already_set& raised, const std::string& where);
+
+void bind_errors(pybind11::module_& module);
+
+}  // namespace fettle::design::python

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""A design as plain data (the library's design/description/): SI units. Shapes and quantities of one's own derive from Shape and Quantity.
+
+    design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
+    fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
+    design.parameters.append(fettle.Parameter("radius", 5e-3, 4e-3, 6e-3, "mm", [fettle.Move(body=0, dimension="radius")]))
+"""
+import dataclasses
+import math
+from typing import Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _fettle
+from ._record import Record
+from .scene import Body, Mesh, Scene, Vector
+
+Array = NDArray[np.float64]
+
+
+class Shape:
+    """A part whose vertices are a function of named dimensions [m]. Derive from it; called from several threads, one after the other."""
+
+    #: Are the triangles of `at` always a solid's? Where this is not said, the mesh of every trial is checked.
+    always_solid: bool = False
+
+    def dimensions(self) -> Dict[str, float]:
+        """Names and values of the part as drawn [m]."""
+        raise NotImplementedError
+
+    def at(self, values: Dict[str, float]) -> Tuple[Mesh, Mapping[str, ArrayLike]]:
+        """The part at these dimensions, and d vertices / d dimension (n, 3) by name. The triangles are the same for all values.
+        Raise fettle.Error or ValueError for dimensions that make no part."""
+        raise NotImplementedError
+
+
+@dataclasses.dataclass(eq=False)
+class GeneratedPart(Record, Shape):
+    """A generator's part (fettle.generators() lists them); dimensions that are left out take their defaults."""
+
+    generator: str
+    values: Dict[str, float] = dataclasses.field(default_factory=dict)  #: [m]
+    segments: int = 24  #: of a full circle
+
+    def dimensions(self) -> Dict[str, float]:
+        return {**_fettle.generators()[self.generator], **self.values}
+
+    def at(self, values: Dict[str, float]) -> Tuple[Mesh, Mapping[str, ArrayLike]]:
+        return _fettle.shape_at(self, values)
+
+
+@dataclasses.dataclass(eq=False)
+class FunctionShape(Record, Shape):
+    """A part from a function: function(dimensions) -> (Mesh, {dimension: d vertices / d dimension (n, 3)})."""
+
+    function: Callable[[Dict[str, float]], Tuple[Mesh, Mapping[str, ArrayLike]]]
+    values: Dict[str, float]
+    always_solid: bool = False
+
+    def dimensions(self) -> Dict[str, float]:
+        return self.values
+
+    def at(self, values: Dict[str, float]) -> Tuple[Mesh, Mapping[str, ArrayLike]]:
+        return self.function(values)
+
+
+@dataclasses.dataclass(eq=False)
+class QuantityGradient(Record):
+    """Derivatives of a number in what a simulated design is made of; None or absent: zero."""
+
+    positions: Optional[ArrayLike] = None  #: (steps + 1, bodies, 3)
+    rotations: Optional[ArrayLike] = None  #: (steps + 1, bodies, 3, 3), entry by entry
+    vertices: Dict[int, ArrayLike] = dataclasses.field(default_factory=dict)  #: by body, (n, 3)
+    densities: Dict[int, float] = dataclasses.field(default_factory=dict)  #: by body
+
+
+class Quantity:
+    """A number that a simulated design has. Derive from it; a pure function."""
+
+    #: What it measures: "number", "length", "area", "volume", "angle", "time", "mass", "force", ...
+    dimension: str = "number"
+    #: Does a simulation change nothing of it (of the parts as assembled, or of their shapes alone)?
+    at_rest: bool = False
+
+    def value(self, simulated: "_fettle.Simulated") -> float:
+        """SI."""
+        raise NotImplementedError
+
+    def gradient(self, simulated: "_fettle.Simulated") -> QuantityGradient:
+        raise NotImplementedError
+
+
+@dataclasses.dataclass(eq=False)
+class Clearance(Record):
+    """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
+
+    a: int
+    b: int
+    motion: bool = False
+    window: int = 0
+    windows: int = 1
+    minimum: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class Mass(Record):
+    """Of bodies, as (index, kind), kind as in Body.mass_kind [kg]."""
+
+    bodies: Sequence[Tuple[int, str]]
+
+
+@dataclasses.dataclass(eq=False)
+class Stroke(Record):
+    """Along a unit axis [m]; with a target the square of the deviation from it [m^2]."""
+
+    body: int
+    axis: Vector
+    target: Optional[float] = None
+
+
+@dataclasses.dataclass(eq=False)
+class MarkerPath(Record):
+    """Mean squared distance of a body's point from targets [m^2]; without times each at its nearest."""
+
+    body: int
+    point: Vector
+    targets: Sequence[Vector]
+    times: Sequence[float] = ()
+
+
+AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, "_fettle.OpaqueQuantity"]
+AnyShape = Union[Shape, "_fettle.OpaqueShape"]
+
+
+@dataclasses.dataclass(eq=False)
+class Move(Record):
+    """One target of a parameter: target = scale p + offset, summed over all moves of that target."""
+
+    target: str = "dimension"  #: "dimension", "position", "density", "motor_rate"
+    body: int = 0
+    dimension: str = ""
+    dof: int = 0  #: motor_rate: 0 .. 5
+    scale: float = 1.0
+    offset: float = 0.0
+    direction: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: position
+    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: [m]
+
+
+@dataclasses.dataclass(eq=False)
+class Parameter(Record):
+    """value, lower, upper in SI; `unit` is what people read it in."""
+
+    name: str = ""
+    value: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    unit: str = ""
+    moves: List[Move] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False)
+class Bounds(Record):
+    lower: float = -math.inf  #: SI
+    upper: float = math.inf
+    margin: float = 0.0  #: by which the optimiser keeps away from both
+    unit: float = 1.0  #: SI value of the unit that violations are counted in
+
+
+@dataclasses.dataclass(eq=False)
+class ObjectiveTerm(Record):
+    """Contributes weight * value / unit."""
+
+    name: str = ""
+    weight: float = 1.0
+    unit: float = 1.0
+    quantity: Optional[AnyQuantity] = None
+
+
+@dataclasses.dataclass(eq=False)
+class Constraint(Record):
+    name: str = ""
+    bounds: Bounds = dataclasses.field(default_factory=Bounds)
+    quantity: Optional[AnyQuantity] = None
+
+
+@dataclasses.dataclass(eq=False)
+class Relation(Record):
+    """Between parameters alone: a formula ("crank / rod"), or at(p) -> (value, gradient), p all parameters in SI."""
+
+    name: str = ""
+    bounds: Bounds = dataclasses.field(default_factory=Bounds)
+    tolerance: float = 0.0
+    formula: str = ""
+    at: Optional[Callable[[Array], Tuple[float, ArrayLike]]] = None
+
+
+@dataclasses.dataclass(eq=False)
+class OptimiserSettings(Record):
+    name: str = "ipopt"
+    max_evaluations: int = 100
+    tolerance: float = 1e-4
+
+
+@dataclasses.dataclass(eq=False)
+class Design(Record):
+    """A scene, what may be changed in it, what is wanted and what is required."""
+
+    scene: Scene = dataclasses.field(default_factory=Scene)
+    shapes: List[Optional[AnyShape]] = dataclasses.field(default_factory=list)  #: per body; None: the mesh stays as it is
+    steps: int = 0
+    clearance_tolerance: float = 1e-9  #: [m]
+    parameters: List[Parameter] = dataclasses.field(default_factory=list)
+    objective: List[ObjectiveTerm] = dataclasses.field(default_factory=list)
+    constraints: List[Constraint] = dataclasses.field(default_factory=list)
+    relations: List[Relation] = dataclasses.field(default_factory=list)
+    optimiser: OptimiserSettings = dataclasses.field(default_factory=OptimiserSettings)
+
+
+@dataclasses.dataclass(eq=False)
+class DesignFile(Record):
+    """A design and what its file says besides."""
+
+    design: Design = dataclasses.field(default_factory=Design)
+    path: str = ""
+    text: str = ""
+    scene_path: str = ""
+    length_unit: str = ""
+    output: str = ""
+    warnings: List[str] = dataclasses.field(default_factory=list)
+
+
+def add_part(design: Design, body: Body, shape: AnyShape) -> int:
+    """Adds a body with the shape as drawn for its mesh. Returns its index."""
+    body.mesh, _ = _fettle.shape_at(shape, {})
+    design.scene.bodies.append(body)
+    design.shapes += [None] * (len(design.scene.bodies) - len(design.shapes))
+    design.shapes[-1] = shape
+    return len(design.scene.bodies) - 1
+
+

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""What simulations, certifications, evaluations and optimisations answer: plain data, SI units."""
+import dataclasses
+import math
+from typing import List, Literal, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _fettle
+from ._record import Record
+
+Array = NDArray[np.float64]
+
+
+def _zero() -> Array:
+    return np.zeros(3)
+
+
+def _empty() -> Array:
+    return np.zeros(0)
+
+
+def _rows() -> Array:
+    return np.zeros((0, 0))
+
+
+@dataclasses.dataclass(eq=False)
+class StepReport(Record):
+    newton_iterations: int = 0
+    friction_rounds: int = 0
+    contacts: int = 0
+    minimum_distance: float = 0.0  #: of the active pairs at the step's end [m]
+    residual: float = 0.0
+    joint_gap: float = 0.0  #: [m]
+    path_joint_gap: float = 0.0  #: [m]
+
+
+@dataclasses.dataclass(eq=False)
+class SimulationReport(Record):
+    status: Literal["ok", "blocked", "not_held", "not_converged", "interrupted"] = "ok"
+    message: str = ""
+    steps: List[StepReport] = dataclasses.field(default_factory=list)
+    newton_iterations: int = 0
+    wall_seconds: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class ContactForce(Record):
+    """Between two bodies at a step's end."""
+
+    a: int = 0
+    b: int = 0
+    force: Array = dataclasses.field(default_factory=_zero)  #: on a, world [N]
+    torque: Array = dataclasses.field(default_factory=_zero)  #: on a, about the world's origin [N m]
+    normal: float = 0.0  #: [N]
+    friction: Array = dataclasses.field(default_factory=_zero)  #: on a [N]
+    distance: float = 0.0  #: [m]
+    contacts: int = 0
+
+
+@dataclasses.dataclass(eq=False)
+class DriveForce(Record):
+    """What holds or drives a body's prescribed coordinates."""
+
+    body: int = 0
+    force: Array = dataclasses.field(default_factory=_zero)
+    torque: Array = dataclasses.field(default_factory=_zero)
+
+
+@dataclasses.dataclass(eq=False)
+class JointForce(Record):
+    """On body b, about the joint's point; effort: of a motor, along its coordinate."""
+
+    joint: int = 0
+    force: Array = dataclasses.field(default_factory=_zero)
+    torque: Array = dataclasses.field(default_factory=_zero)
+    effort: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class StepOutputs(Record):
+    time: float = 0.0  #: at the step's end [s]
+    kappa: float = 0.0
+    kinetic_energy: float = 0.0  #: [J]
+    potential_energy: float = 0.0  #: [J]
+    contact_energy: float = 0.0  #: [J]
+    spring_energy: float = 0.0  #: [J]
+    linear_momentum: Array = dataclasses.field(default_factory=_zero)  #: [kg m/s]
+    angular_momentum: Array = dataclasses.field(default_factory=_zero)  #: [kg m^2/s]
+    contacts: List[ContactForce] = dataclasses.field(default_factory=list)
+    drives: List[DriveForce] = dataclasses.field(default_factory=list)
+    joints: List[JointForce] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False)
+class Simulation(Record):
+    trajectory: _fettle.Trajectory = dataclasses.field(default_factory=_fettle.Trajectory)
+    report: SimulationReport = dataclasses.field(default_factory=SimulationReport)
+    outputs: List[StepOutputs] = dataclasses.field(default_factory=list)  #: per step, if asked for
+
+
+@dataclasses.dataclass(eq=False)
+class PairRequest(Record):
+    """Bodies a and b, and the clearance that is required of them [m]."""
+
+    a: int = 0
+    b: int = 0
+    minimum: float = 0.0
+    far: float = math.inf
+
+
+@dataclasses.dataclass(eq=False)
+class Witness(Record):
+    """Which two primitives are closest, when, and where."""
+
+    step: int = -1
+    segment: int = 0
+    s: float = 0.0
+    time: float = 0.0
+    kind_a: Literal["vertex", "edge", "triangle"] = "vertex"
+    kind_b: Literal["vertex", "edge", "triangle"] = "triangle"
+    primitive_a: int = -1
+    primitive_b: int = -1
+    edge_edge: bool = False
+    vertex_on_a: bool = True
+    point_a: Array = dataclasses.field(default_factory=_zero)  #: world [m]
+    point_b: Array = dataclasses.field(default_factory=_zero)
+    distance: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class MarginInterval(Record):
+    step: int = -1
+    segment: int = 0
+    time_start: float = 0.0
+    time_end: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class Overlap(Record):
+    depth_lower: float = 0.0  #: [m]
+    depth_upper: float = 0.0
+    volume_lower: float = 0.0  #: [m^3]
+    volume_upper: float = 0.0
+    time: float = 0.0
+    center: Array = dataclasses.field(default_factory=_zero)
+
+
+@dataclasses.dataclass(eq=False)
+class PairClearance(Record):
+    """Proven: lower <= the least distance <= upper, rounding included [m]."""
+
+    a: int = 0
+    b: int = 0
+    minimum: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    is_far: bool = False
+    status: Literal["clear", "violated", "undecided", "contact"] = "undecided"
+    witness: Witness = dataclasses.field(default_factory=Witness)
+    complete: bool = True
+    intersecting: bool = False
+    solids: Literal["unproven", "disjoint", "overlap", "not closed"] = "unproven"
+    overlap: Optional[Overlap] = None
+    clash_not_before: float = 0.0
+    clash_time: float = 0.0
+    reason: str = ""
+    sampled: float = 0.0
+    margin: List[MarginInterval] = dataclasses.field(default_factory=list)
+    witnesses: List[Witness] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False)
+class CertificateFault(Record):
+    where: str = ""
+    message: str = ""
+
+
+@dataclasses.dataclass(eq=False)
+class CertificateReport(Record):
+    faults: List[CertificateFault] = dataclasses.field(default_factory=list)
+    stale: bool = False
+    leaves: int = 0
+    pieces: int = 0
+
+    @property
+    def accepted(self) -> bool:
+        """Every claim is proven."""
+        return not self.faults
+
+
+@dataclasses.dataclass(eq=False)
+class Measurement(Record):
+    """lower <= true value <= upper; `value` is what the optimiser sees."""
+
+    value: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    clearance: Optional[PairClearance] = None
+    fault: str = ""
+
+
+@dataclasses.dataclass(eq=False)
+class Rows(Record):
+    values: Array = dataclasses.field(default_factory=_empty)  #: (k)
+    jacobian: Array = dataclasses.field(default_factory=_rows)  #: (k, n)
+
+
+@dataclasses.dataclass(eq=False)
+class DesignEvaluation(Record):
+    """A design, simulated and measured; not usable: `reason` says why."""
+
+    usable: bool = False
+    reason: str = ""
+    simulation: Simulation = dataclasses.field(default_factory=Simulation)
+    terms: List[Measurement] = dataclasses.field(default_factory=list)
+    constraints: List[Measurement] = dataclasses.field(default_factory=list)
+    relations: Rows = dataclasses.field(default_factory=Rows)
+    objective: float = 0.0
+    violation: float = 0.0  #: largest, in the constraints' units; 0: every requirement is met, proven
+    gradient: Array = dataclasses.field(default_factory=_empty)  #: (n)
+    jacobian: Array = dataclasses.field(default_factory=_rows)  #: (m, n)
+    residuals: Array = dataclasses.field(default_factory=_empty)  #: (r)
+    residual_jacobian: Array = dataclasses.field(default_factory=_rows)  #: (r, n)
+    forward_seconds: float = 0.0
+    backward_seconds: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class StageReport(Record):
+    model: str = ""
+    evaluations: int = 0
+    objective: float = 0.0
+    violation: float = 0.0
+    message: str = ""
+
+
+@dataclasses.dataclass(eq=False)
+class Optimality(Record):
+    judged: bool = False
+    predicted_gain: float = 0.0
+    worth: float = 0.0
+    radius: float = 0.0
+    step: Array = dataclasses.field(default_factory=_empty)
+    multipliers: Array = dataclasses.field(default_factory=_empty)
+    residual: Array = dataclasses.field(default_factory=_empty)
+    held: List[str] = dataclasses.field(default_factory=list)
+    improvable: List[int] = dataclasses.field(default_factory=list)
+    noise: Array = dataclasses.field(default_factory=_empty)
+    noise_in_objective: float = 0.0
+    roughest: int = -1
+
+
+@dataclasses.dataclass(eq=False)
+class OptimiserReport(Record):
+    status: Literal["optimal", "feasible", "infeasible", "interrupted", "start_failed"] = "start_failed"
+    message: str = ""
+    point: Array = dataclasses.field(default_factory=_empty)  #: (n) the best design, SI
+    feasible: bool = False
+    optimality: Optimality = dataclasses.field(default_factory=Optimality)
+    evaluations: int = 0
+    failures: int = 0
+    iterations: int = 0
+    budget_spent: bool = False
+    stages: List[StageReport] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False)
+class OptimiseOutcome(Record):
+    report: OptimiserReport = dataclasses.field(default_factory=OptimiserReport)
+    start: Array = dataclasses.field(default_factory=_empty)
+    objective_start: Optional[float] = None
+    final: DesignEvaluation = dataclasses.field(default_factory=DesignEvaluation)
+    clearance: List[PairClearance] = dataclasses.field(default_factory=list)
+    limits: List[str] = dataclasses.field(default_factory=list)
+    unbuildable: List[str] = dataclasses.field(default_factory=list)
+    replayed: int = 0
+
+
+@dataclasses.dataclass(eq=False)
+class CheckRow(Record):
+    quantity: str = ""
+    parameter: str = ""
+    adjoint: float = 0.0
+    difference: float = 0.0
+    difference_error: float = 0.0
+    relative_error: float = 0.0
+    kink: float = 0.0
+    resolved: bool = True
+
+
+@dataclasses.dataclass(eq=False)
+class CheckReport(Record):
+    rows: List[CheckRow] = dataclasses.field(default_factory=list)
+    largest_relative_error: float = 0.0
+    first_step: float = 0.0
+    simulations: int = 0
+    failures: List[str] = dataclasses.field(default_factory=list)
+    interrupted: bool = False

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+/// What tests of the Python package ask: the library's defaults of all records, and a design evaluated without passing through Python.
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/python/studies_records.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+
+namespace {
+
+template <class T>
+void add_default(py::dict& defaults) {
+    defaults[Record<T>::python_name] = py::cast(T());
+}
+
+py::dict defaults() {
+    py::dict all;
+    add_default<fettle::core::certificate::CertificateFault>(all);
+    add_default<fettle::core::certificate::CertificateReport>(all);
+    add_default<fettle::core::clearance::MarginInterval>(all);
+    add_default<fettle::core::clearance::Overlap>(all);
+    add_default<fettle::core::clearance::PairClearance>(all);
+    add_default<fettle::core::clearance::PairRequest>(all);
+    add_default<fettle::core::clearance::Witness>(all);
+    add_default<fettle::core::energy::ContactForce>(all);
+    add_default<fettle::core::kinematics::Pose>(all);
+    add_default<fettle::core::scene::Attachment>(all);
+    add_default<fettle::core::scene::Body>(all);
+    add_default<fettle::core::scene::CoordinateForces>(all);
+    add_default<fettle::core::scene::Curve>(all);
+    add_default<fettle::core::scene::Damping>(all);
+    add_default<fettle::core::scene::Friction>(all);
+    add_default<fettle::core::scene::Friction::Pair>(all);
+    add_default<fettle::core::scene::Joint>(all);
+    add_default<fettle::core::scene::Mechanism>(all);
+    add_default<fettle::core::scene::MotionCurve>(all);
+    add_default<fettle::core::scene::Motor>(all);
+    add_default<fettle::core::scene::PointLoad>(all);
+    add_default<fettle::core::scene::PoseScript>(all);
+    add_default<fettle::core::scene::Scene>(all);
+    add_default<fettle::core::scene::ShapeSpec>(all);
+    add_default<fettle::core::scene::Spring>(all);
+    add_default<fettle::core::stepper::DriveForce>(all);
+    add_default<fettle::core::stepper::JointForce>(all);
+    add_default<fettle::core::stepper::Simulation>(all);
+    add_default<fettle::core::stepper::SimulationReport>(all);
+    add_default<fettle::core::stepper::StepOutputs>(all);
+    add_default<fettle::core::stepper::StepReport>(all);
+    add_default<fettle::design::description::Bounds>(all);
+    add_default<fettle::design::description::Constraint>(all);
+    add_default<fettle::design::description::Design>(all);
+    add_default<fettle::design::description::Measurement>(all);
+    add_default<fettle::design::description::Move>(all);
+    add_default<fettle::design::description::ObjectiveTerm>(all);
+    add_default<fettle::design::description::OptimiserSettings>(all);
+    add_default<fettle::design::description::Parameter>(all);
+    add_default<fettle::design::optimisers::Optimality>(all);
+    add_default<fettle::design::optimisers::OptimiserReport>(all);
+    add_default<fettle::design::optimisers::Rows>(all);
+    add_default<fettle::design::optimisers::StageReport>(all);
+    add_default<fettle::design::problem::DesignEvaluation>(all);
+    add_default<fettle::design::reading::DesignFile>(all);
+    add_default<fettle::design::studies::CheckReport>(all);
+    add_default<fettle::design::studies::CheckRow>(all);
+    add_default<fettle::design::studies::OptimiseOutcome>(all);
+    all["Relation"] = py::cast(description::Relation());
+    return all;
+}
+
+py::tuple evaluate_file(const std::string& path, int steps) {
+    description::Design design = value_or_raise(reading::read_design(path)).design;
+    design.steps = steps;
+    const auto problem = value_or_raise(problem::DesignProblem::create(std::move(design)));
+    const problem::DesignEvaluation at = problem.evaluate(description::values_of(problem.design().parameters));
+    return py::make_tuple(at.reason, at.objective, at.gradient);
+}
+
+}  // namespace
+
+void bind_for_tests(py::module_& module) {
+    module.def("defaults", &defaults);
+    module.def("evaluate_file", &evaluate_file, py::arg("path"), py::arg("steps"));
+}
+
+}  // namespace fettle::design::python

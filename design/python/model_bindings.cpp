@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/python/model_arrays.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+using core::model::Body;
+using core::model::Model;
+
+namespace {
+
+std::shared_ptr<Model> build_model(const core::scene::Scene& scene, std::optional<double> kappa, bool check_start) {
+    core::model::BuildOptions options;
+    options.kappa = kappa;
+    options.check_start = check_start;
+    return std::make_shared<Model>(value_or_raise(core::model::build_model(scene, options)));
+}
+
+std::vector<std::string> body_names(const Model& model) {
+    std::vector<std::string> names;
+    for (const Body& body : model.bodies) names.push_back(body.name);
+    return names;
+}
+
+}  // namespace
+
+const Body& body_at(const Model& model, int body) {
+    if (body < 0 || static_cast<std::size_t>(body) >= model.bodies.size()) throw py::index_error("there is no such body");
+    return model.bodies[static_cast<std::size_t>(body)];
+}
+
+py::array read_only(py::array array) {
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+
+py::array vertices_of(const Model& model, int body, py::handle owner) {
+    const Matrix3X& vertices = body_at(model, body).mesh.vertices;
+    return read_only(py::array_t<double>({vertices.cols(), Eigen::Index{3}}, vertices.data(), owner));
+}
+
+py::array triangles_of(const Model& model, int body, py::handle owner) {
+    const auto& triangles = body_at(model, body).mesh.triangles;
+    const int* first = triangles.empty() ? nullptr : triangles.front().data();
+    return read_only(py::array_t<int>({triangles.size(), std::size_t{3}}, first, owner));
+}
+
+py::array reference_points_of(const Model& model) {
+    py::array_t<double> points({model.bodies.size(), std::size_t{3}});
+    auto out = points.mutable_unchecked<2>();
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+        for (int i = 0; i < 3; ++i) out(static_cast<py::ssize_t>(b), i) = model.bodies[b].reference_point[i];
+    return points;
+}
+
+void bind_model(py::module_& module) {
+    py::class_<Model, std::shared_ptr<Model>>(module, "Model", "Bodies with mass, hierarchy and prescribed coordinates; const once built.")
+        .def_property_readonly("body_names", &body_names)
+        .def_property_readonly("reference_points", &reference_points_of,
+                               "(bodies, 3): c of each body in its file's frame [m]; poses are c's, vertices relative to it.")
+        .def(
+            "vertices", [](const py::object& self, int body) { return vertices_of(self.cast<const Model&>(), body, self); },
+            py::arg("body"), "(n, 3), relative to the body's reference point [m]; a read-only view, no copy.")
+        .def(
+            "triangles", [](const py::object& self, int body) { return triangles_of(self.cast<const Model&>(), body, self); },
+            py::arg("body"), "(m, 3), counter-clockwise seen from outside; a read-only view, no copy.")
+        .def(
+            "mass", [](const Model& model, int body) { return body_at(model, body).moments(3, 3); }, py::arg("body"),
+            "[kg]; 0 unless dynamic.")
+        .def(
+            "density", [](const Model& model, int body) { return body_at(model, body).density; }, py::arg("body"))
+        .def(
+            "mesh", [](const Model& model, int body) { return body_at(model, body).mesh; }, py::arg("body"),
+            "A copy of the body's mesh, relative to its reference point.")
+        .def(
+            "may_collide",
+            [](const Model& model, int a, int b) {
+                body_at(model, a), body_at(model, b);
+                return core::model::may_collide(model, a, b);
+            },
+            py::arg("a"), py::arg("b"), "Does contact act between these two bodies?")
+        .def_property_readonly(
+            "gravity", [](const Model& model) { return Vector3(model.gravity); }, "[m/s^2]")
+        .def_readonly("timestep", &Model::timestep, "[s]")
+        .def_readonly("end_time", &Model::end_time, "[s]; negative: not given.")
+        .def_readonly("dhat", &Model::dhat, "Activation distance [m].")
+        .def_readonly("dmin", &Model::dmin, "Minimum separation [m].")
+        .def_readonly("kappa", &Model::kappa, "Barrier stiffness [N/m].")
+        .def_readonly("length_unit", &Model::length_unit, "Of the scene's file [m].")
+        .def_readonly("warnings", &Model::warnings)
+        .def("__len__", [](const Model& model) { return model.bodies.size(); });
+    module.def("build_model", &build_model, py::arg("scene"), py::arg("kappa") = py::none(), py::arg("check_start") = true,
+               py::call_guard<py::gil_scoped_release>(), "Scene -> Model. Raises Error with every fault found, by body, mesh and element.");
+}
+
+}  // namespace fettle::design::python

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/version.hpp"
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/errors.hpp"
+
+PYBIND11_MODULE(_fettle, module) {
+    namespace python = fettle::design::python;
+    module.attr("__version__") = fettle::core::base::version();
+    python::bind_errors(module);
+    pybind11::class_<fettle::core::base::ThreadLimit>(module, "ThreadLimit", "Caps the threads of all loops while it lives.")
+        .def(pybind11::init<int>(), pybind11::arg("threads"));
+    python::bind_scene(module);
+    python::bind_model(module);
+    python::bind_trajectory(module);
+    python::bind_clearance(module);
+    python::bind_design(module);
+    python::bind_problem(module);
+    python::bind_studies(module);
+    python::bind_for_tests(module);
+}

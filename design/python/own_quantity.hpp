@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// Quantities between Python and the library: those of ../quantities are dataclasses of the same names; an object with `value()` and
+/// `gradient()` (fettle.Quantity) is a Quantity of the library, called with the interpreter's lock.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "fettle/design/description/quantity.hpp"
+
+namespace fettle::design::python {
+
+std::shared_ptr<const description::Quantity> quantity_from_python(pybind11::handle quantity);
+pybind11::object quantity_to_python(const std::shared_ptr<const description::Quantity>& quantity);
+void bind_quantities(pybind11::module_& module);
+
+}  // namespace fettle::design::python

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/design_problem.hpp"
+
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/design_records.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/python/watch.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+using problem::DesignEvaluation;
+using problem::DesignProblem;
+
+namespace {
+
+std::shared_ptr<DesignProblem> create(const description::Design& design) {
+    description::Design whole = with_formulas(design);
+    const py::gil_scoped_release unlocked;
+    return std::make_shared<DesignProblem>(value_or_raise(DesignProblem::create(std::move(whole))));
+}
+
+void check_point(const DesignProblem& self, const VectorX& p) {
+    if (p.size() != self.parameter_count()) throw py::value_error("one value for each of the design's parameters");
+}
+
+DesignEvaluation evaluate(const DesignProblem& self, const VectorX& p, bool gradients, const py::object& progress) {
+    check_point(self, p);
+    Watch watch(progress);
+    DesignEvaluation evaluation;
+    {
+        const py::gil_scoped_release unlocked;
+        problem::EvaluateOptions options;
+        options.gradients = gradients;
+        options.on_step = watch.on_step();
+        options.should_stop = watch.should_stop();
+        evaluation = self.evaluate(p, options);
+    }
+    watch.end();
+    return evaluation;
+}
+
+DesignEvaluation usable(DesignEvaluation evaluation) {
+    if (evaluation.usable) return evaluation;
+    const py::object failure = record_class("EvaluationError");
+    PyErr_SetObject(failure.ptr(), failure(evaluation.reason).ptr());
+    throw py::error_already_set();
+}
+
+VectorX each(const DesignProblem& self, double description::Parameter::*member) {
+    VectorX values(self.parameter_count());
+    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = self.design().parameters[static_cast<std::size_t>(k)].*member;
+    return values;
+}
+
+std::vector<std::string> parameter_names(const DesignProblem& self) {
+    std::vector<std::string> names;
+    for (const auto& parameter : self.design().parameters) names.push_back(parameter.name);
+    return names;
+}
+
+VectorX values_of(const std::vector<description::Measurement>& measured) {
+    VectorX values(static_cast<Eigen::Index>(measured.size()));
+    for (std::size_t i = 0; i < measured.size(); ++i) values[static_cast<Eigen::Index>(i)] = measured[i].value;
+    return values;
+}
+
+}  // namespace
+
+void bind_problem(py::module_& module) {
+    using core::model::Model;
+    py::class_<DesignProblem, std::shared_ptr<DesignProblem>>(module, "DesignProblem",
+                                                              "From parameters p (SI, one per parameter) to numbers and their gradients.")
+        .def(py::init(&create), py::arg("design"))
+        .def_property_readonly(
+            "design", [](const DesignProblem& self) { return self.design(); }, "A copy.")
+        .def_property_readonly("parameter_names", &parameter_names)
+        .def_property_readonly(
+            "values", [](const DesignProblem& self) { return each(self, &description::Parameter::value); }, "(n), the design's own, SI")
+        .def_property_readonly(
+            "lower", [](const DesignProblem& self) { return each(self, &description::Parameter::lower); }, "(n), SI")
+        .def_property_readonly(
+            "upper", [](const DesignProblem& self) { return each(self, &description::Parameter::upper); }, "(n), SI")
+        .def_property_readonly("kappa", &DesignProblem::kappa, "Barrier stiffness that all designs are simulated with [N/m].")
+        .def_property_readonly("warnings", &DesignProblem::warnings)
+        .def(
+            "model_at",
+            [](const DesignProblem& self, const VectorX& p) {
+                check_point(self, p);
+                return std::make_shared<Model>(value_or_raise(self.model_at(p)));
+            },
+            py::arg("p"), "The model at p.")
+        .def(
+            "relations",
+            [](const DesignProblem& self, const VectorX& p) {
+                check_point(self, p);
+                return self.relations(p);
+            },
+            py::arg("p"), "Rows of the relations at p; nothing is built.")
+        .def(
+            "refusal",
+            [](const DesignProblem& self, const VectorX& p) {
+                check_point(self, p);
+                const py::gil_scoped_release unlocked;
+                return self.refusal(p);
+            },
+            py::arg("p"), "Why the design at p cannot be simulated at all; empty: nothing against it.")
+        .def("evaluate", &evaluate, py::arg("p"), py::arg("gradients") = true, py::arg("progress") = py::none(),
+             "A DesignEvaluation: simulated, measured, and with gradients differentiated.")
+        .def(
+            "value", [](const DesignProblem& self, const VectorX& p) { return usable(evaluate(self, p, false, py::none())).objective; },
+            py::arg("p"), "The objective. Raises EvaluationError where there is no design.")
+        .def(
+            "value_and_gradient",
+            [](const DesignProblem& self, const VectorX& p) {
+                const DesignEvaluation at = usable(evaluate(self, p, true, py::none()));
+                return py::make_tuple(at.objective, at.gradient);
+            },
+            py::arg("p"), "(objective, gradient (n)), per SI unit. Raises EvaluationError where there is no design.")
+        .def(
+            "values_and_jacobians",
+            [](const DesignProblem& self, const VectorX& p) {
+                const DesignEvaluation at = usable(evaluate(self, p, true, py::none()));
+                return py::make_tuple(at.objective, at.gradient, values_of(at.constraints), at.jacobian);
+            },
+            py::arg("p"), "(objective, gradient (n), constraints (m), their Jacobian (m, n)), SI.");
+}
+
+}  // namespace fettle::design::python

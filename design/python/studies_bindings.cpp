@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/python/bindings.hpp"
+#include "fettle/design/python/design_records.hpp"
+#include "fettle/design/python/errors.hpp"
+#include "fettle/design/python/studies_records.hpp"
+#include "fettle/design/python/watch.hpp"
+#include "fettle/design/studies/optimise_file.hpp"
+#include "fettle/design/studies/random_start.hpp"
+
+namespace fettle::design::python {
+
+namespace py = pybind11;
+using problem::DesignProblem;
+using studies::OptimiseOutcome;
+
+namespace {
+
+studies::CheckReport check_gradients(const DesignProblem& problem, const std::optional<VectorX>& p, const py::object& progress) {
+    const VectorX point = p ? *p : description::values_of(problem.design().parameters);
+    if (point.size() != problem.parameter_count()) throw py::value_error("one value for each of the design's parameters");
+    Watch watch(progress);
+    studies::CheckReport report;
+    std::string reason;
+    {
+        const py::gil_scoped_release unlocked;
+        studies::CheckOptions options;
+        options.on_simulation = watch.on_count();
+        options.should_stop = watch.should_stop();
+        problem::EvaluateOptions evaluate;
+        evaluate.should_stop = watch.should_stop();
+        const problem::DesignEvaluation at = problem.evaluate(point, evaluate);
+        if (at.usable) report = studies::check_gradients(problem, point, at, options);
+        reason = at.reason;
+    }
+    watch.end();
+    if (!reason.empty()) throw RaisedErrors({{ErrorCode::inconsistent, "design", reason}});
+    return report;
+}
+
+// `run` is called without the lock.
+template <class Run>
+OptimiseOutcome optimise(studies::OptimiseOptions options, const py::object& progress, const Run& run) {
+    Watch watch(progress);
+    std::optional<OptimiseOutcome> outcome;
+    {
+        const py::gil_scoped_release unlocked;
+        options.narrate = watch.on_line();
+        options.should_stop = watch.should_stop();
+        outcome = run(options);
+    }
+    watch.end();
+    return std::move(*outcome);
+}
+
+OptimiseOutcome optimise_design(const DesignProblem& problem, const std::string& optimiser, std::uint64_t seed, bool repair,
+                                const py::object& progress) {
+    studies::OptimiseOptions options;
+    options.optimiser = optimiser;
+    options.seed = seed;
+    options.repair = repair;
+    return optimise(std::move(options), progress,
+                    [&](const studies::OptimiseOptions& all) { return value_or_raise(studies::optimise_design(problem, all)); });
+}
+
+struct FileArguments {
+    std::string directory;
+    bool resume = false;
+    std::optional<int> max_evaluations;
+    studies::OptimiseOptions options;
+};
+
+OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments, const py::object& progress) {
+    if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
+    const auto run = [&](const studies::OptimiseOptions& all) {
+        const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));
+        const studies::RunFolder folder{arguments.directory, arguments.resume};
+        return value_or_raise(studies::optimise_file(file, problem, folder, all)).outcome;
+    };
+    return optimise(std::move(arguments.options), progress, run);
+}
+
+}  // namespace
+
+void bind_studies(py::module_& module) {
+    module.def("check_gradients", &check_gradients, py::arg("problem"), py::arg("p") = py::none(), py::arg("progress") = py::none(),
+               "The audit of a design's gradients by central differences: a CheckReport. progress(done, of).");
+    module.def("optimise", &optimise_design, py::arg("problem"), py::arg("optimiser") = "", py::arg("seed") = 0, py::arg("repair") = false,
+               py::arg("progress") = py::none(),
+               "Optimises in memory: an OptimiseOutcome. seed 0 begins at the design's values, others at a random start. progress(line).");
+    module.def(
+        "optimise_file",
+        [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::uint64_t seed,
+           const std::optional<int>& max_evaluations, const py::object& progress) {
+            FileArguments arguments{out, resume, max_evaluations, {}};
+            arguments.options.optimiser = optimiser;
+            arguments.options.seed = seed;
+            return optimise_file(value_or_raise(reading::read_design(path)), std::move(arguments), progress);
+        },
+        py::arg("path"), py::arg("out"), py::arg("resume") = false, py::arg("optimiser") = "", py::arg("seed") = 0,
+        py::arg("max_evaluations") = py::none(), py::arg("progress") = py::none(),
+        "Optimises a *.design.json into a folder: history, final design, trajectory; resume goes on with what is there.");
+    module.def(
+        "start_of_seed", [](const DesignProblem& problem, std::uint64_t seed) { return studies::start_of_seed(problem.design(), seed); },
+        py::arg("problem"), py::arg("seed"), "(n) SI: where a run of that seed begins.");
+}
+
+}  // namespace fettle::design::python

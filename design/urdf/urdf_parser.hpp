@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// Reads a URDF file (ROS's unified robot description format) into a Robot. Taken: links (mass, collision, visual: box, cylinder, sphere,
+/// mesh), joints (type, origin, axis, limit, dynamics, mimic). Passed over: inertia tensors, materials, transmissions, sensors, effort and
+/// velocity limits, safety controllers, Gazebo's elements.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "fettle/design/urdf/robot.hpp"
+
+namespace fettle::design::urdf {
+
+/// @param where  the file, for messages. Errors: parse (XML; numbers that are none, with the line), missing_key (names, a joint's ends),
+/// out_of_range (sizes that are not positive), not_finite, unsupported (a type of joint that is none).
+Result<Robot> parse_urdf(std::string_view text, const std::string& where);
+
+}  // namespace fettle::design::urdf

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/urdf/urdf_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/geometry/mesh_transforms.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/design/shapes/shape_generator.hpp"
+
+namespace fettle::design::urdf {
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::geometry::Mesh;
+using core::kinematics::Pose;
+using Json = nlohmann::ordered_json;
+
+constexpr double default_density = 1000;
+constexpr int sphere_rounds = 3;  // of an octahedron cut in four: 512 triangles
+
+/// Vertices on the sphere.
+Mesh sphere_mesh(double radius) {
+    std::vector<Vector3> vertices{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    std::vector<core::geometry::Triangle> triangles{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    for (int round = 0; round < sphere_rounds; ++round) {
+        std::map<std::array<int, 2>, int> middles;
+        const auto middle = [&](int a, int b) {
+            const auto [found, added] = middles.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(vertices.size())});
+            if (added) vertices.push_back((vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
+            return found->second;
+        };
+        std::vector<core::geometry::Triangle> finer;
+        for (const auto& t : triangles) {
+            const int ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
+            finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
+        }
+        triangles = std::move(finer);
+    }
+    Matrix3X x(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = radius * vertices[i];
+    return core::geometry::make_mesh("sphere", x, triangles);
+}
+
+Result<Mesh> generated(const std::string& generator, const std::map<std::string, double>& dimensions) {
+    auto shape = shapes::generate(generator, dimensions);
+    if (!shape) return shape.errors();
+    return std::move(shape->mesh);
+}
+
+/// Where a mesh may be: as it is named, relative to the file; of package://NAME/x also NAME/x and x below each folder above it.
+Result<std::string> find_mesh(std::string name, const ImportOptions& options) {
+    bool package = false;
+    for (const char* prefix : {"package://", "file://", "model://"}) {
+        if (!name.starts_with(prefix)) continue;
+        package = std::string_view(prefix) != "file://";
+        name.erase(0, std::string_view(prefix).size());
+        break;
+    }
+    std::vector<fs::path> folders{options.folder.empty() ? fs::path(".") : fs::path(options.folder)};
+    folders.insert(folders.end(), options.mesh_dirs.begin(), options.mesh_dirs.end());
+    if (package)
+        for (fs::path up = fs::absolute(folders.front()); up.has_relative_path(); up = up.parent_path()) folders.push_back(up);
+    std::vector<std::string> names{name};
+    if (package && name.find('/') != std::string::npos) names.push_back(name.substr(name.find('/') + 1));
+    std::error_code code;
+    for (const fs::path& folder : folders)
+        for (const std::string& each : names)
+            if (fs::is_regular_file(folder / each, code)) return (folder / each).string();
+    return Error{ErrorCode::file_not_found, name,
+                 "the robot's mesh is not there; looked for it beside the file, in its packages' folders, and in --mesh-dir"};
+}
+
+Result<Mesh> mesh_of(const Geometry& geometry, const ImportOptions& options) {
+    switch (geometry.kind) {
+        case GeometryKind::box:
+            return generated("box", {{"size_x", geometry.size.x()}, {"size_y", geometry.size.y()}, {"size_z", geometry.size.z()}});
+        case GeometryKind::cylinder:
+            return generated("pin", {{"radius", geometry.radius}, {"length", geometry.length}});
+        case GeometryKind::sphere:
+            return sphere_mesh(geometry.radius);
+        case GeometryKind::mesh:
+            break;
+    }
+    const Result<std::string> path = find_mesh(geometry.file, options);
+    if (!path) return path.errors();
+    Result<Mesh> mesh = core::mesh_files::read_mesh(*path);
+    if (mesh) core::geometry::scale_mesh(*mesh, geometry.scale);
+    return mesh;
+}
+
+/// All geometry of a link, in its frame.
+Result<Mesh> link_mesh(const Link& link, const ImportOptions& options) {
+    std::vector<Vector3> vertices;
+    std::vector<core::geometry::Triangle> triangles;
+    Errors errors;
+    for (const Geometry& geometry : link.geometry()) {
+        const Result<Mesh> mesh = mesh_of(geometry, options);
+        errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
+        if (!mesh) continue;
+        const int first = static_cast<int>(vertices.size());
+        for (const auto& x : mesh->vertices.colwise()) vertices.push_back(core::kinematics::world_position(geometry.origin, x));
+        for (const auto& t : mesh->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    if (!errors.empty()) return errors;
+    Matrix3X x(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = vertices[i];
+    return core::geometry::make_mesh(link.name, x, triangles);
+}
+
+/// Names that a scene's lists of pairs can be written with, and files.
+std::string plain(std::string name) {
+    for (char& c : name)
+        if (c == ':' || c == ',' || c == '/' || c == '\\') c = '_';
+    return name;
+}
+
+Json numbers(const Vector3& x) { return {x[0], x[1], x[2]}; }
+
+class SceneMaker {
+public:
+    SceneMaker(const Robot& robot, const ImportOptions& options) : robot_(robot), options_(options) {}
+
+    Result<ImportedScene> make() {
+        scene_ = {{"fettle_scene", 1},       {"description", "The robot \"" + robot_.name + "\", from its URDF file."},
+                  {"units", "mm"},           {"gravity", {0, 0, -9.81}},
+                  {"timestep", 0.005},       {"end_time", 1},
+                  {"bodies", Json::array()}, {"joints", Json::array()}};
+        find_tree();
+        if (errors_.empty()) walk(root_, Pose{}, "", !options_.floating);
+        if (errors_.empty()) couple();
+        if (errors_.empty() && visited_ < robot_.links.size())
+            errors_.push_back({ErrorCode::inconsistent, robot_.name, "its links form no tree: some are children of one another"});
+        if (!errors_.empty()) return errors_;
+        if (scene_["bodies"].empty()) return Error{ErrorCode::mesh_invalid, robot_.name, "no link has any geometry"};
+        if (scene_["joints"].empty()) scene_.erase("joints");
+        out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", scene_.dump(2) + "\n"});
+        return std::move(out_);
+    }
+
+private:
+    void find_tree() {
+        for (const Joint& joint : robot_.joints) {
+            if (!parent_joint_.insert({joint.child, &joint}).second)
+                errors_.push_back({ErrorCode::inconsistent, robot_.name, "the link \"" + joint.child + "\" is the child of two joints"});
+        }
+        for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+            if (parent_joint_.count(robot_.links[i].name) != 0) continue;
+            if (root_ >= 0)
+                errors_.push_back({ErrorCode::inconsistent, robot_.name,
+                                   "two links have no parent: \"" + robot_.links[static_cast<std::size_t>(root_)].name + "\" and \"" +
+                                       robot_.links[i].name + "\""});
+            root_ = static_cast<int>(i);
+        }
+        if (root_ < 0) errors_.push_back({ErrorCode::inconsistent, robot_.name, "every link has a parent, so that there is no root"});
+    }
+
+    int link_index(const std::string& name) const {
+        const auto found = std::find_if(robot_.links.begin(), robot_.links.end(), [&](const Link& link) { return link.name == name; });
+        return static_cast<int>(found - robot_.links.begin());
+    }
+
+    /// @param pose  of the link's frame in the world. @param body  that joints of its children hang from, unless it has one of its own;
+    /// empty: the world.
+    /// @param still  does the link not move?
+    void walk(int index, const Pose& pose, std::string body, bool still) {
+        const Link& link = robot_.links[static_cast<std::size_t>(index)];
+        ++visited_;
+        if (!link.geometry().empty()) {
+            body = plain(link.name);
+            add_body(link, pose, still);
+        } else if (index != root_ && parent_joint_.at(link.name)->type != "fixed") {
+            errors_.push_back(
+                {ErrorCode::unsupported, robot_.name, "the link \"" + link.name + "\" moves and has no geometry; give it a small one"});
+        }
+        for (const Joint& joint : robot_.joints) {
+            if (joint.parent != link.name) continue;
+            const Pose frame = composed(pose, joint.origin);
+            const double start = start_of(joint);
+            Pose child = frame;
+            const Vector3 axis = joint.axis.normalized();
+            if (joint.type == "prismatic") child.position += start * (frame.rotation * axis);
+            if (joint.type == "revolute") child.rotation = frame.rotation * Eigen::AngleAxisd(start, axis).toRotationMatrix();
+            const int next = link_index(joint.child);
+            const bool fixed_to_world = body.empty() && joint.type == "fixed";
+            if (!fixed_to_world && !robot_.links[static_cast<std::size_t>(next)].geometry().empty()) add_joint(joint, child, body, start);
+            walk(next, child, body, fixed_to_world);
+        }
+    }
+
+    static bool is_limited(const Joint& joint) {
+        return joint.lower && joint.upper && *joint.lower < *joint.upper && (joint.type == "revolute" || joint.type == "prismatic");
+    }
+    static double start_of(const Joint& joint) { return is_limited(joint) ? std::clamp(0.0, *joint.lower, *joint.upper) : 0; }
+
+    void add_body(const Link& link, const Pose& pose, bool still) {
+        const Result<Mesh> mesh = link_mesh(link, options_);
+        errors_.insert(errors_.end(), mesh.errors().begin(), mesh.errors().end());
+        if (!mesh) return;
+        const std::string name = plain(link.name), file = options_.stem + ".meshes/" + name + ".obj";
+        out_.files.emplace_back(file, core::mesh_files::obj_text({{name, &*mesh}}));
+        Json body{{"name", name}};
+        if (still) {
+            body["type"] = "static";
+        } else {
+            const double volume = core::geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3);
+            const bool known = link.mass && volume > 0;
+            body["density"] = known ? *link.mass / volume : default_density;
+            if (!known)
+                out_.warnings.push_back("link \"" + link.name + "\": no mass, or no volume for it; its density is taken as 1000 kg/m^3");
+        }
+        body["mesh"] = file;
+        body["position"] = numbers(1e3 * pose.position);
+        const Vector3 rpy = rpy_of_rotation(pose.rotation);
+        const Eigen::AngleAxisd turn(pose.rotation);
+        if (rpy.norm() > 0) body["rotation_vector"] = numbers(180 / M_PI * turn.angle() * turn.axis());
+        scene_["bodies"].push_back(std::move(body));
+    }
+
+    /// @param child  the frame of the child's link. @param parent  a body, or empty for the world.
+    void add_joint(const Joint& joint, const Pose& child, const std::string& parent, double start) {
+        if (joint.type == "floating") return;
+        const bool turns = joint.type == "revolute" || joint.type == "continuous";
+        const std::string type = turns ? "revolute" : joint.type;
+        Json out{{"name", joint.name}, {"type", type}};
+        if (!parent.empty()) out["a"] = parent;
+        out["b"] = plain(joint.child);
+        out["point"] = numbers(1e3 * child.position);
+        if (type != "fixed") out["axis"] = numbers(child.rotation * joint.axis);
+        const double unit = turns ? 180 / M_PI : 1e3;
+        if (is_limited(joint)) out["limits"] = {(*joint.lower - start) * unit, (*joint.upper - start) * unit};
+        if (type == "revolute" || type == "prismatic") {
+            if (joint.damping > 0) out["damping"] = joint.damping;
+            if (joint.friction > 0) out["friction"] = joint.friction;
+        }
+        scene_["joints"].push_back(std::move(out));
+    }
+
+    /// A joint that mimics another: a gear between two that turn, a rack between one that turns and one that slides.
+    void couple() {
+        for (const Joint& joint : robot_.joints) {
+            if (joint.mimics.empty()) continue;
+            const auto other =
+                std::find_if(robot_.joints.begin(), robot_.joints.end(), [&](const Joint& j) { return j.name == joint.mimics; });
+            const auto turns = [](const Joint& j) { return j.type == "revolute" || j.type == "continuous"; };
+            if (other == robot_.joints.end() || !turns(*other) || !(turns(joint) || joint.type == "prismatic") || joint.multiplier == 0) {
+                errors_.push_back(
+                    {ErrorCode::unsupported, robot_.name,
+                     "the joint \"" + joint.name + "\" mimics \"" + joint.mimics + "\": only one that turns can be followed"});
+                continue;
+            }
+            if (joint.offset != 0)
+                out_.warnings.push_back("joint \"" + joint.name + "\" mimics with an offset: it starts at coordinate " +
+                                        std::to_string(start_of(joint)) + ", and follows from there");
+            Json out{{"name", joint.name + " mimics " + joint.mimics},
+                     {"type", turns(joint) ? "gear" : "rack"},
+                     {"of", {joint.mimics, joint.name}}};
+            if (turns(joint)) {
+                out["ratio"] = joint.multiplier;
+            } else {
+                out["radius"] = 1e3 * joint.multiplier;
+            }
+            scene_["joints"].push_back(std::move(out));
+        }
+    }
+
+    const Robot& robot_;
+    const ImportOptions& options_;
+    Json scene_;
+    ImportedScene out_;
+    Errors errors_;
+    std::map<std::string, const Joint*> parent_joint_;
+    int root_ = -1;
+    std::size_t visited_ = 0;
+};
+
+}  // namespace
+
+Result<ImportedScene> scene_of_robot(const Robot& robot, const ImportOptions& options) { return SceneMaker(robot, options).make(); }
+
+}  // namespace fettle::design::urdf

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// `export` and `draw` as a user runs them, and certificates that name exported files.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace fettle::design::cli::export_command_test {
+
+namespace {
+
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+using fettle::tests::support::TemporaryFolder;
+
+/// Two boxes 1 mm apart, one of which falls; the other with a name that no file can have.
+std::string scene(const TemporaryFolder& folder, const std::string& gravity = "[0, 0, -9.81]") {
+    return folder.write("fall.scene.json",
+                        R"({"fettle_scene": 1, "units": "mm", "gravity": )" + gravity + R"(, "timestep": 0.002, "end_time": 0.006,
+        "bodies": [
+            {"name": "low/er", "type": "static", "shape": {"generator": "box"}, "position": [0, 0, -10]},
+            {"name": "upper", "density": 1000, "shape": {"generator": "pin"}, "position": [1, 2, 11]}]})");
+}
+
+std::string contents(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> names(const std::filesystem::path& folder) {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("export: a run's folder becomes all formats, and simulate leaves the same GLB") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder), out = folder.file("run");
+    REQUIRE(run("simulate " + in + " --out " + out).code == 0);
+    const Answer all = run("export " + out + " --to " + folder.file("all") + " --every 2 --json");
+    CAPTURE(all.out);
+    REQUIRE(all.code == 0);
+    CHECK(names(folder.path / "all") == std::vector<std::string>{"contacts.csv", "drives.csv", "poses.csv", "run.3mf", "run.glb", "run.mtl",
+                                                                 "run.obj", "run.pvd", "run.stl", "run_0000.vtu", "run_0001.vtu",
+                                                                 "run_0002.vtu", "steps.csv"});
+    CHECK(all.json()["files"].size() == 13);
+    CHECK(contents(out + "/motion.glb") == contents(folder.file("all/run.glb")));
+    CHECK(contents(folder.file("all/run.pvd")).find("timestep=\"0.006\"") != std::string::npos);  // the last step is always there
+    const Answer mesh = run("validate " + folder.file("all/run.3mf") + " --json");
+    CHECK(mesh.json()["unit"] == "mm");
+    CHECK(mesh.json()["shells"] == nlohmann::json({"low/er", "upper"}));
+    CHECK(mesh.json()["size"][2].get<double>() == Approx(41));
+}
+
+TEST_CASE("export: one file by its extension, parts in files of their own, a plate on z = 0") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder);
+    CHECK(run("export " + in + " --to " + folder.file("x.stl")).code == 0);
+    CHECK(run("export " + in + " --to " + folder.file("parts") + " --format stl,3mf --arrange parts").code == 0);
+    CHECK(names(folder.path / "parts") == std::vector<std::string>{"low_er.3mf", "low_er.stl", "upper.3mf", "upper.stl"});
+    CHECK(run("validate " + folder.file("parts/upper.3mf") + " --json").json()["size"] == nlohmann::json({10, 10, 20}));
+    CHECK(run("export " + in + " --to " + folder.file("plate.3mf") + " --arrange plate").code == 0);
+    const Answer plate = run("clearance " + folder.file("plate.3mf") + " --json");
+    CHECK(plate.json()["pairs"][0]["lower"].get<double>() >= 0.0049);
+    CHECK(plate.json()["pairs"][0]["upper"].get<double>() == Approx(0.005).margin(1e-4));
+    CHECK(run("export " + folder.file("x.stl") + " --unit mm --to " + folder.file("y.3mf")).code == 0);  // meshes too
+    const std::vector<std::string> refused{" --to " + folder.file("x.gif"), " --to " + folder.file("z.3mf") + " --arrange parts",
+                                           " --to " + folder.file("q") + " --format gif",
+                                           " --to " + folder.file("z.3mf") + " --format stl"};
+    for (const std::string& wrong : refused) CHECK(run("export " + in + wrong).code == 3);
+    CHECK(run("export " + in + " --to " + folder.file("a.folder/") + " --format glb").code == 0);
+    CHECK(run("export " + folder.file("a.folder") + " --to x.glb", true).says("no trajectory.json"));
+}
+
+TEST_CASE("export: a certificate names files of its bodies, and is stale when one changes") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder), certificate = folder.file("fit.certificate.json"), file = folder.file("print.3mf");
+    CHECK(run("clearance " + in + " --minimum 0.5mm --certificate " + certificate).code == 0);
+    CHECK_FALSE(run("validate " + certificate + " --json").json().contains("exports"));
+    REQUIRE(run("export " + certificate + " --to " + file).code == 0);
+    REQUIRE(run("export " + certificate + " --to " + folder.file("print.stl")).code == 0);
+    REQUIRE(run("export " + certificate + " --to " + file).code == 0);  // named once
+    const Answer good = run("validate " + certificate + " --minimum 0.5mm --json");
+    CAPTURE(good.out);
+    CHECK(good.code == 0);
+    REQUIRE(good.json()["exports"].size() == 2);
+    for (const auto& exported : good.json()["exports"]) {
+        CHECK(exported["status"] == "same");
+        CHECK(exported["rounding"].get<double>() > 0);
+        CHECK(exported["rounding"].get<double>() < 1e-7);
+    }
+    const std::string bytes = contents(file);
+    folder.write("print.3mf", bytes + " ");
+    const Answer stale = run("validate " + certificate + " --json");
+    CHECK(stale.code == 1);
+    CHECK(stale.json()["status"] == "stale");
+    CHECK(stale.json()["faults"][0]["message"].get<std::string>().find("print.3mf") != std::string::npos);
+    folder.write("print.3mf", bytes);
+    CHECK(run("validate " + certificate).code == 0);
+    std::filesystem::remove(file);
+    const Answer gone = run("validate " + certificate + " --json");
+    CHECK(gone.code == 0);  // what is not there is no copy that differs; it is told
+    CHECK(gone.json()["notes"].dump().find("print.3mf") != std::string::npos);
+
+    // A certificate beside another path names nothing.
+    REQUIRE(run("simulate " + in + " --out " + folder.file("run")).code == 0);
+    std::filesystem::copy(folder.path / "run/trajectory.json", folder.path / "fit.trajectory.json",
+                          std::filesystem::copy_options::overwrite_existing);
+    CHECK(run("export " + certificate + " --to " + folder.file("other.3mf"), true).says("is not about"));
+}
+
+TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder), out = folder.file("run");
+    const Answer png = run("draw " + in + " --out " + folder.file("a.png") + " --size 320x240 --json");
+    CAPTURE(png.out);
+    REQUIRE(png.code == 0);
+    CHECK(contents(folder.file("a.png")).substr(1, 3) == "PNG");
+    CHECK(png.json()["worst"]["upper"].get<double>() == Approx(0.001).margin(1e-5));
+    REQUIRE(run("simulate " + in + " --out " + out).code == 0);
+    CHECK(run("draw " + out + " --time 0.004 --out " + folder.file("b.svg") + " --view 20,30").code == 0);
+    CHECK(contents(folder.file("b.svg")).find("upper") != std::string::npos);
+    CHECK(contents(folder.file("b.svg")).find("t = 0.004 s") != std::string::npos);
+    const Answer worst = run("draw " + out + " --worst --out " + folder.file("c.svg") + " --json");
+    CHECK(worst.json()["time"].get<double>() == Approx(0.006));  // it falls all the while
+    CHECK(worst.json()["worst"]["upper"].get<double>() < 0.001);
+    CHECK(contents(folder.file("c.svg")).find("id=\"witness\"") != std::string::npos);
+    CHECK(run("draw " + in + " --plain --out " + folder.file("d.svg")).code == 0);
+    CHECK(contents(folder.file("d.svg")).find("id=\"witness\"") == std::string::npos);
+    for (const char* wrong :
+         {"--out x.gif", "--out x.png --view izo", "--out x.png --size 3x3", "--out x.png --size 3", "--out x.png --up w"})
+        CHECK(run("draw " + in + " " + wrong).code == 3);
+}
+
+}  // namespace fettle::design::cli::export_command_test

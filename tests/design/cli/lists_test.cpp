@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Finding one's way: lists from the readers' own tables, starters that work, completion and manual pages.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/scene/joint_kind.hpp"
+#include "fettle/design/cli/starters.hpp"
+#include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/shapes/shape_generator.hpp"
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace fettle::design::cli::lists_test {
+
+namespace {
+
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+using fettle::tests::support::TemporaryFolder;
+using nlohmann::json;
+
+std::string contents(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("Lists: what the readers' tables have, entry for entry") {
+    const json shapes = run("shapes --json").json()["shapes"];
+    const auto table = shapes::generator_table();
+    REQUIRE(shapes.size() == table.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        CHECK(shapes[i]["name"] == table[i].name);
+        REQUIRE(shapes[i]["dimensions"].size() == table[i].dimensions.size());
+        for (std::size_t k = 0; k < table[i].dimensions.size(); ++k)
+            CHECK(shapes[i]["dimensions"][k]["default"] == table[i].dimensions[k].default_value);
+        for (const json& relation : shapes[i]["relations"]) CHECK(relation["value"].get<double>() < relation["below"].get<double>());
+    }
+    CHECK(run("quantities --json").json()["quantities"].size() == reading::quantity_table().size());
+    CHECK(run("joints --json").json()["joints"].size() == core::scene::joint_kinds().size());
+    CHECK(run("optimisers --json").json()["optimisers"].size() == optimisers::optimiser_names().size());
+    CHECK(run("joints screw --json").json()["joints"][0]["coordinate"] == "angle");
+    CHECK(run("joints ball --json").json()["joints"][0]["coordinate"].is_null());
+    for (std::size_t i = 0; i < core::scene::joint_kinds().size(); ++i)  // indexed by kind
+        CHECK(static_cast<std::size_t>(core::scene::joint_kinds()[i].kind) == i);
+    const Answer wrong = run("shapes cramk", true);
+    CHECK(wrong.code == 3);
+    CHECK(wrong.says("crank"));
+}
+
+TEST_CASE("Lists: a shape is drawn, and its relations are those that refuse it") {
+    const TemporaryFolder folder;
+    CHECK(run("shapes crank --draw " + folder.file("crank.svg")).code == 0);
+    CHECK(contents(folder.file("crank.svg")).find("crank, default dimensions") != std::string::npos);
+    CHECK(run("shapes --draw " + folder.file("x.svg")).code == 3);
+    CHECK(run("shapes crank --draw " + folder.file("x.gif")).code == 3);
+    for (const auto& info : shapes::generator_table()) {
+        for (const auto& limit : shapes::dimension_limits(info.name)) {
+            CAPTURE(info.name, limit.dimension);
+            CHECK_FALSE(shapes::generate(info.name, {{limit.dimension, 1.001 * limit.limit}}).has_value());
+        }
+    }
+    CHECK(shapes::dimension_limits("none").empty());
+}
+
+TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten") {
+    const TemporaryFolder folder;
+    const json listed = run("new --json").json()["starters"];
+    REQUIRE(listed.size() == starters().size());
+    REQUIRE(listed.size() >= 5);
+    for (const Starter& starter : starters()) {
+        CAPTURE(starter.name);
+        CHECK_FALSE(starter.description.empty());
+        const Answer written = run("new " + starter.name + " --in " + folder.path.string() + " --json");
+        REQUIRE(written.code == 0);
+        const auto files = written.json()["files"].get<std::vector<std::string>>();
+        CHECK(files.size() == starter.files.size());
+        for (const std::string& file : files) {
+            CHECK(contents(file).find("\"# ") != std::string::npos);  // commented
+            const Answer valid = run("validate " + file + " --json");
+            CAPTURE(valid.out);
+            CHECK(valid.code == 0);
+        }
+        CHECK(run("simulate " + files.front() + " --steps 2 --json").json()["status"] == "ok");
+        CHECK(run("new " + starter.name + " --in " + folder.path.string()).code == 3);
+    }
+    CHECK(run("new hindge", true).says("hinge"));
+}
+
+TEST_CASE("Starters: the hinge is tuned to what it asks for") {
+    const TemporaryFolder folder;
+    REQUIRE(run("new hinge --in " + folder.path.string()).code == 0);
+    const Answer answer = run("optimise " + folder.file("hinge.design.json") + " --out " + folder.file("out") + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.json()["status"] == "optimal");
+    CHECK(answer.json()["clearance"]["least"].get<double>() >= 0.2e-3);
+    CHECK(answer.json()["clearance"]["least"].get<double>() < 0.205e-3);
+}
+
+TEST_CASE("Comments: a key that starts with # says nothing, anywhere; others are still refused") {
+    const TemporaryFolder folder;
+    const auto scene = [&](const std::string& more) {
+        return folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "# a": "x", "bodies": [{"#": 1, "name": "a", )" + more +
+                                                R"("shape": {"generator": "box", "# b": {}}, "density": 1}]})");
+    };
+    CHECK(run("validate " + scene("\"# more\": null, ")).code == 0);
+    CHECK(run("validate " + scene("\"more\": null, ")).code == 3);
+}
+
+TEST_CASE("Completion and manual: made from the program's own options") {
+    const TemporaryFolder folder;
+    const Answer bash = run("completion bash");
+    REQUIRE(bash.code == 0);
+    const std::string script = folder.write("fettle.bash", bash.out);
+    const auto completed = [&](const std::string& words, int at) {
+        const std::string command = "bash -c 'source " + script + "; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(at) +
+                                    "; _fettle; echo ${COMPREPLY[@]}' > " + folder.file("out");
+        REQUIRE(std::system(command.c_str()) == 0);
+        return contents(folder.file("out"));
+    };
+    CHECK(completed("fettle sim", 1) == "simulate\n");
+    CHECK(completed("fettle simulate --con", 2) == "--continue\n");
+    CHECK(completed("fettle --quiet draw --vi", 3) == "--view\n");
+    CHECK(completed("fettle export x --arrange p", 4) == "plate parts\n");
+    CHECK(completed("fettle optimise --optimiser s", 3) == "slsqp\n");
+    CHECK(run("completion fish").says("complete -c fettle -n __fish_use_subcommand -f -a simulate"));
+    CHECK(run("completion zsh").says("bashcompinit"));
+    CHECK(run("completion tcsh").code == 3);
+
+    REQUIRE(run("manual --to " + folder.file("man")).code == 0);
+    const std::string page = contents(folder.file("man/fettle.1")), draw = contents(folder.file("man/fettle-draw.1"));
+    CHECK(page.find(".TH FETTLE 1") == 0);
+    for (const char* command : {"simulate", "optimise", "export", "new"}) {
+        CHECK(page.find(std::string("fettle\\-") + command) != std::string::npos);
+        CHECK(std::filesystem::exists(folder.path / "man" / (std::string("fettle-") + command + ".1")));
+    }
+    CHECK(draw.find("\\fB\\-\\-view\\fR \\fITEXT\\fR") != std::string::npos);
+    const Answer help = run("--help");
+    for (const char* group : {"Start:", "Check what there is:", "Move and tune:", "See and pass on:", "About the program:"})
+        CHECK(help.says(group));
+}
+
+}  // namespace fettle::design::cli::lists_test

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// `clearance` of mesh files alone: a CAD project's check without a scene.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace fettle::design::cli::mesh_clearance_test {
+
+namespace {
+
+using core::mesh_files::MeshPart;
+using fettle::tests::support::Answer;
+using fettle::tests::support::box_mesh;
+using fettle::tests::support::run;
+using fettle::tests::support::TemporaryFolder;
+
+/// Three boxes in a row along x: 0.5 mm between the first two, 2 mm between the last two.
+struct Boxes : TemporaryFolder {
+    core::geometry::Mesh a = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01}), b = box_mesh({0.0105, 0, 0}, {0.02, 0.01, 0.01}),
+                         c = box_mesh({0.022, 0, 0}, {0.03, 0.01, 0.01});
+    Boxes() {
+        write("cad/base.stl", core::mesh_files::stl_bytes({{"base", &a}}));
+        write("cad/lid.stl", core::mesh_files::stl_bytes({{"lid", &b}}));
+        write("cad/notes.txt", "no mesh");
+        write("cad/arm.obj", core::mesh_files::obj_text({{"arm", &c}}));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("clearance: two meshes, with their unit, and an exit code for CI") {
+    const Boxes boxes;
+    const std::string files = boxes.file("cad/base.stl") + " " + boxes.file("cad/lid.stl");
+    const Answer clear = run("clearance " + files + " --unit mm --minimum 0.4mm --json");
+    CAPTURE(clear.out);
+    CHECK(clear.code == 0);
+    REQUIRE(clear.json()["pairs"].size() == 1);
+    const nlohmann::json pair = clear.pair("base", "lid");
+    CHECK(pair["lower"].get<double>() == Approx(0.0005).margin(2e-6));
+    CHECK(pair["upper"].get<double>() == Approx(0.0005).margin(2e-6));
+    CHECK(run("clearance " + files + " --unit mm --minimum 0.6mm").code == 1);
+    const Answer table = run("clearance " + files + " --unit mm --minimum 0.6mm");
+    CHECK(table.says("base:lid"));
+    CHECK(table.says("below threshold"));
+    CHECK(table.says("mm"));
+    CHECK(run("clearance " + files + " --unit in --minimum 0.4in --json").json()["least"].get<double>() ==
+          Approx(0.5 * 0.0254).epsilon(1e-3));
+}
+
+TEST_CASE("clearance: what meshes need is asked for, what they have not is refused") {
+    const Boxes boxes;
+    const std::string base = boxes.file("cad/base.stl");
+    const Answer unit = run("clearance " + base + " " + boxes.file("cad/lid.stl") + " --json");
+    CHECK(unit.code == 3);
+    CHECK(unit.json()["errors"][0]["code"] == "missing_key");
+    CHECK(unit.json()["errors"].size() == 2);
+    CHECK(run("clearance " + base + " --unit mm --motion").code == 3);
+    CHECK(run("clearance " + base + " " + boxes.file("cad/notes.txt") + " --unit mm").code == 3);
+    CHECK(run("clearance " + base + " " + boxes.file("none.stl") + " --unit mm").code == 3);
+    CHECK(run("clearance " + base + " --unit parsec").code == 3);
+    CHECK(run("clearance examples/slider_crank/slider_crank.scene.json " + base).code == 3);
+    CHECK(run("clearance examples/slider_crank/slider_crank.scene.json --unit mm").code == 3);
+    CHECK(run("clearance " + base + " --unit mm --minimum 1mm --json").json()["status"] == "undecided");  // one part: nothing is judged
+}
+
+TEST_CASE("clearance: a folder of meshes, all pairs of it") {
+    const Boxes boxes;
+    const Answer answer = run("clearance " + boxes.file("cad") + " --unit mm --minimum 1mm --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 1);
+    CHECK(answer.json()["pairs"].size() == 3);
+    CHECK(answer.pair("base", "lid")["status"] == "violated");
+    CHECK(answer.pair("arm", "lid")["status"] == "clear");
+    CHECK(answer.pair("arm", "base")["lower"].get<double>() == Approx(0.012).margin(1e-5));
+    CHECK(run("clearance " + boxes.file("cad") + " --unit mm --minimum 1mm --pairs arm:lid").code == 0);
+}
+
+TEST_CASE("clearance: a 3MF's build items are the placement, and names that are taken are numbered") {
+    const Boxes boxes;
+    MeshPart first{"wheel", &boxes.a}, second{"wheel", &boxes.a}, third{"a:b,c", &boxes.a};
+    second.position = Vector3(0.0107, 0, 0);
+    third.rotation = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitZ()).toRotationMatrix();
+    third.position = Vector3(0, 0.0101, 0);  // turned, it lies at x -10 to 0, y 10.1 to 20.1
+    boxes.write("plate.3mf", core::mesh_files::threemf_bytes({first, second, third}).value());
+    const Answer answer = run("clearance " + boxes.file("plate.3mf") + " --minimum 0.05mm --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.pair("wheel", "wheel 2")["upper"].get<double>() == Approx(0.0007).margin(2e-6));
+    CHECK(answer.pair("wheel", "a_b_c")["upper"].get<double>() == Approx(0.0001).margin(2e-6));
+}
+
+TEST_CASE("clearance: a certificate of meshes names their files, and is stale when one changes") {
+    const Boxes boxes;
+    const std::string certificate = boxes.file("out/fit.certificate.json");
+    const std::string command = "clearance " + boxes.file("cad") + " --unit mm --minimum 0.4mm --certificate " + certificate;
+    CHECK(run(command).code == 0);
+    const Answer good = run("validate " + certificate + " --minimum 0.4mm --json");
+    CAPTURE(good.out);
+    CHECK(good.code == 0);
+    CHECK(good.json()["exports"].size() == 3);
+    boxes.write("cad/lid.stl", core::mesh_files::stl_bytes({{"lid", &boxes.c}}));
+    const Answer stale = run("validate " + certificate + " --json");
+    CHECK(stale.code == 1);
+    CHECK(stale.json()["status"] == "stale");
+}
+
+TEST_CASE("clearance: meshes are moved by poses of another program") {
+    const Boxes boxes;
+    const std::string poses = boxes.write(
+        "poses.csv", "time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz\n0,lid,0,0,0,1,0,0,0\n1,lid,-0.3,0,0,1,0,0,0\n2,lid,1,0,0,1,0,0,0\n");
+    const std::string files = boxes.file("cad/base.stl") + " " + boxes.file("cad/lid.stl");
+    const Answer answer = run("clearance " + files + " --unit mm --minimum 0.1mm --poses " + poses + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.pair("base", "lid")["upper"].get<double>() == Approx(0.0002).margin(2e-6));
+    CHECK(answer.pair("base", "lid")["time"].get<double>() == Approx(1).margin(1e-2));
+}
+
+}  // namespace fettle::design::cli::mesh_clearance_test

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// Pictures: what hides what, which edges are drawn, where things are; PNG decoded by a reader of its own, SVG by an XML reader.
+#include "fettle/design/exports/picture.hpp"
+
+#include <zlib.h>
+
+#include <catch2/catch.hpp>
+
+#include "fettle/core/mesh_files/xml_reader.hpp"
+#include "fettle/design/exports/small_letters.hpp"
+#include "fettle/design/exports/svg_writer.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
+#include "fettle/tests/support/text.hpp"
+
+namespace fettle::design::exports::picture_test {
+
+namespace {
+
+using core::kinematics::Pose;
+using tests::support::box_mesh;
+using tests::support::contains;
+
+/// A box of 2 x 2 x 2, and behind it (+y) a smaller one, of which the front hides all.
+Assembly two_boxes() {
+    Assembly out;
+    out.parts = {{"front", part_colour(0), box_mesh({-1, -1, -1}, {1, 1, 1}), Vector3::Zero(), false},
+                 {"back", part_colour(5), box_mesh({-0.5, 2, -0.5}, {0.5, 3, 0.5}), Vector3::Zero(), false}};
+    out.keyframes = {{0, true, {Pose{}, Pose{}}}};
+    return out;
+}
+
+PictureOptions seen_from(const std::string& view, const Vector3& up = Vector3::UnitZ()) {
+    PictureOptions options;
+    options.view = projection_view(view, up, "").value();
+    options.width = options.height = 200;
+    return options;
+}
+
+Picture drawn(const Assembly& assembly, const PictureOptions& options) {
+    return draw_picture(assembly, assembly.keyframes.front().poses, options);
+}
+
+bool is_reddish(const Colour& c) { return c[0] > 2 * c[2]; }  // colour 5; colour 0 is blue
+
+int count(const Image& image, bool (*fits)(const Colour&)) {
+    return static_cast<int>(std::count_if(image.pixels.begin(), image.pixels.end(), fits));
+}
+
+unsigned big_endian(const std::string& bytes, std::size_t at) {
+    unsigned out = 0;
+    for (std::size_t i = 0; i < 4; ++i) out = out << 8 | static_cast<unsigned char>(bytes.at(at + i));
+    return out;
+}
+
+/// Chunks in order, checksums checked; filter "left" undone.
+Image decoded(const std::string& png) {
+    REQUIRE(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+    Image image;
+    std::string packed;
+    for (std::size_t at = 8; at < png.size();) {
+        const std::size_t size = big_endian(png, at);
+        const std::string body = png.substr(at + 4, size + 4);
+        CHECK(crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size())) == big_endian(png, at + 8 + size));
+        if (body.substr(0, 4) == "IHDR") {
+            image.width = static_cast<int>(big_endian(body, 4));
+            image.height = static_cast<int>(big_endian(body, 8));
+            CHECK(body.substr(12) == std::string("\x08\x02\x00\x00\x00", 5));
+        }
+        if (body.substr(0, 4) == "IDAT") packed += body.substr(4);
+        at += size + 12;
+    }
+    const std::size_t row = 1 + 3 * static_cast<std::size_t>(image.width);
+    std::string rows(row * static_cast<std::size_t>(image.height), '\0');
+    uLongf length = rows.size();
+    REQUIRE(uncompress(reinterpret_cast<Bytef*>(rows.data()), &length, reinterpret_cast<const Bytef*>(packed.data()), packed.size()) ==
+            Z_OK);
+    REQUIRE(length == rows.size());
+    for (std::size_t at = 0; at < rows.size(); at += row) {
+        CHECK(rows[at] == 1);
+        Colour left{};
+        for (std::size_t x = at + 1; x < at + row; x += 3) {
+            for (std::size_t k = 0; k < 3; ++k) left[k] = static_cast<unsigned char>(left[k] + static_cast<unsigned char>(rows[x + k]));
+            image.pixels.push_back(left);
+        }
+    }
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("Picture: what is in front hides what is behind, wherever it stands in the list") {
+    for (const bool turned_list : {false, true}) {
+        Assembly assembly = two_boxes();
+        if (turned_list) std::swap(assembly.parts[0], assembly.parts[1]);
+        CHECK(count(drawn(assembly, seen_from("front")).surfaces, is_reddish) == 0);
+        const Picture back = drawn(assembly, seen_from("back"));
+        const int red = count(back.surfaces, is_reddish);
+        CHECK(red == Approx(84 * 84).epsilon(0.05));  // half of 84% of the picture's 200 pixels, each way: 168 for 2 units
+    }
+}
+
+TEST_CASE("Picture: of a cube seen from the front four edges, of one seen askew nine, none of what is hidden") {
+    Assembly assembly = two_boxes();
+    const auto length = [](const std::vector<PictureLine>& lines) {
+        double sum = 0;
+        for (const PictureLine& line : lines) sum += (line.to - line.from).norm();
+        return sum;
+    };
+    const Picture front = drawn(assembly, seen_from("front"));
+    CHECK(length(front.edges) >= 4 * 168 * 0.99);
+    for (const PictureLine& line : front.edges)  // along the border of the square from 16 to 184, not where the hidden box is
+        for (const Vector2& p : {line.from, line.to}) CHECK((p - Vector2(100, 100)).cwiseAbs().maxCoeff() == Approx(84).margin(1.5));
+    assembly.parts.pop_back();
+    assembly.keyframes = {{0, true, {Pose{}}}};
+    const Picture askew = drawn(assembly, seen_from("iso"));
+    CHECK(askew.edges.size() == 9);
+    const double edge = askew.scale_pixels > 0 ? length(askew.edges) / 9 : 0;
+    for (const PictureLine& line : askew.edges) CHECK((line.to - line.from).norm() == Approx(edge).epsilon(0.05));  // all axes equally long
+}
+
+TEST_CASE("Picture: flat facets of a curved face have no edges between them below the crease") {
+    Assembly assembly = two_boxes();
+    PictureOptions options = seen_from("iso");
+    options.crease = M_PI / 2 + 0.1;  // a cube's own corners are below it: outlines alone are left
+    assembly.parts.pop_back();
+    assembly.keyframes = {{0, true, {Pose{}}}};
+    CHECK(drawn(assembly, options).edges.size() == 6);
+}
+
+TEST_CASE("Views: right-handed, by name and by angles, with any axis up") {
+    for (const Vector3& up : {Vector3(0, 0, 1), Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(0, 0, -1), Vector3(0, -1, 0)}) {
+        for (const char* name : {"iso", "front", "back", "left", "right", "top", "bottom", "33,-12.5", "-200,89"}) {
+            const ProjectionView view = projection_view(name, up, "").value();
+            CHECK((view.right.cross(view.up) - view.towards).norm() < 1e-12);
+            CHECK(view.right.norm() == Approx(1));
+            CHECK(view.towards.norm() == Approx(1));
+            CHECK(view.up.dot(up) >= -1e-12);
+        }
+    }
+    const auto towards = [](const std::string& name, const Vector3& up) { return projection_view(name, up, "").value().towards; };
+    CHECK(towards("front", Vector3::UnitZ()) == Vector3(0, -1, 0));
+    CHECK(towards("right", Vector3::UnitZ()) == Vector3(1, 0, 0));
+    CHECK(towards("top", Vector3::UnitZ()) == Vector3(0, 0, 1));
+    CHECK((towards("front", Vector3::UnitY()) - Vector3(0, 0, 1)).norm() < 1e-12);
+    CHECK((towards("right", Vector3::UnitY()) - Vector3(1, 0, 0)).norm() < 1e-12);
+    CHECK((towards("90,0", Vector3::UnitZ()) - towards("right", Vector3::UnitZ())).norm() < 1e-12);
+    for (const char* wrong : {"", "izo", "10", "10,91", "nan,0", "0,nan", "1,2,3"}) {
+        const auto view = projection_view(wrong, Vector3::UnitZ(), "--view");
+        REQUIRE_FALSE(view);
+        CHECK(view.errors().front().where == "--view");
+    }
+    CHECK(contains(projection_view("izo", Vector3::UnitZ(), "").errors().front().message, "iso"));
+}
+
+TEST_CASE("Picture: marker, legend and scale, as PNG and as SVG") {
+    PictureOptions options = seen_from("front");
+    options.marker = PictureMarker{Vector3(0, -1, 0), Vector3(0.5, -1, 0), "a:b <0.1 mm"};
+    options.title = "t & t";
+    const Assembly assembly = two_boxes();
+    const Picture picture = drawn(assembly, options);
+    REQUIRE(picture.marker);
+    CHECK((picture.marker->from - Vector2(100, 100)).norm() < 1e-9);
+    CHECK((picture.marker->to - Vector2(142, 100)).norm() < 1e-9);
+    CHECK(picture.legend.size() == 2);
+    CHECK(picture.scale_text == "200 mm");  // a sixth of 200 pixels at 84 pixels per metre is 0.397 m
+    CHECK(picture.scale_pixels == Approx(16.8));
+
+    const Image image = inked(picture), read = decoded(png_bytes(image));
+    CHECK(read.width == 200);
+    CHECK(read.height == 200);
+    CHECK(read.pixels == image.pixels);
+    const Colour marked = image.at(120, 99);  // between its ends
+    CHECK(marked[0] > 150);
+    CHECK(marked[1] < 80);
+
+    const std::string svg = svg_text(picture);
+    core::mesh_files::XmlReader xml(svg, "svg");
+    int paths = 0, texts = 0, circles = 0;
+    while (xml.next()) {
+        if (!xml.opens()) continue;
+        paths += xml.name() == "path" ? 1 : 0;
+        texts += xml.name() == "text" ? 1 : 0;
+        circles += xml.name() == "circle" ? 1 : 0;
+    }
+    CHECK(xml.errors().empty());
+    CHECK(paths == 3);
+    CHECK(texts == 5);
+    CHECK(circles == 2);
+    CHECK(contains(svg, "a:b &lt;0.1 mm"));
+    CHECK(contains(svg, "href=\"data:image/png;base64,iVBORw0KGgo"));
+}
+
+TEST_CASE("Base64 and letters") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foo") == "Zm9v");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+    CHECK(base64("\xff\xfe") == "//4=");
+    CHECK(text_width("abc", 2) == 36);
+    CHECK(text_width("\xc3\xa4", 1) == 6);
+    Image image{12, 10, std::vector<Colour>(120, Colour{255, 255, 255})};
+    write_text(image, 0, 0, "I", {0, 0, 0}, 1);
+    int black = 0;
+    for (const Colour& c : image.pixels) black += c[0] == 0 ? 1 : 0;
+    CHECK(black == 11);                                    // a stem of 7 and two serifs
+    write_text(image, -3, -3, "WWWWWWWWW", {0, 0, 0}, 3);  // what lies outside is left out
+}
+
+TEST_CASE("Picture: nothing at all, and a point, are pictures too") {
+    Assembly empty;
+    empty.keyframes = {{0, true, {}}};
+    CHECK(count(drawn(empty, seen_from("iso")).surfaces, [](const Colour& c) { return c != Colour{255, 255, 255}; }) == 0);
+    AssemblyPart point{"point", part_colour(1), {}, Vector3::Zero(), false};
+    point.mesh.vertices = Matrix3X::Zero(3, 1);
+    core::geometry::build_connectivity(point.mesh);
+    Assembly one;
+    one.parts = {point};
+    one.keyframes = {{0, true, {Pose{}}}};
+    CHECK(inked(drawn(one, seen_from("top"))).pixels.size() == 40000);
+}
+
+}  // namespace fettle::design::exports::picture_test

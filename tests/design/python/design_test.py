@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""Designs in memory with a shape and a quantity of one's own: evaluated, audited, optimised, used by SciPy."""
+import pickle
+import threading
+
+import numpy as np
+import pytest
+
+import fettle
+from conftest import EXAMPLES, Frustum, MeanHeight, tilted_plate
+
+
+def test_evaluated_and_differentiated(tilted):
+    at = tilted.evaluate(tilted.values)
+    assert at.usable, at.reason
+    assert at.constraints[0].value == pytest.approx(at.terms[0].value)
+    value, gradient = tilted.value_and_gradient(tilted.values)
+    assert value == at.objective
+    assert np.array_equal(gradient, at.gradient)
+    assert tilted.value(tilted.values) == value
+    report = fettle.check_gradients(tilted)
+    assert not report.failures
+    assert len(report.rows) == 8
+    for row in report.rows:
+        assert row.relative_error < 1e-6, row
+        assert row.adjoint != 0
+    assert pickle.loads(pickle.dumps(at)) == at
+
+
+def test_the_mass_is_known(tilted):
+    # A frustum of half widths a, b and height h: h (4a^2 + 4ab + 4b^2)/3.
+    h, a, b = 8e-3, 8e-3, 5e-3
+    assert tilted.evaluate(tilted.values).terms[1].value == pytest.approx(1000 * h * 4 * (a * a + a * b + b * b) / 3)
+
+
+def test_optimised_and_again_the_same_bits(tilted):
+    lines = []
+    outcome = fettle.optimise(tilted, progress=lines.append)
+    assert outcome.report.evaluations > 2
+    assert outcome.final.objective < tilted.value(tilted.values)
+    assert outcome.final.usable
+    assert lines
+    again = fettle.optimise(fettle.DesignProblem(tilted_plate()))
+    assert np.array_equal(again.report.point, outcome.report.point)
+    assert pickle.loads(pickle.dumps(again)).report == again.report
+
+
+def test_a_shape_refuses_and_a_quantity_raises(tilted):
+    p = tilted.values
+    p[1] = -1e-3
+    at = tilted.evaluate(p)
+    assert not at.usable
+    assert "part" in at.reason and "above 0" in at.reason
+    with pytest.raises(fettle.EvaluationError, match="above 0"):
+        tilted.value_and_gradient(p)
+
+    class Broken(MeanHeight):
+        def value(self, simulated):
+            raise ZeroDivisionError("mine")
+
+    problem = fettle.DesignProblem(tilted_plate(Broken(1)))
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        problem.value(problem.values)
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        fettle.optimise(problem)
+
+    class Wrong(MeanHeight):
+        def gradient(self, simulated):
+            return fettle.QuantityGradient(positions=np.zeros((2, 2, 3)))
+
+    problem = fettle.DesignProblem(tilted_plate(Wrong(1)))
+    with pytest.raises(ValueError, match="steps . 1, bodies, 3"):
+        problem.value_and_gradient(problem.values)
+
+
+def test_a_wrong_gradient_is_found():
+    class Doubled(MeanHeight):
+        def gradient(self, simulated):
+            right = super().gradient(simulated)
+            return fettle.QuantityGradient(2 * right.positions, vertices=right.vertices)
+
+    report = fettle.check_gradients(fettle.DesignProblem(tilted_plate(Doubled(1))))
+    assert report.largest_relative_error > 0.1
+
+
+def test_what_a_quantity_sees_ends_with_the_call():
+    kept = []
+
+    class Keeping(MeanHeight):
+        def value(self, simulated):
+            kept.append((simulated, simulated.positions))
+            return super().value(simulated)
+
+    problem = fettle.DesignProblem(tilted_plate(Keeping(1)))
+    problem.value(problem.values)
+    simulated, positions = kept[-1]
+    assert np.all(np.isfinite(positions))
+    with pytest.raises(RuntimeError, match="while value"):
+        _ = simulated.positions
+
+
+def test_threads_share_a_problem(tilted):
+    expected = tilted.value_and_gradient(tilted.values)[1]
+    found = [None] * 4
+
+    def work(i):
+        found[i] = tilted.value_and_gradient(tilted.values)[1]
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(one, expected) for one in found)
+
+
+def test_relations_as_formula_and_as_function_agree():
+    design = tilted_plate()
+    bounds = fettle.Bounds(lower=0.6, margin=1e-5)
+    design.relations = [
+        fettle.Relation("formula", bounds, formula="top / foot"),
+        fettle.Relation("function", bounds, at=lambda p: (p[2] / p[1], [0, -p[2] / p[1] ** 2, 1 / p[1], 0])),
+    ]
+    problem = fettle.DesignProblem(design)
+    rows = problem.relations(problem.values)
+    assert rows.values == pytest.approx([0.625, 0.625], rel=1e-15)
+    assert rows.jacobian[0] == pytest.approx(rows.jacobian[1], rel=1e-14)
+    design.relations = [fettle.Relation("formula", bounds, formula="tap / foot")]
+    with pytest.raises(fettle.Error, match="tap"):
+        fettle.DesignProblem(design)
+
+
+def test_generated_parts_have_their_derivative():
+    part = fettle.GeneratedPart("crank")
+    drawn = part.dimensions()
+    mesh, jacobian = part.at({})
+    step = 1e-6
+    for name in drawn:
+        ends = [part.at({name: drawn[name] + sign * step})[0].vertices for sign in (1, -1)]
+        assert np.allclose((ends[0] - ends[1]) / (2 * step), jacobian[name], atol=1e-6), name
+    with pytest.raises(fettle.Error) as refused:
+        part.at({next(iter(drawn)): -1.0})
+    assert refused.value.code == "out_of_range"
+
+
+def test_a_file_is_optimised_into_a_folder(tmp_path):
+    text = (EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text()
+    path = tmp_path / "short.design.json"
+    scene = EXAMPLES / "slider_crank" / "slider_crank.scene.json"
+    path.write_text(text.replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 3}}'))
+    file = fettle.read_design(str(path))
+    outcome = fettle.optimise_file(str(path), str(tmp_path / "out"), max_evaluations=6)
+    assert 0 < outcome.report.evaluations < 12
+    assert (tmp_path / "out" / "history.jsonl").exists()
+    final = fettle.read_design(str(tmp_path / "out" / "design.final.json"))
+    assert [p.name for p in final.design.parameters] == [p.name for p in file.design.parameters]
+    again = fettle.optimise_file(str(path), str(tmp_path / "out"), resume=True, max_evaluations=6)
+    assert again.replayed > 0
+    assert np.array_equal(again.report.point, outcome.report.point)
+
+
+def test_scipy_minimises_a_design():
+    optimize = pytest.importorskip("scipy.optimize")
+    design = tilted_plate()
+    design.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([(1, "volume")]))]
+    design.constraints, design.steps = [], 1
+    problem = fettle.DesignProblem(design)
+    lower, width = problem.lower, problem.upper - problem.lower
+
+    def scaled(u):
+        value, gradient = problem.value_and_gradient(lower + u * width)
+        return value, gradient * width
+
+    found = optimize.minimize(scaled, (problem.values - lower) / width, jac=True, bounds=[(0, 1)] * 4, method="L-BFGS-B")
+    assert found.success
+    assert found.x[:3] == pytest.approx([0, 0, 0], abs=1e-9)  # the least frustum
+
+
+def test_frustum_is_a_shape_of_the_library():
+    mesh, jacobian = fettle.shape_at(Frustum(8e-3, 5e-3, 8e-3), {"height": 9e-3})
+    assert mesh.vertices[:, 2].max() == pytest.approx(4.5e-3)
+    assert set(jacobian) == {"foot", "top", "height"}

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""The dataclasses have the library's members and defaults, and what passes through the library comes back as it was."""
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+
+import fettle
+from conftest import EXAMPLES, box, tilted_plate
+from fettle import _fettle
+
+DESIGNS = sorted(EXAMPLES.glob("*/*.design.json"))
+SCENES = sorted(EXAMPLES.glob("*/*.scene.json"))
+
+
+def test_there_are_examples():
+    assert DESIGNS and SCENES
+
+
+@pytest.mark.parametrize("path", DESIGNS, ids=lambda p: p.stem)
+def test_a_design_through_python_has_the_same_bits(path):
+    """Every member that an example uses is carried both ways: a lost one would change the numbers, or the design."""
+    direct = fettle.read_design(str(path)).design
+    problem = fettle.DesignProblem(direct)
+    again = problem.design
+    again.scene.dhat, again.scene.velocity_tolerance = direct.scene.dhat, direct.scene.velocity_tolerance  # the problem fills these in
+    assert again == direct
+    text, answer = _fettle.evaluate_file(str(path), 3), fettle.DesignProblem(_short(direct, 3))
+    at = answer.evaluate(answer.values)
+    assert at.reason == text[0]
+    assert at.objective == text[1]
+    assert np.array_equal(at.gradient, text[2])
+
+
+def _short(design, steps):
+    return dataclasses.replace(design, steps=steps)
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
+def test_scenes_pickle_and_come_back(path):
+    scene = fettle.read_scene(str(path))
+    assert _fettle.scene_round_trip(scene) == scene
+    assert pickle.loads(pickle.dumps(scene)) == scene
+
+
+def test_defaults_are_the_librarys():
+    for name, default in _fettle.defaults().items():
+        assert getattr(fettle, name)() == default, name
+
+
+def test_every_dataclass_of_a_scene_is_the_librarys():
+    known = set(_fettle.defaults())
+    for name in fettle.__all__:
+        made = getattr(fettle, name)
+        if dataclasses.is_dataclass(made) and made.__module__ in ("fettle.scene", "fettle.results"):
+            assert name in known | {"Mesh", "Fault"}, name
+
+
+def test_designs_pickle():
+    design = tilted_plate()
+    design.objective, design.constraints, design.shapes = [], [], []
+    design.relations = [fettle.Relation("taper", fettle.Bounds(lower=0.6), formula="top / foot")]
+    assert pickle.loads(pickle.dumps(design)) == design
+    for path in DESIGNS:
+        file = fettle.read_design(str(path))
+        assert pickle.loads(pickle.dumps(file)) == file
+
+
+def test_wrong_members_are_told_by_name():
+    body = fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))
+    body.density = "heavy"
+    with pytest.raises(TypeError, match="Body.density: a value of type str"):
+        fettle.build_model(fettle.Scene(bodies=[body]))
+    body.density = 1000.0
+    body.type = "dynamik"
+    with pytest.raises(ValueError, match='"dynamik" is none of: dynamic, static, kinematic'):
+        fettle.build_model(fettle.Scene(bodies=[body]))
+    body.type = "dynamic"
+    body.mesh.triangles = [[0, 1, 99]]
+    with pytest.raises(ValueError, match="names a vertex that is not there"):
+        fettle.build_model(fettle.Scene(bodies=[body]))
+
+
+def test_errors_have_code_and_place(tmp_path):
+    with pytest.raises(fettle.Error) as missing:
+        fettle.read_scene(str(tmp_path / "none.scene.json"))
+    assert missing.value.code == "file_not_found"
+    path = tmp_path / "bad.scene.json"
+    path.write_text('{"fettle_scene": 1, "units": "mm", "bodis": [], "bodies": [{"name": "a", "density": -1}]}')
+    with pytest.raises(fettle.Error) as bad:
+        fettle.read_scene(str(path))
+    found = {(fault.code, fault.where.split("#")[-1]) for fault in bad.value.errors}
+    assert ("unknown_key", "/bodis") in found
+    assert ("out_of_range", "/bodies/0/density") in found
+    assert pickle.loads(pickle.dumps(bad.value)).errors == bad.value.errors
+    assert "did you mean" in str(bad.value) or "bodies" in str(bad.value)
+
+
+def test_notebooks_get_a_table():
+    html = fettle.Body("<b>", mesh=box(0.01, 0.01, 0.01))._repr_html_()
+    assert "&lt;b&gt;" in html and "<table>" in html
+    assert "array of shape" in fettle.Mesh("m", np.zeros((9, 3)))._repr_html_()

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// URDF in and out: kinematics by hand, what is refused, and a way there and back.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/urdf/urdf_parser.hpp"
+#include "fettle/design/urdf/urdf_scene.hpp"
+#include "fettle/design/urdf/urdf_writer.hpp"
+#include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
+
+namespace fettle::design::urdf::urdf_test {
+
+namespace {
+
+using fettle::tests::support::Answer;
+using fettle::tests::support::contains;
+using fettle::tests::support::run;
+using fettle::tests::support::TemporaryFolder;
+using nlohmann::json;
+
+/// A base, an arm that turns about y from 30 to 90 degrees, a slider on it with a sphere, a frame without geometry.
+const std::string arm = R"(<?xml version="1.0"?>
+<robot name="arm"><!-- two joints -->
+  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>
+  <link name="base"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
+  <link name="upper">
+    <inertial><mass value="0.6"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><origin xyz="0 0 0.15" rpy="0 0 0"/><geometry><cylinder radius="0.02" length="0.3"/></geometry></collision>
+  </link>
+  <link name="hand">
+    <inertial><mass value="0.1"/></inertial>
+    <collision><geometry><sphere radius="0.03"/></geometry></collision>
+  </link>
+  <link name="tool"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+    <origin xyz="0 0 0.1" rpy="0 0 1.5707963267948966"/><axis xyz="0 1 0"/>
+    <limit lower="0.5235987755982988" upper="1.5707963267948966" effort="10" velocity="1"/><dynamics damping="0.2" friction="0.01"/></joint>
+  <joint name="slide" type="prismatic"><parent link="upper"/><child link="hand"/>
+    <origin xyz="0 0 0.35"/><axis xyz="0 0 1"/><limit lower="-0.01" upper="0.05" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="fixed"><parent link="hand"/><child link="tool"/></joint>
+  <transmission name="t"><joint name="shoulder"/><link name="nothing"/></transmission>
+</robot>)";
+
+json scene_json(const ImportedScene& scene) { return json::parse(scene.files.front().second); }
+
+Vector3 vector(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
+
+}  // namespace
+
+TEST_CASE("URDF: angles about fixed axes, there and back") {
+    for (const Vector3& rpy :
+         {Vector3(0.3, -0.5, 2), Vector3(-3, 1.5, -2), Vector3(0, 0, 0), Vector3(0.4, M_PI / 2, 0), Vector3(0, -M_PI / 2, 1)}) {
+        const Matrix3 rotation = rotation_of_rpy(rpy);
+        CHECK((rotation_of_rpy(rpy_of_rotation(rotation)) - rotation).cwiseAbs().maxCoeff() < 1e-8);
+    }
+    // Roll is about the world's x, first: (0, 1, 0) goes to z, and from there by yaw nowhere.
+    CHECK((rotation_of_rpy({M_PI / 2, 0, 0.7}) * Vector3::UnitY() - Vector3::UnitZ()).norm() < 1e-15);
+}
+
+TEST_CASE("URDF: links become bodies where the joints have them, limits count from the start") {
+    const auto robot = parse_urdf(arm, "arm.urdf");
+    REQUIRE(robot);
+    CHECK(robot->links.size() == 4);
+    CHECK(robot->joints.size() == 3);
+    const auto imported = scene_of_robot(*robot, {});
+    REQUIRE(imported);
+    REQUIRE(imported->files.size() == 4);
+    const json scene = scene_json(*imported);
+    REQUIRE(scene["bodies"].size() == 3);
+    CHECK(scene["bodies"][0]["type"] == "static");
+    // At 30 degrees about the joint's y, which yaw has turned to the world's -x: the arm's z leans to +y by sin 30.
+    const Vector3 lean(0, std::sin(M_PI / 6), std::cos(M_PI / 6));
+    CHECK((vector(scene["bodies"][1]["position"]) - Vector3(0, 0, 100)).norm() < 1e-9);
+    CHECK((vector(scene["bodies"][2]["position"]) - (Vector3(0, 0, 100) + 350 * lean)).norm() < 1e-9);
+    const json& shoulder = scene["joints"][0];
+    CHECK(shoulder["type"] == "revolute");
+    CHECK(shoulder["a"] == "base");
+    CHECK((vector(shoulder["axis"]) - Vector3(-1, 0, 0)).norm() < 1e-12);
+    CHECK(shoulder["limits"][0].get<double>() == Approx(0).margin(1e-9));
+    CHECK(shoulder["limits"][1].get<double>() == Approx(60));
+    CHECK(shoulder["damping"] == 0.2);
+    CHECK(shoulder["friction"] == 0.01);
+    const json& slide = scene["joints"][1];
+    CHECK((vector(slide["axis"]) - lean).norm() < 1e-12);
+    CHECK(slide["limits"] == json({-10.0, 50.0}));
+    CHECK(scene["joints"].size() == 2);  // the tool is a frame of the hand
+    ImportOptions floating;
+    floating.floating = true;
+    CHECK_FALSE(scene_json(*scene_of_robot(*robot, floating))["bodies"][0].contains("type"));
+}
+
+TEST_CASE("URDF: the program imports a robot that simulates, with the file's masses, and exports it again") {
+    const TemporaryFolder folder;
+    const std::string file = folder.write("arm.urdf", arm), to = folder.file("out/arm.scene.json");
+    REQUIRE(run("import " + file + " --to " + to).code == 0);
+    const Answer valid = run("validate " + to + " --json");
+    CAPTURE(valid.out);
+    REQUIRE(valid.code == 0);
+    CHECK(valid.json()["parts"][1]["mass"].get<double>() == Approx(0.6));
+    CHECK(valid.json()["parts"][2]["mass"].get<double>() == Approx(0.1));
+    CHECK(run("simulate " + to + " --steps 5 --json").json()["status"] == "ok");
+
+    // And back: the same kinematics, read by the same reader; once more, the same file.
+    REQUIRE(run("export " + to + " --to " + folder.file("back/arm.urdf")).code == 0);
+    REQUIRE(run("import " + folder.file("back/arm.urdf") + " --to " + folder.file("again/arm.scene.json")).code == 0);
+    const auto first = core::scene::read_scene(to, reading::scene_read_options()),
+               second = core::scene::read_scene(folder.file("again/arm.scene.json"), reading::scene_read_options());
+    REQUIRE(first);
+    REQUIRE(second);
+    REQUIRE(second->bodies.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto &a = first->bodies[i], &b = second->bodies[i];
+        CHECK(a.name == b.name);
+        for (const auto& [x, y] : {std::pair{Vector3(a.mesh.vertices.rowwise().maxCoeff()), Vector3(b.mesh.vertices.rowwise().maxCoeff())}})
+            CHECK((x - y).norm() < 1);  // frames differ: only what stands in the world is compared
+        const auto centre = [](const core::scene::Body& body) {
+            const Matrix4 m = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
+            return Vector3(body.pose.rotation * Vector3(m.topRightCorner<3, 1>() / m(3, 3)) + body.pose.position);
+        };
+        CHECK((centre(a) - centre(b)).norm() < 1e-7);
+        if (i > 0) CHECK(a.density == Approx(b.density).epsilon(1e-5));
+    }
+    REQUIRE(second->mechanism.joints.size() == 2);
+    CHECK(second->bodies[0].type == core::scene::BodyType::static_body);
+    for (const auto& joint : first->mechanism.joints) {
+        const auto found = std::find_if(second->mechanism.joints.begin(), second->mechanism.joints.end(),
+                                        [&](const auto& j) { return j.name == joint.name; });
+        REQUIRE(found != second->mechanism.joints.end());
+        CHECK(found->kind == joint.kind);
+        REQUIRE(found->forces.limits);
+        CHECK((*found->forces.limits)[0] == Approx((*joint.forces.limits)[0]).margin(1e-12));
+        CHECK((*found->forces.limits)[1] == Approx((*joint.forces.limits)[1]));
+    }
+}
+
+TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not are refused") {
+    const TemporaryFolder folder;
+    const auto scene = [&](const std::string& joints) {
+        return folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+            {"name": "bar", "density": 1000, "shape": {"generator": "box", "dimensions": {"size_x": 100, "size_y": 20, "size_z": 10}}},
+            {"name": "other", "density": 1000, "shape": {"generator": "box"}, "position": [200, 0, 0]}], "joints": [)" +
+                                                joints + "]}");
+    };
+    const std::string pivot = R"({"name": "pivot", "type": "revolute", "b": "bar", "point": [-50, 0, 0], "axis": [0, 0, 1]})";
+    const auto exported = [&](const std::string& joints) {
+        const auto read = core::scene::read_scene(scene(joints), reading::scene_read_options());
+        REQUIRE(read);
+        core::model::BuildOptions options;
+        options.check_start = false;
+        return robot_of_scene(*read, core::model::build_model(*read, options).value(), "a");
+    };
+    const auto robot = exported(pivot);
+    REQUIRE(robot);
+    const std::string& text = robot->files.front().second;
+    CHECK(contains(text, "<joint name=\"pivot\" type=\"continuous\">"));
+    CHECK(contains(text, "<joint name=\"world to other\" type=\"floating\">"));
+    const auto read = parse_urdf(text, "a.urdf");
+    REQUIRE(read);
+    REQUIRE(read->links[1].mass);
+    CHECK(*read->links[1].mass == Approx(0.02));
+    // A bar of 100 x 20 x 10 mm and 20 g: izz = m (a^2 + b^2) / 12.
+    const std::size_t at = text.find("izz=\"") + 5;
+    CHECK(std::stod(text.substr(at)) == Approx(0.02 * (0.01 + 0.0004) / 12).epsilon(1e-6));
+    CHECK(contains(text, "<origin xyz=\"0.05 0 0\""));  // of the file's frame in the link's, which stands at the pivot
+
+    const auto refused = [&](const std::string& joints) {
+        const auto result = exported(joints);
+        REQUIRE_FALSE(result);
+        return result.errors().front().message;
+    };
+    CHECK(contains(refused(R"({"name": "knee", "type": "ball", "a": "bar", "b": "other", "point": [60, 0, 0]})"), "knee"));
+    CHECK(contains(
+        refused(pivot + R"(, {"name": "link", "type": "revolute", "a": "bar", "b": "other", "point": [60, 0, 0], "axis": [0, 0, 1]},
+                                        {"name": "loop", "type": "revolute", "b": "other", "point": [200, 0, 0], "axis": [0, 0, 1]})"),
+        "closes a loop"));
+}
+
+TEST_CASE("URDF in: what is wrong is told") {
+    const auto code = [](const std::string& text) {
+        const auto robot = parse_urdf(text, "x.urdf");
+        if (!robot) return robot.errors().front().code;
+        const auto scene = scene_of_robot(*robot, {});
+        REQUIRE_FALSE(scene);
+        return scene.errors().front().code;
+    };
+    const std::string box = "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>";
+    const auto two = [&](const std::string& joint) {
+        return "<robot name=\"r\"><link name=\"a\">" + box + "</link><link name=\"b\">" + box + "</link>" + joint + "</robot>";
+    };
+    CHECK(code("<svg/>") == ErrorCode::parse);
+    CHECK(code("no xml") == ErrorCode::parse);
+    CHECK(code("<robot name=\"r\"><link name=\"a\">" + box) == ErrorCode::parse);
+    CHECK(code("<robot name=\"r\"><link/></robot>") == ErrorCode::missing_key);
+    CHECK(code(two("<joint name=\"j\" type=\"hinge\"><parent link=\"a\"/><child link=\"b\"/></joint>")) == ErrorCode::unsupported);
+    CHECK(code(two("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>")) == ErrorCode::missing_key);
+    CHECK(code(two("")) == ErrorCode::inconsistent);  // two roots
+    CHECK(code(two("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+                   "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint>")) == ErrorCode::inconsistent);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"><collision><geometry><box size=\"1 x 1\"/></geometry></collision></link></robot>") ==
+          ErrorCode::parse);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"><collision><geometry><box size=\"1 0 1\"/></geometry></collision></link></robot>") ==
+          ErrorCode::out_of_range);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh "
+               "filename=\"package://p/none.stl\"/></geometry></collision></link></robot>") == ErrorCode::file_not_found);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"/></robot>") == ErrorCode::mesh_invalid);
+    CHECK(code("<robot name=\"r\"><link name=\"a\">" + box +
+               "</link><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>") ==
+          ErrorCode::unsupported);
+}
+
+}  // namespace fettle::design::urdf::urdf_test
