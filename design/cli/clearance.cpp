@@ -174,7 +174,7 @@ Errors write_out(const ClearanceArguments& options, const CommonOptions& common,
     json["out"] = options.out;
     if (errors.empty()) errors = write_result(options.out, json, common);
     if (errors.empty() && !options.no_report)
-        leave_report(options.out, common, console, json, told, report::Motion{subject.model, subject.trajectory}, subject.scene_path);
+        leave_report(options.out, common, console, json, told, report::Motion{subject.model, subject.trajectory, subject.scene_path});
     return errors;
 }
 

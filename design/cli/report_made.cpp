@@ -20,13 +20,12 @@ Errors write_result(const std::string& folder, Json answer, const CommonOptions&
 }
 
 void leave_report(const std::string& folder, const CommonOptions& common, Console& console, Json& answer, std::string& told,
-                  std::optional<report::Motion> motion, const std::string& scene_path) {
+                  std::optional<report::Motion> motion) {
     console.narrate("making the report");
     report::ReportOptions options;
     options.mesh_dirs = common.mesh_dirs;
     options.fresh = true;
     options.motion = std::move(motion);
-    options.scene_path = scene_path;
     options.should_stop = interrupted;
     const Result<std::string> made = report::write_report(folder, std::move(options));
     for (const Error& error : made.errors()) console.narrate("warning: no report: " + error.where + ": " + error.message);

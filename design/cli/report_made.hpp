@@ -19,6 +19,6 @@ namespace fettle::design::cli {
 /// results are there. Once a stop has been asked for, what takes computing is left out.
 /// @param motion  of the folder's trajectory, with its scene's path, if at hand.
 void leave_report(const std::string& folder, const CommonOptions& common, Console& console, nlohmann::ordered_json& answer,
-                  std::string& told, std::optional<report::Motion> motion = std::nullopt, const std::string& scene_path = {});
+                  std::string& told, std::optional<report::Motion> motion = std::nullopt);
 
 }  // namespace fettle::design::cli

@@ -229,7 +229,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         errors = write_result(options.out, json, common);
         if (!errors.empty()) return console.input_errors(errors);
         if (!options.no_report)
-            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory}, run.loaded.scene_path);
+            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory, run.loaded.scene_path});
     }
     console.result(json, told);
     return outcome.exit_code;

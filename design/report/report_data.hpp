@@ -32,6 +32,7 @@ namespace fettle::design::report {
 struct Motion {
     core::model::Model model;  ///< geometry and names
     core::stepper::Trajectory trajectory;
+    std::string scene_path = {};  ///< of the scene's file; empty: not known
 };
 
 enum class ReportKind { optimise, simulate, clearance };

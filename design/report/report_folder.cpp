@@ -161,7 +161,7 @@ private:
         if (source_.result.value("status", "") == "start_failed") return {};  // a trajectory that is there is not its own
         if (options_.motion) {
             source_.motion = std::move(options_.motion);
-            scene_path_ = options_.scene_path;
+            scene_path_ = source_.motion->scene_path;
             return {};
         }
         Result<core::records::StoredTrajectory> stored = core::records::read_trajectory(folder_ / "trajectory.json");

@@ -23,7 +23,6 @@ struct ReportOptions {
     std::vector<std::string> mesh_dirs;                        ///< also looked in for meshes
     bool fresh = false;                                        ///< what could be there from an earlier run is computed again
     std::optional<Motion> motion;                              ///< of the folder's trajectory, if it is at hand
-    std::string scene_path;                                    ///< of that motion's scene
     std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
 };
 

@@ -175,10 +175,12 @@ export class Viewer {
   // The gap of the marked pair: its line, arrows along its normal, its length.
   mark(size) {
     this.overlay.replaceChildren();
+    this.overlay.toggleAttribute("hidden", true);  // an empty layer over the picture costs time as well
     const showsAfter = this.mode !== "before";
     if (!this.marked || !showsAfter || this.exploded > 0 || Math.abs(this.time - this.marked.time) > this.marked.near) return;
     const p = this.project(this.marked.a, size), q = this.project(this.marked.b, size);
     if (!p.inside || !q.inside) return;
+    this.overlay.toggleAttribute("hidden", false);
     let dx = q.x - p.x, dy = q.y - p.y;
     const long = Math.hypot(dx, dy);
     if (long > 1e-6) [dx, dy] = [dx / long, dy / long];
