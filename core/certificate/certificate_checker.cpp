@@ -181,7 +181,8 @@ private:
         const auto found = std::find_if(places_.begin(), places_.end(), is_place);
         if (found == places_.end() || !(pair.s >= 0 && pair.s <= 1)) return fault(where, "the witness's instant is not on the path");
         Interval3 X_a, X_b;
-        if (!body_point(pair.a, pair.point_a, X_a) || !body_point(pair.b, pair.point_b, X_b))
+        const auto mesh = [&](int body) -> const geometry::Mesh& { return model_.bodies[static_cast<std::size_t>(body)].mesh; };
+        if (!point_of(mesh(pair.a), pair.point_a, X_a) || !point_of(mesh(pair.b), pair.point_b, X_b))
             return fault(where, "the witness's points are not of the bodies");
         const auto index = static_cast<std::size_t>(found - places_.begin());
         const BodyPath a = path(index, pair.a), b = path(index, pair.b);
@@ -192,32 +193,6 @@ private:
         const double turned = 1 + norm_bound(a.theta) + norm_bound(b.theta) + a.speed + b.speed;
         if (!(pair.upper - distance.low <= 1e-11 * size * turned + 1e-300))
             fault(where + "/upper", "the witness's points are closer: the bound is not attained");
-    }
-
-    // The point, as intervals in the body's frame.
-    bool body_point(int body, const CertifiedPoint& point, Interval3& X) const {
-        const geometry::Mesh& mesh = model_.bodies[static_cast<std::size_t>(body)].mesh;
-        const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
-        const int count = point.kind == Primitive::triangle ? triangles
-                          : point.kind == Primitive::edge   ? edges
-                                                            : static_cast<int>(mesh.vertices.cols());
-        if (point.index < 0 || point.index >= count) return false;
-        const int offset = point.kind == Primitive::triangle ? 0 : point.kind == Primitive::edge ? triangles : triangles + edges;
-        const std::vector<int> corners = element_vertices(mesh, offset + point.index);
-        for (std::size_t i = corners.size(); i < point.weight.size(); ++i)
-            if (point.weight[i] != 0) return false;
-        Interval total = 0;
-        X = {Interval(0), Interval(0), Interval(0)};
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            const double weight = point.weight[i];
-            if (!(weight >= 0 && weight <= 2)) return false;
-            total = total + Interval(weight);
-            for (std::size_t k = 0; k < 3; ++k)
-                X[k] = X[k] + Interval(weight) * Interval(mesh.vertices(static_cast<Eigen::Index>(k), corners[i]));
-        }
-        if (!(total.low > 0.5)) return false;
-        for (Interval& x : X) x = x / total;
-        return true;
     }
 
     const Certificate& certificate_;

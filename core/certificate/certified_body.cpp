@@ -112,4 +112,28 @@ base::Result<CertifiedBody> certified_body(const BodyPieces& pieces, const geome
     return body;
 }
 
+bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3& X) {
+    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
+    const int count = point.kind == Primitive::triangle ? triangles
+                      : point.kind == Primitive::edge   ? edges
+                                                        : static_cast<int>(mesh.vertices.cols());
+    if (point.index < 0 || point.index >= count) return false;
+    const int offset = point.kind == Primitive::triangle ? 0 : point.kind == Primitive::edge ? triangles : triangles + edges;
+    const std::vector<int> corners = element_vertices(mesh, offset + point.index);
+    for (std::size_t i = corners.size(); i < point.weight.size(); ++i)
+        if (point.weight[i] != 0) return false;
+    Interval total = 0;
+    X = {Interval(0), Interval(0), Interval(0)};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const double weight = point.weight[i];
+        if (!(weight >= 0 && weight <= 2)) return false;
+        total = total + Interval(weight);
+        for (std::size_t k = 0; k < 3; ++k)
+            X[k] = X[k] + Interval(weight) * Interval(mesh.vertices(static_cast<Eigen::Index>(k), corners[i]));
+    }
+    if (!(total.low > 0.5)) return false;
+    for (Interval& x : X) x = x / total;
+    return true;
+}
+
 }  // namespace fettle::core::certificate

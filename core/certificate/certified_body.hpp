@@ -39,4 +39,7 @@ base::Result<CertifiedBody> certified_body(const BodyPieces& pieces, const geome
 /// Vertices of the element with this number; empty if there is none.
 std::vector<int> element_vertices(const geometry::Mesh& mesh, int number);
 
+/// The point, as intervals in the body's frame; false if it is none of the mesh.
+bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3& X);
+
 }  // namespace fettle::core::certificate

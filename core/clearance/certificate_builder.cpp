@@ -69,25 +69,30 @@ certificate::Certificate start_certificate(const model::Model& model, const step
     return certificate;
 }
 
+certificate::CertifiedPoint certified_witness(const PieceTree& tree, int element, bool intersecting, const ElementFeature& feature,
+                                              const Vector3& X) {
+    Primitive kind = feature.kind;
+    int index = primitive_index(tree, element, kind, feature.corner);
+    if (intersecting && kind == Primitive::vertex) name_crossing_edge(tree, element, feature.corner, X, kind, index);
+    return certified_point(*tree.mesh, kind, index, X);
+}
+
 void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate) {
     const Encounter& nearest = found.nearest;
     const Witness witness = witness_of(pair, nearest);
     const Instant at = instant_at(pair.segments[nearest.segment], nearest.s);
     const Vector3 on_a = at.rotation_a.transpose() * (nearest.pair.point_a - at.offset),
                   on_b = at.rotation_b.transpose() * nearest.pair.point_b;
-    Primitive kind_a = witness.kind_a, kind_b = witness.kind_b;
-    int index_a = witness.primitive_a, index_b = witness.primitive_b;
-    if (nearest.pair.intersecting && kind_a == Primitive::vertex)
-        name_crossing_edge(pair.a, nearest.element_a, nearest.pair.corner_a, on_a, kind_a, index_a);
-    if (nearest.pair.intersecting && kind_b == Primitive::vertex)
-        name_crossing_edge(pair.b, nearest.element_b, nearest.pair.corner_b, on_b, kind_b, index_b);
     certificate.lower = found.lower;
     certificate.upper = found.upper + 4 * pair.segments[nearest.segment].slack;  // for the checker's own rounding
     certificate.step = witness.step;
     certificate.segment = witness.segment;
     certificate.s = witness.s;
-    certificate.point_a = certified_point(*pair.a.mesh, kind_a, index_a, on_a);
-    certificate.point_b = certified_point(*pair.b.mesh, kind_b, index_b, on_b);
+    const ElementPairDistance& found_pair = nearest.pair;
+    certificate.point_a =
+        certified_witness(pair.a, nearest.element_a, found_pair.intersecting, {found_pair.kind_a, found_pair.corner_a}, on_a);
+    certificate.point_b =
+        certified_witness(pair.b, nearest.element_b, found_pair.intersecting, {found_pair.kind_b, found_pair.corner_b}, on_b);
     if (!(found.lower > 0)) certificate.segments.clear();
 }
 

@@ -16,6 +16,15 @@ namespace fettle::core::clearance {
 certificate::Certificate start_certificate(const model::Model& model, const stepper::Trajectory& trajectory,
                                            const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs);
 
+/// Of an element, as ElementPairDistance names it.
+struct ElementFeature {
+    Primitive kind = Primitive::vertex;
+    int corner = 0;
+};
+/// A witness's point as a certificate has it. @param X  in the body's frame
+certificate::CertifiedPoint certified_witness(const PieceTree& tree, int element, bool intersecting, const ElementFeature& feature,
+                                              const Vector3& X);
+
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
 void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate);
 

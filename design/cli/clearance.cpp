@@ -12,6 +12,7 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/cli/clearance_ranges.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
@@ -31,7 +32,7 @@ struct ClearanceArguments {
     std::vector<std::string> files;
     std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
-    bool no_report = false;
+    bool ranges = false, no_report = false;
 };
 
 // 1 um, or 0.1% of the least that is asked for if that is less.
@@ -165,8 +166,9 @@ Errors write_out(const ClearanceArguments& options, const CommonOptions& common,
     std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
     Errors errors;
     if (!std::filesystem::equivalent(options.subject.path, folder / "trajectory.json", ignored)) {
-        if (const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size()); !kept)
-            return kept.errors();
+        const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size());
+        if (!kept) return kept.errors();
+        if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
         errors = core::records::write_trajectory(folder / "trajectory.json", subject.trajectory, subject.model, subject.scene_path);
     }
     json["out"] = options.out;
@@ -193,6 +195,13 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
     if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
+    if (options.ranges) {
+        if (!options.subject.more.empty())
+            return console.input_errors({{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}});
+        RangeQuestion question{options.subject.path, options.pairs, lengths->tolerance, options.explain, options.certificate};
+        question.pairs.minimum = lengths->minimum;
+        return clearance_over_ranges(question, common, console);
+    }
     Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
     PairOptions pair_options = options.pairs;
@@ -262,16 +271,25 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     kinematic.excludes(motion).excludes(poses);
     poses.excludes(motion);
     Option steps = app.option("--steps", options.subject.steps, "How many steps of the motion").at_least(0);
-    app.option("--time", options.subject.time, "How long, in seconds").at_least(0).excludes(steps);
+    Option time = app.option("--time", options.subject.time, "How long, in seconds").at_least(0).excludes(steps);
     app.option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
         .value_if_bare("3")
         .at_least(0);
-    app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
+    Option csv = app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
     app.option("--certificate", options.certificate,
                "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
-    app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
+    Option out = app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
     app.flag("--no-report", options.no_report, "With --out: no report.html");
-    app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
+    Option baseline = app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
+    app.flag("--ranges", options.ranges, "Over all positions of the joints within their limits, in every combination")
+        .excludes(motion)
+        .excludes(kinematic)
+        .excludes(poses)
+        .excludes(steps)
+        .excludes(time)
+        .excludes(csv)
+        .excludes(baseline)
+        .excludes(out);
 }
 
 }  // namespace

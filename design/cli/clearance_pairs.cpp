@@ -207,9 +207,12 @@ private:
         return a.name < b.name ? a.name + std::string(1, '\0') + b.name : b.name + std::string(1, '\0') + a.name;
     }
 
+    // Of the scene; or joined by a joint that lets the two overlap.
     bool is_one_group(int i, int j) const {
         const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
-        return x.group >= 0 && x.group == y.group;
+        const auto& joined_bodies = model_.mechanism.not_colliding;
+        return (x.group >= 0 && x.group == y.group) ||
+               std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(i, j)));
     }
 
     // Patterns of --pairs ask for whatever they match.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Which pairs `fettle clearance` judges and what it requires of each: --pairs, --ignore, --group, --minimum, --process.
-///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have
+///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have, and what a joint joins
 ///   over a motion: every pair that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at for a
 ///   clash only
 ///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own

@@ -10,6 +10,7 @@
 #include "fettle/core/model/start_check.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/stepper/jointed_motion.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step_count.hpp"
@@ -77,6 +78,29 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
                       "axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
                       read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, unit_name(unit_length).c_str()));
     }
+    return {};
+}
+
+// Where joints and motors have the bodies.
+Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
+    constexpr double allowed_gap = 1e-6;  // [m]
+    auto followed = core::stepper::follow_joints(subject.model, steps, allowed_gap);
+    if (!followed) {
+        Errors errors = followed.errors();
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        return errors;
+    }
+    subject.trajectory = std::move(followed->trajectory);
+    subject.source = SubjectSource::scripted;
+    if (!followed->held.empty())
+        subject.notes.push_back("--kinematic: no motor and no script drives these, which are held at their start poses: " +
+                                joined(followed->held));
+    const double unit = subject.model.length_unit;
+    subject.notes.push_back(
+        formatted("--kinematic: joints and motors are met at every node, each step in %d; between nodes, where bounds are "
+                  "of the path as stored, joints part by at most %.2g %s",
+                  followed->parts, followed->joint_gap / unit, unit_name(unit).c_str()));
+    mark_as_scripted(subject);
     return {};
 }
 
@@ -160,6 +184,9 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
         const Errors errors = take_poses(options, subject);
         if (!errors.empty()) return errors;
         mark_as_scripted(subject);
+    } else if (options.kinematic && !subject.model.mechanism.rows.empty()) {
+        Errors errors = take_joints(options, steps, subject);
+        if (!errors.empty()) return errors;
     } else if (options.kinematic || (options.motion && all_scripted)) {
         subject.trajectory = core::stepper::follow_scripts(subject.model, steps);
         subject.source = SubjectSource::scripted;
@@ -185,6 +212,8 @@ bool judged_by_default(const core::model::Model& model, int a, int b) {
     if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
     const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
     if (a == b || (first.group >= 0 && first.group == second.group)) return false;
+    const auto& joined_bodies = model.mechanism.not_colliding;
+    if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
     const auto still = [](const core::model::Body& body) { return body.type == BodyType::static_body; };
     return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
 }

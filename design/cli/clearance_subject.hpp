@@ -43,7 +43,7 @@ struct Subject {
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console);
 
 /// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
-/// where nothing moves, all but those of one group.
+/// where nothing moves, all; but never those of one group, nor what a joint joins.
 bool judged_by_default(const core::model::Model& model, int a, int b);
 
 /// In a motion with dynamics, can these two push each other? Then coming close is what they are for, unless someone asks for more.

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <memory>
 
-#include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
@@ -102,7 +102,7 @@ Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& com
 FileKind file_kind(const std::string& path) {
     if (is_mesh_extension(extension_of(path))) return FileKind::mesh;
     if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
-    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
+    if (core::certificate::is_certificate_file(path) || core::certificate::is_range_certificate_file(path)) return FileKind::certificate;
     return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;
 }
 

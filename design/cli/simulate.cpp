@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/growing_trajectory.hpp"
@@ -28,7 +30,7 @@ using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
 struct SimulateArguments {
-    std::string path, out, poses, earlier;
+    std::string path, out, poses, earlier, joint_gap;
     int steps = -1;
     double time = -1;
     bool no_report = false;
@@ -71,6 +73,16 @@ void add_joints(const core::model::Model& model, const Simulation& simulation, J
     json["joints"] = joints_at_end(model, simulation);
     json["joint_gap"] = gap;
     json["path_joint_gap"] = path_gap;
+}
+
+// Adds nodes to the path until joints hold between them as well as is asked for. @return what of that could not be done; empty: all.
+std::string hold_joints(const std::string& allowed, const core::model::Model& model, Simulation& simulation, Json& json) {
+    if (allowed.empty()) return {};
+    const core::stepper::SplitPath split =
+        core::stepper::split_at_joints(model, *core::base::parse_length(allowed, "--joint-gap"), simulation.trajectory);
+    json["nodes_added"] = split.added;
+    for (core::stepper::StepReport& step : simulation.report.steps) step.path_joint_gap = std::min(step.path_joint_gap, split.left.gap);
+    return split.refusal;
 }
 
 // With the rows of the run that this one goes on with, if its tables are beside its trajectory.
@@ -173,16 +185,18 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 struct FinishedRun {
     const LoadedModel& loaded;
-    const Simulation& simulation;
+    Simulation& simulation;                     // nodes may be added to its path
     const Simulation& earlier;                  // that it went on with
     std::optional<GrowingTrajectory>& growing;  // with --out
 };
 
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
 int finish(const SimulateArguments& options, const CommonOptions& common, const FinishedRun& run, Json json, Console& console) {
-    const Simulation &simulation = run.simulation, &earlier = run.earlier;
+    Simulation& simulation = run.simulation;
+    const Simulation& earlier = run.earlier;
     const core::model::Model& model = run.loaded.model;
     const auto& report = simulation.report;
+    const std::string loose = hold_joints(options.joint_gap, model, simulation, json);
     // Stopped before it got as far as the run that it goes on with: that run stays.
     const bool writes_out = !options.out.empty() && simulation.trajectory.steps.size() >= earlier.trajectory.steps.size();
     if (!options.out.empty() && !writes_out)
@@ -196,7 +210,8 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     console.narrate("certifying the path");
     const auto begin = std::chrono::steady_clock::now();
     const PathProof proof = prove_path(model, simulation, interrupted);
-    const Outcome outcome = outcome_of(report, proof);
+    Outcome outcome = outcome_of(report, proof);
+    if (outcome.status == "ok" && !loose.empty()) outcome = {"joints_part", loose, exit_undecided};
     json["status"] = outcome.status;
     if (!outcome.message.empty()) json["message"] = outcome.message;
     json["steps"] = simulation.trajectory.steps.size();
@@ -245,6 +260,11 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
         earlier = *std::move(read);
         simulate_options.resume = &earlier;
     }
+    if (!options.joint_gap.empty()) {
+        const Result<double> gap = core::base::parse_length(options.joint_gap, "--joint-gap");
+        if (!gap) return console.input_errors(gap.errors());
+        if (!(*gap > 0)) return console.input_errors({{ErrorCode::out_of_range, "--joint-gap", "a length greater than 0 is wanted"}});
+    }
     const Errors unwritable = try_outputs(options);
     if (!unwritable.empty()) return console.input_errors(unwritable);
     Json json;
@@ -252,7 +272,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
-    const Simulation simulation = core::stepper::simulate(model, simulate_options);
+    Simulation simulation = core::stepper::simulate(model, simulate_options);
     return finish(options, common, {*loaded, simulation, earlier, growing}, std::move(json), console);
 }
 
@@ -272,6 +292,9 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.option("--continue", options->earlier,
                "An earlier run of this scene, its trajectory or its folder (of a killed one too): goes on to --steps or --time in all");
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
+    app.option(
+        "--joint-gap", options->joint_gap,
+        "Joints part between the nodes of the path by no more than this, with its unit: 0.01mm (nodes are added; default: as it comes)");
     app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
         "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/certificate/range_checker.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/joint_ranges.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -20,10 +22,56 @@ namespace fettle::design::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using core::certificate::Certificate;
-using core::certificate::PairCertificate;
 using core::certificate::Solids;
 using core::model::Model;
+
+struct Claim {
+    int a = 0, b = 0;
+    double lower = 0, upper = 0;
+    Solids solids = Solids::unproven;
+};
+
+// What both kinds of certificate come to.
+struct Checked {
+    core::certificate::CertificateReport report;
+    std::uint64_t geometry_hash = 0, path_hash = 0;
+    double length_unit = 1;
+    std::string source;
+    bool motion = false;
+    std::optional<core::certificate::Linkage> linkage;  // of one over ranges of joints
+    std::vector<Claim> claims;
+    std::vector<std::array<int, 2>> uncovered;
+    std::vector<core::certificate::ExportedFile> exports;
+};
+
+template <class Certificate>
+Checked checked(const Certificate& certificate, const Model& model, core::certificate::CertificateReport report) {
+    Checked out;
+    out.report = std::move(report);
+    out.geometry_hash = certificate.geometry_hash;
+    out.path_hash = certificate.path_hash;
+    out.length_unit = certificate.length_unit;
+    out.source = certificate.source;
+    for (const auto& pair : certificate.pairs) out.claims.push_back({pair.a, pair.b, pair.lower, pair.upper, pair.solids});
+    out.uncovered = uncovered_pairs(certificate, static_cast<int>(model.bodies.size()));
+    return out;
+}
+
+Result<Checked> read_and_check(const std::string& path, const core::records::StoredTrajectory& stored) {
+    if (core::certificate::is_range_certificate_file(path)) {
+        const auto certificate = core::certificate::read_range_certificate(path);
+        if (!certificate) return certificate.errors();
+        Checked out = checked(*certificate, stored.model, core::certificate::check_range_certificate(*certificate, stored));
+        out.linkage = certificate->linkage;
+        return out;
+    }
+    const auto certificate = core::certificate::read_certificate(path);
+    if (!certificate) return certificate.errors();
+    Checked out = checked(*certificate, stored.model, core::certificate::check_certificate(*certificate, stored));
+    out.motion = certificate->motion;
+    out.exports = certificate->exports;
+    return out;
+}
 
 Json name_of(const Model& model, int body) {
     const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
@@ -31,16 +79,16 @@ Json name_of(const Model& model, int body) {
 }
 
 // "clear", "violated" or "undecided", of a pair whose claims are proven.
-const char* verdict(const PairCertificate& pair, double minimum) {
+const char* verdict(const Claim& pair, double minimum) {
     const bool apart = pair.solids == Solids::disjoint || pair.solids == Solids::not_closed;
     if (pair.lower >= minimum && pair.lower > 0 && apart) return "clear";
     return pair.upper < minimum ? "violated" : "undecided";
 }
 
 // What a certificate claims, by name.
-Json claims_json(const Certificate& certificate, const Model& model, const std::optional<double>& minimum) {
+Json claims_json(const Checked& certificate, const Model& model, const std::optional<double>& minimum) {
     Json list = Json::array();
-    for (const PairCertificate& pair : certificate.pairs) {
+    for (const Claim& pair : certificate.claims) {
         list.push_back({{"a", name_of(model, pair.a)},
                         {"b", name_of(model, pair.b)},
                         {"lower", pair.lower},
@@ -51,7 +99,7 @@ Json claims_json(const Certificate& certificate, const Model& model, const std::
     return list;
 }
 
-std::string claims_text(const Json& claims, const Certificate& certificate) {
+std::string claims_text(const Json& claims, const Checked& certificate) {
     const RoundedLengths lengths(unit_name(certificate.length_unit));
     std::string text;
     const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
@@ -73,7 +121,7 @@ struct SourceCheck {
     std::string note;
 };
 
-SourceCheck check_source(const Certificate& certificate, const std::string& path, const CommonOptions& common) {
+SourceCheck check_source(const Checked& certificate, const std::string& path, const CommonOptions& common) {
     if (certificate.source.empty()) return {};
     std::filesystem::path source = certificate.source;
     if (!std::filesystem::exists(source)) source = std::filesystem::path(path).parent_path() / certificate.source;
@@ -81,8 +129,13 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
     const Result<LoadedModel> loaded = load_model(source.string(), common, false);
     if (!loaded) return {false, certificate.source + ", which it was made from, cannot be read" + untold};
-    if (core::records::geometry_hash(loaded->model) == certificate.geometry_hash) return {};
-    return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+    if (core::records::geometry_hash(loaded->model) != certificate.geometry_hash)
+        return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+    if (!certificate.linkage) return {};
+    const auto ranges = core::clearance::joint_ranges(loaded->model);
+    const bool same_start = core::records::path_hash(core::clearance::as_assembled(loaded->model)) == certificate.path_hash;
+    if (ranges && ranges->linkage == *certificate.linkage && same_start) return {};
+    return {true, "stale: the joints of " + certificate.source + ", their limits or the start poses have changed since"};
 }
 
 /// The files that the certificate names: still what they were?
@@ -92,7 +145,7 @@ struct ExportCheck {
     std::vector<std::string> notes;
 };
 
-ExportCheck check_exports(const Certificate& certificate, const std::string& path) {
+ExportCheck check_exports(const Checked& certificate, const std::string& path) {
     ExportCheck check;
     for (const core::certificate::ExportedFile& exported : certificate.exports) {
         const std::filesystem::path file = std::filesystem::path(path).parent_path() / exported.file;  // an absolute one stays as it is
@@ -141,9 +194,9 @@ std::string worst_of(const Json& claims) {
     return worst;
 }
 
-void check(const Certificate& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
+void check(const Checked& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
            const std::optional<double>& minimum, const CommonOptions& common, Answer& answer) {
-    const core::certificate::CertificateReport report = core::certificate::check_certificate(certificate, stored);
+    const core::certificate::CertificateReport& report = certificate.report;
     for (const auto& fault : report.faults) answer.add_fault(fault.where, fault.message);
     answer.stale = report.stale;
     const SourceCheck source = check_source(certificate, question.path, common);
@@ -163,7 +216,7 @@ void check(const Certificate& certificate, const core::records::StoredTrajectory
     answer.json["pairs"] = claims_json(certificate, stored.model, accepted ? minimum : std::nullopt);
     answer.json["uncovered"] = Json::array();
     std::string uncovered;
-    for (const auto& [a, b] : uncovered_pairs(certificate, static_cast<int>(stored.model.bodies.size()))) {
+    for (const auto& [a, b] : certificate.uncovered) {
         const std::string name = stored.model.bodies[static_cast<size_t>(a)].name + ":" + stored.model.bodies[static_cast<size_t>(b)].name;
         answer.json["uncovered"].push_back(name);
         uncovered += (uncovered.empty() ? "" : ", ") + name;
@@ -173,9 +226,11 @@ void check(const Certificate& certificate, const core::records::StoredTrajectory
     for (const std::string& note : exports.notes) answer.json["notes"].push_back(note);
     if (!accepted) return;
     answer.code = exit_done;
-    answer.text +=
-        formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves, certificate.motion ? "over the motion" : "as assembled") +
-        claims_text(answer.json["pairs"], certificate);
+    answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
+                             certificate.linkage  ? "over all positions of the joints"
+                             : certificate.motion ? "over the motion"
+                                                  : "as assembled") +
+                   claims_text(answer.json["pairs"], certificate);
     if (!uncovered.empty()) answer.text += "not covered: " + uncovered + "\n";
     for (const Json& note : answer.json["notes"]) answer.text += "note: " + note.get<std::string>() + "\n";
     if (!minimum) return;
@@ -196,7 +251,7 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     if (!stored) return console.input_errors(stored.errors());
     Answer answer;
     answer.json = {{"status", "rejected"}, {"kind", "certificate"}, {"trajectory", trajectory}};
-    const auto certificate = core::certificate::read_certificate(question.path);
+    const Result<Checked> certificate = read_and_check(question.path, *stored);
     for (const Error& error : certificate.errors()) answer.add_fault(error.where, error.message);
     if (certificate) check(*certificate, *stored, question, *minimum, common, answer);
     const bool accepted = answer.faults.empty();

@@ -53,7 +53,11 @@ void add_optimisation(Json& data, const ReportSource& source) {
     data["failed"] = member(result, "failed_evaluations");
     data["violation"] = member(result, "constraint_violation");
     data["budget_spent"] = member(result, "budget_spent");
-    const Json optimality = member(result, "optimality");
+    data["repair"] = member(result, "repair");
+    const Json starts = member(result, "starts"), optimality = member(result, "optimality");
+    if (starts.is_array())
+        data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + member(result, "seed").dump() +
+                                  "; result.json tells of all.");
     data["optimality"] = optimality.is_object() ? Json{{"predicted_gain", member(optimality, "predicted_gain")},
                                                        {"worth", member(optimality, "worth")},
                                                        {"judged", member(optimality, "judged")}}
@@ -72,6 +76,7 @@ std::vector<bool> over_motion(const ReportSource& source, std::size_t pairs) {
 
 Json pairs_of(const ReportSource& source, const std::function<bool()>& should_stop) {
     if (source.kind == ReportKind::simulate) {
+        if (should_stop()) return Json::array();
         const Json least = member(source.result, "minimum_distance");
         return nearest_pairs(source.motion->model, source.motion->trajectory, least.is_number() ? least.get<double>() : 0, should_stop);
     }

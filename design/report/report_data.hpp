@@ -5,7 +5,7 @@
 ///   command         that made the results; null if not known
 ///   kind            "optimise", "simulate", "clearance"
 ///   name, folder, description (null: the files have none), up: the direction against gravity
-///   status, message; budget_spent, evaluations, failed, violation, optimality, objective {start, end} of an optimisation
+///   status, message; budget_spent, evaluations, failed, violation, optimality, repair, objective {start, end} of an optimisation
 ///   motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none
 ///   meshes, views   moving_parts.hpp; "before" (of an optimisation) and "after"
 ///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp

@@ -181,6 +181,7 @@ private:
         source_.linear = linear_motors(file->design.scene.mechanism);
         source_.history = text_or_empty(folder_ / "history.jsonl");
         source_.design = file->design;
+        if (options_.fresh) forget();
         if (!source_.motion) return {};
         const Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
         if (!problem) return problem.errors();
@@ -188,9 +189,16 @@ private:
         return take_before(*problem, file->scene_path);
     }
 
+    // What is there may be of another run.
+    void forget() {
+        std::error_code ignored;
+        for (const char* name : {"trajectory.start.json", "steps.csv", "contacts.csv", "drives.csv", "joints.csv"})
+            fs::remove(folder_ / name, ignored);
+    }
+
     // Forces of the final design: as they are kept, or simulated once more, with the same bits.
     Errors take_tables(const problem::DesignProblem& problem) {
-        if (!options_.fresh) source_.tables = read_tables(folder_);
+        source_.tables = read_tables(folder_);
         if (!source_.tables.steps.empty() || options_.should_stop()) return {};
         const Result<Model> model = problem.model_at(description::values_of(problem.design().parameters));
         if (!model) return model.errors();
@@ -215,7 +223,7 @@ private:
             return {};
         }
         const fs::path file = folder_ / "trajectory.start.json";
-        if (!options_.fresh && core::records::is_trajectory_file(file)) {
+        if (core::records::is_trajectory_file(file)) {
             auto stored = core::records::read_trajectory(file);
             if (stored && core::records::geometry_hash(stored->model) == core::records::geometry_hash(*model)) {
                 source_.before = Motion{std::move(stored->model), std::move(stored->trajectory)};

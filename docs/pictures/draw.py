@@ -5,6 +5,7 @@ draw.py FETTLE, from the root of the repository. Needs nothing but the standard 
 import collections
 import csv
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DESIGN = "examples/slider_crank/slider_crank.design.json"
-COLOURS = {"block": "#c3ccd4", "crank": "#d6667a", "rod": "#eebb66", "piston": "#3fa0b0"}
+COLOURS = {"block": "#7fb5d8", "crank": "#e8b040", "rod": "#4db596", "piston": "#d9a3c2"}  # lighter than `fettle draw` has them
 INK, GREY, BAND = "#222222", "#888888", "#9db8dd"
 
 
@@ -84,7 +85,8 @@ def play_picture(before, after, clearances):
         parts.append(f'<g clip-path="url(#c{column})">' + "".join(drawn_section(start, 0.0, place)) + "</g>")
         (ax, ay), (bx, by) = (place(1000 * p[0], 1000 * p[1]) for p in (clearance["point_a"], clearance["point_b"]))
         parts.append(line([(ax, ay), (bx, by)], "#c00000", 3))
-        bounds = f'proven: at least {1000 * clearance["lower"]:.4f} mm, at most {1000 * clearance["upper"]:.4f} mm'
+        lower, upper = math.floor(1e7 * clearance["lower"]) / 1e4, math.ceil(1e7 * clearance["upper"]) / 1e4
+        bounds = f"proven: at least {lower:.4f} mm, at most {upper:.4f} mm"
         parts += [label(x0, 22, f"crank pin in the rod's bore, {name}"), label(x0, 42, bounds, colour="#c00000")]
     return svg(920, 490, parts)
 
@@ -198,6 +200,7 @@ def main(program):
 
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
+        run("draw", DESIGN, "--out", str(HERE / "scene.svg"), "--size", "920x560", "--plain", "--title", "slider-crank")
         run("simulate", DESIGN, "--steps", "1", "--out", folder + "/before")
         tuned = run("optimise", DESIGN, "--out", folder + "/after")
         after = folder + "/after/trajectory.json"

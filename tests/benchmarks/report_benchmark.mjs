@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // How long does a report take to open, and how many pictures a second does it play? Ten parts of 5,000 triangles, 1,000 poses, in headless
 // Chromium with software rendering, a picture of 800 x 600. Prints JSON. The parts are tori that roll; the page is design/report/template.html.
-//   PLAYWRIGHT=.../playwright-core/index.mjs node report_benchmark.mjs [CHROMIUM]
+//   (cd design/report/web && npm ci) && node tests/benchmarks/report_benchmark.mjs [CHROMIUM]
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const { chromium } = await import(process.env.PLAYWRIGHT);
+const { chromium } = await import(new URL("../../design/report/web/node_modules/playwright-core/index.mjs", import.meta.url));
 const parts = 10, around = 100, across = 25, poses = 1000, step = 0.005;
 
 const packed = (kind, array) => ({ [kind]: Buffer.from(array.buffer).toString("base64") });

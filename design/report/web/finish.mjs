@@ -19,5 +19,8 @@ const marker = "@FETTLE_REPORT_DATA@";
 if (page.split(marker).length !== 2) throw new Error(`the page must have ${marker} once`);
 if (/\b(?:src|href)="(?!#|data:)/.test(page.replace(/<script[\s\S]*?<\/script>/g, ""))) throw new Error("the page asks for another file");
 const sources = `<meta name="sources" content="${hash.digest("hex")}">`;
-writeFileSync(new URL("../template.html", folder), page.replace("</title>", "</title>\n    " + sources));
-console.log(`template.html: ${Math.round(page.length / 1000)} kB`);
+// What it holds of others, with their licences.
+const licences = ["three", "uplot"].map((name) => `${name}\n${readFileSync(new URL(`node_modules/${name}/LICENSE`, folder), "utf8").trim()}`);
+const made = page.replace("</title>", "</title>\n    " + sources).replace("<html", () => `<!--\n${licences.join("\n\n")}\n-->\n<html`);
+writeFileSync(new URL("../template.html", folder), made);
+console.log(`template.html: ${Math.round(made.length / 1000)} kB`);

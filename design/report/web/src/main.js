@@ -41,7 +41,7 @@ function fillLimits(data) {
   const bounds = data.parameters.filter((p) => p.held === "lower bound" || p.held === "upper bound");
   const costly = data.requirements.some((r) => r.counts);
   if (!data.limits.length && !bounds.length && !costly) return;
-  const made = section("What limits the design", costly ? "What each requirement costs, in the objective: how much would be gained if it asked for a little less." : null);
+  const made = section("What limits the design", costly ? `What each requirement costs, in ${data.repair ? "the squared change" : "the objective"}: how much would be gained if it asked for a little less.` : null);
   if (costly) made.append(costBars(data));
   const lines = [...data.limits, ...bounds.map((p) => `${p.name} is at its ${p.held}.`)];
   if (lines.length) made.append(element("ul", { class: "plain-list" }, ...lines.map((line) => element("li", {}, line))));

@@ -6,16 +6,24 @@
 import * as THREE from "three";
 
 const vertex = /* glsl */ `
+  #ifdef SECTION
   varying vec3 world;
+  #endif
+  #ifndef LINES
   varying vec3 facing;
+  #endif
   void main() {
-    vec4 at = modelMatrix * vec4(position, 1.0);
-    world = at.xyz;
-    facing = mat3(viewMatrix) * mat3(modelMatrix) * normal;
-    gl_Position = projectionMatrix * viewMatrix * at;
+    vec4 at = vec4(position, 1.0);
+    #ifdef SECTION
+      world = (modelMatrix * at).xyz;
+    #endif
+    #ifdef LINES
+      gl_PointSize = 7.0;
+    #else
+      facing = normalMatrix * normal;
+    #endif
+    gl_Position = projectionMatrix * (modelViewMatrix * at);
   }`;
-
-const lineVertex = vertex.replace("facing = mat3(viewMatrix) * mat3(modelMatrix) * normal;", "facing = vec3(0.0);");
 
 const cut = /* glsl */ `
   #ifdef SECTION
@@ -29,8 +37,8 @@ const fragment = /* glsl */ `
   uniform vec2 hatch;
   #ifdef SECTION
   uniform vec4 plane;
-  #endif
   varying vec3 world;
+  #endif
   varying vec3 facing;
   void main() {
     ${cut}
@@ -52,9 +60,8 @@ const lineFragment = /* glsl */ `
   uniform float fade;
   #ifdef SECTION
   uniform vec4 plane;
-  #endif
   varying vec3 world;
-  varying vec3 facing;
+  #endif
   void main() {
     ${cut}
     gl_FragColor = vec4(mix(color, faded, fade), 1.0);
@@ -81,7 +88,7 @@ function material(kind, color, index, fade) {
   const angle = (0.25 + 0.2 * (index % 4)) * Math.PI, pitch = 7, isLine = kind === "lines" || kind === "keptLines";
   const { stencilFunc, stencilRef, side, defines } = kinds[kind];
   const made = new THREE.ShaderMaterial({
-    vertexShader: isLine ? lineVertex : vertex,
+    vertexShader: vertex,
     fragmentShader: isLine ? lineFragment : fragment,
     polygonOffset: !isLine,
     polygonOffsetFactor: 1,
@@ -95,7 +102,7 @@ function material(kind, color, index, fade) {
     },
   });
   if (side !== undefined) made.side = side;
-  if (defines) Object.assign(made.defines, defines);
+  Object.assign(made.defines, defines, isLine ? { LINES: 1 } : {});
   if (stencilFunc !== undefined) {
     made.stencilWrite = true;
     made.stencilRef = stencilRef;

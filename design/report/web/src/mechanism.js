@@ -12,14 +12,15 @@ export class Mechanism {
     this.times = view.times;
     this.root = new THREE.Group();
     this.parts = view.bodies.map((body, i) => {
-      const group = new THREE.Group(), { solid, lines, closed } = solids[body.mesh];
+      const group = new THREE.Group(), { solid, lines, points, closed } = solids[body.mesh];
       group.matrixAutoUpdate = false;
       const meshes = [];
       if (solid) meshes.push(new THREE.Mesh(solid, closed ? materials[i].whole : materials[i].open), new THREE.Mesh(solid, materials[i].cut));
       if (lines) meshes.push(new THREE.LineSegments(lines, materials[i].lines));
+      if (points) meshes.push(new THREE.Points(points, materials[i].lines));
       for (const mesh of meshes) {
         mesh.matrixAutoUpdate = mesh.frustumCulled = false;
-        mesh.renderOrder = mesh.isLineSegments ? 1 : 0;  // lines see the stencil of all solids
+        mesh.renderOrder = mesh.isMesh ? 0 : 1;  // lines see the stencil of all solids
       }
       if (solid) meshes[1].visible = false;
       group.add(...meshes);
@@ -74,7 +75,7 @@ export class Mechanism {
   setSection(on) {
     for (const { meshes, materials, solid } of this.parts) {
       for (const mesh of meshes) {
-        if (mesh.isLineSegments) mesh.material = on ? materials.keptLines : materials.lines;
+        if (!mesh.isMesh) mesh.material = on ? materials.keptLines : materials.lines;
         else if (mesh.material === materials.cut) mesh.visible = on;
         else mesh.material = on ? materials.kept : solid.closed ? materials.whole : materials.open;
       }

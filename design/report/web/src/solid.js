@@ -80,13 +80,13 @@ function sharpEdges(vertices, triangles, faces) {
   return { ends, closed: seen.size === 0 };
 }
 
-// {vertices, triangles, edges: of no triangle} -> {solid, lines: geometries or null, closed, box}
+// {vertices, triangles, edges: of no triangle} -> {solid, lines, points: geometries or null, closed, box}
 export function solidOf(mesh) {
   const { vertices, triangles, edges } = mesh;
   const faces = faceNormals(vertices, triangles);
   const { ends, closed } = sharpEdges(vertices, triangles, faces);
   for (const v of edges ?? []) ends.push(vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]);
-  const made = { solid: null, lines: null, closed, box: new THREE.Box3().setFromArray(vertices) };
+  const made = { solid: null, lines: null, points: null, closed, box: new THREE.Box3().setFromArray(vertices) };
   if (triangles.length > 0) {
     const { positions, normals, index } = smoothed(vertices, triangles, faces);
     made.solid = new THREE.BufferGeometry();
@@ -97,6 +97,10 @@ export function solidOf(mesh) {
   if (ends.length > 0) {
     made.lines = new THREE.BufferGeometry();
     made.lines.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
+  }
+  if (!made.solid && !made.lines) {
+    made.points = new THREE.BufferGeometry();
+    made.points.setAttribute("position", new THREE.BufferAttribute(vertices, 3));
   }
   return made;
 }

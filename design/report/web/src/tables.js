@@ -12,7 +12,7 @@ function tableOf(label, headings, rows) {
 
 const cell = (label, type, ...children) => element("td", { "data-label": label, class: type + (children.length && children[0] !== "\u2013" ? "" : " nothing") }, ...children);
 
-const tones = { clear: "good", met: "good", violated: "bad", "not met": "bad", undecided: "open", contact: "plain" };
+const tones = { clear: "good", met: "good", violated: "bad", "not met": "bad", "below threshold": "bad", clash: "bad", undecided: "open", contact: "plain" };
 const status = (word) => element("span", { class: `status ${tones[word] ?? "plain"}` }, word);
 
 const pairName = (pair) => `${pair.a} \u2013 ${pair.b}`;

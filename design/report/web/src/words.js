@@ -18,8 +18,15 @@ export function asked(data) {
 const unmet = (data) => data.requirements.filter((r) => !r.met).map((r) => r.name);
 
 function optimised(data) {
-  const bad = unmet(data), o = data.optimality, all = plural(data.requirements.length, "requirement");
-  const proven = `All ${all} are met, each by a proven bound.`;
+  const bad = unmet(data), o = data.optimality, count = data.requirements.length;
+  const all = count === 1 ? "The requirement is met" : count === 2 ? "Both requirements are met, each" : `All ${count} requirements are met, each`;
+  const proven = count ? `${all} by a proven bound.` : "There are no requirements.";
+  if (data.repair && ["optimal", "feasible"].includes(data.status)) {
+    const far = `The change of the file's values is ${number(data.repair.distance, 3)} of the ranges between their bounds`;
+    return data.status === "optimal"
+      ? { tone: "good", head: "Repaired.", rest: `${proven} ${far}; no smaller one is in sight.` }
+      : { tone: "open", head: "Repaired, not shown to be by the smallest change.", rest: `${proven} ${far}.` };
+  }
   switch (data.status) {
     case "optimal":
       return { tone: "good", head: "Optimal.", rest: `${proven} The best step still in sight would gain ${number(o.predicted_gain, 2)} of the objective, less than the ${number(o.worth, 2)} that counts.` };

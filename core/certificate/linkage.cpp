@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/certificate/linkage.hpp"
+
+#include <algorithm>
+
+#include "fettle/core/base/limits.hpp"
+
+namespace fettle::core::certificate {
+namespace {
+
+using base::ErrorCode;
+
+bool is_usable_screw(const Screw& screw, int coordinates) {
+    return screw.coordinate >= 0 && screw.coordinate < coordinates && screw.point.allFinite() && screw.axis.allFinite() &&
+           screw.point.cwiseAbs().maxCoeff() <= base::largest_magnitude && std::abs(screw.axis.norm() - 1) < 1e-9 &&
+           base::is_usable_number(screw.turn) && base::is_usable_number(screw.slide);
+}
+
+bool ends_in_the_world(const Linkage& linkage, std::size_t body) {
+    int at = static_cast<int>(body);
+    for (std::size_t k = 0; k <= linkage.bodies.size(); ++k) {
+        if (at == -1) return true;
+        if (at < 0 || at >= static_cast<int>(linkage.bodies.size())) return false;
+        at = linkage.bodies[static_cast<std::size_t>(at)].parent;
+    }
+    return false;
+}
+
+// From the world on.
+std::vector<int> ancestry(const Linkage& linkage, int body) {
+    std::vector<int> out;
+    for (int at = body; at >= 0; at = linkage.bodies[static_cast<std::size_t>(at)].parent) out.push_back(at);
+    std::reverse(out.begin(), out.end());
+    return out;
+}
+
+}  // namespace
+
+base::Errors check_linkage(const Linkage& linkage, std::size_t bodies) {
+    const auto fault = [](const char* list, std::size_t k, const char* message) {
+        return base::Errors{{ErrorCode::inconsistent, std::string("/") + list + "/" + std::to_string(k), message}};
+    };
+    if (linkage.bodies.size() != bodies) return {{ErrorCode::inconsistent, "/links", "one entry per body of the model is wanted"}};
+    for (std::size_t k = 0; k < linkage.coordinates.size(); ++k) {
+        const LinkageCoordinate& c = linkage.coordinates[k];
+        const bool usable = base::is_usable_number(c.low) && base::is_usable_number(c.high);
+        if (!usable || !(c.low <= c.start && c.start <= c.high)) return fault("coordinates", k, "low <= start <= high is wanted");
+    }
+    const auto count = static_cast<int>(linkage.coordinates.size());
+    for (std::size_t k = 0; k < bodies; ++k) {
+        for (const Screw& screw : linkage.bodies[k].screws)
+            if (!is_usable_screw(screw, count)) return fault("links", k, "a screw of it is wrong");
+        if (!ends_in_the_world(linkage, k)) return fault("links", k, "its parents do not lead to the world");
+    }
+    return {};
+}
+
+LinkedPair linked_pair(const Linkage& linkage, int a, int b) {
+    const std::vector<int> from_a = ancestry(linkage, a), from_b = ancestry(linkage, b);
+    std::size_t common = 0;
+    while (common < from_a.size() && common < from_b.size() && from_a[common] == from_b[common]) ++common;
+    LinkedPair pair;
+    const auto collect = [&](const std::vector<int>& line, std::vector<Screw>& out) {
+        for (std::size_t i = common; i < line.size(); ++i) {
+            const auto& screws = linkage.bodies[static_cast<std::size_t>(line[i])].screws;
+            out.insert(out.end(), screws.begin(), screws.end());
+        }
+        for (const Screw& screw : out) pair.coordinates.push_back(screw.coordinate);
+    };
+    collect(from_a, pair.a);
+    collect(from_b, pair.b);
+    std::sort(pair.coordinates.begin(), pair.coordinates.end());
+    pair.coordinates.erase(std::unique(pair.coordinates.begin(), pair.coordinates.end()), pair.coordinates.end());
+    for (std::vector<Screw>* side : {&pair.a, &pair.b})
+        for (Screw& screw : *side)
+            screw.coordinate = static_cast<int>(std::lower_bound(pair.coordinates.begin(), pair.coordinates.end(), screw.coordinate) -
+                                                pair.coordinates.begin());
+    return pair;
+}
+
+}  // namespace fettle::core::certificate

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+/// The checker's mathematics of ranges of joints, in interval arithmetic; used by range_checker.cpp alone, nothing of it by the search.
+///
+/// A leaf: box of half widths w about c, vectors n_i at its 2^n corners, n(u) what interpolates them linearly in each coordinate,
+/// d = x_a - x_b, g(u) = n(u).d(u). What interpolates g's own values at the corners is off by at most the sum over the coordinates k of
+///   e_k = 1/2 w_k^2 max |d2g/du_k2|
+/// (one coordinate after the other: interpolating in one loses at most that, and never magnifies what is lost in another), wherever the
+/// mixed derivatives are. So, with L the longest n_i,
+///   min over the corners of n_i.d  -  sum e_k  >=  lower L   proves   dist >= g/|n| >= lower.
+/// As d2n/du_k2 = 0, |d2g| <= 2 |dn/du_k||dd/du_k| + |n.d2d|, and |dn/du_k| is at most the largest difference of two corners' vectors along
+/// k over 2 w_k. Of a point, with the screws j of coordinate k and r_j its distance from the screw's axis as the screws after it have put
+/// it,
+///   |dx| <= sum |turn_j| r_j + |slide_j|,
+///   |n.d2x| <= sum turn_j^2 r_j |n x z_j(u)|  +  2 sum over i before j of L |turn_i| (|turn_j| r_j + |slide_j|),
+/// z_j(u), the axis as the screws before it have turned it, is off z_j by at most 2 |z_i x z_j| for each of those; of parallel axes, by
+/// nothing. r_j is at most that at c, and what the screws after j move the point from there:
+///   sum over i > j of min(|turn_i| w, 2) r_i + |slide_i| w.
+#pragma once
+
+#include <map>
+#include <utility>
+
+#include "fettle/core/certificate/certified_body.hpp"
+#include "fettle/core/certificate/linkage.hpp"
+#include "fettle/core/kinematics/path.hpp"
+
+namespace fettle::core::certificate {
+
+/// A box of a pair's own coordinates.
+struct RangeBox {
+    std::vector<double> low, high;
+};
+
+/// Two bodies that move by screws.
+class RangeProver {
+public:
+    /// @param starts  of all of the linkage's coordinates
+    RangeProver(const LinkedPair& pair, const std::vector<double>& starts, const kinematics::Pose& start_a,
+                const kinematics::Pose& start_b);
+
+    /// In how many parts of the box is n(u).(x_a - x_b) >= lower max|n| > 0 proven, for all of it and of the regions? 0: it is not.
+    /// @param normals  one, or one per corner
+    /// @param halvings how often parts may be halved
+    long prove(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double lower, int halvings);
+
+    /// Interval of the distance of two points at a configuration.
+    Interval distance_at(const Interval3& X_a, const Interval3& X_b, const std::vector<double>& at);
+
+    /// Upper bound of all numbers, as BodyPath::magnitude.
+    double magnitude() const { return magnitude_; }
+
+private:
+    struct Placement {
+        IntervalMatrix rotation;
+        Interval3 place;
+    };
+    struct Side {
+        std::vector<Screw> screws;
+        std::vector<double> starts;  // of the screws' coordinates
+        std::vector<double> tilt;    // 2 sum over the screws before that turn of |z_i x z_j|
+        kinematics::Pose start;
+        std::map<std::pair<std::size_t, double>, Placement> moves;  // of a screw at a value
+    };
+    struct Losses {
+        std::vector<double> along;  // e_k
+        double total = 0;
+    };
+
+    static Side side_of(const std::vector<Screw>& screws, const std::vector<int>& coordinates, const std::vector<double>& starts,
+                        const kinematics::Pose& start);
+    static const Placement& move(Side& side, std::size_t screw, double value);
+    static Placement after(Side& side, std::size_t first, const std::vector<double>& at);
+    static std::vector<double> radii(Side& side, const Region& region, const RangeBox& box);
+    void add_losses(Side& side, const Region& region, const RangeBox& box, const std::vector<Vector3>& normals, Losses& losses);
+    bool is_above(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double wanted);
+    Losses losses(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals);
+
+    Side a_, b_;
+    double magnitude_ = 0;
+};
+
+}  // namespace fettle::core::certificate

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/joint_ranges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "fettle/core/base/text.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+using base::ErrorCode;
+using base::Errors;
+using certificate::JointCoordinate;
+using certificate::LinkageCoordinate;
+using certificate::Screw;
+using model::Joint;
+using scene::JointKind;
+
+constexpr double pi = std::numbers::pi;
+constexpr int most_turns = 1000;       // of geared joints, until all are where they were
+constexpr double covered = 1 + 1e-15;  // a turn in spite of rounding
+
+bool is_held(const model::Body& body) {
+    for (int k = 0; k < 6; ++k) {
+        if (model::is_free(body, k)) return false;
+        const scene::MotionCurve& curve = *body.prescribed[static_cast<std::size_t>(k)];
+        const bool still = std::all_of(curve.values.begin(), curve.values.end(), [](double u) { return u == 0; });
+        if (curve.rate != 0 || !still) return false;
+    }
+    return true;
+}
+
+// What all joints come to: scale u + offset of a coordinate u that is free.
+struct Affine {
+    int free = 0;  // place in the list of variables
+    double scale = 1, offset = 0;
+};
+
+// Of a joint: its measure's number; -1 for the turn of a cylindrical one, which has no measure.
+struct Variable {
+    const Joint* joint = nullptr;
+    int measure = -1;
+    bool is_angle = false;
+    double start = 0;
+    Affine is;
+};
+
+class RangeBuilder {
+public:
+    explicit RangeBuilder(const model::Model& model) : model_(model) {
+        for (const model::Body& body : model.bodies) poses_.push_back(body.pose_start);
+        frames_ = placed(model.mechanism.set.frames, poses_);
+    }
+
+    base::Result<JointRanges> build() {
+        for (const Joint& joint : model_.mechanism.joints)
+            if (!joint.is_motor && joint.frame_a >= 0) joints_.push_back(&joint);
+        if (joints_.empty())
+            return base::Error{ErrorCode::missing_key, "joints",
+                               "there is no joint, so there are no positions to look at: leave out --ranges"};
+        out_.linkage.bodies.resize(model_.bodies.size());
+        check_joints();
+        if (errors_.empty()) hang_bodies();
+        if (errors_.empty()) couple();
+        if (errors_.empty()) bound();
+        if (!errors_.empty()) return errors_;
+        return std::move(out_);
+    }
+
+private:
+    void fail(ErrorCode code, const std::string& joint, const std::string& message) {
+        errors_.push_back({code, "joint `" + joint + "`", message});
+    }
+
+    bool is_world(int body) const {
+        if (body < 0) return true;
+        const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+        return b.type == scene::BodyType::static_body || is_held(b);
+    }
+
+    const std::string& name_of(int body) const { return model_.bodies[static_cast<std::size_t>(body)].name; }
+
+    void check_joints() {
+        for (const Joint* joint : joints_) {
+            if (joint->kind == JointKind::ball || joint->kind == JointKind::planar)
+                fail(ErrorCode::unsupported, joint->name,
+                     std::string("a ") + (joint->kind == JointKind::ball ? "ball" : "planar") +
+                         " joint has no limits on its three coordinates: ranges are of fixed, revolute, prismatic, cylindrical and screw "
+                         "joints");
+            for (const int body : {joint->a, joint->b}) {
+                if (is_world(body)) continue;
+                const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+                bool free = b.type == scene::BodyType::dynamic_body;
+                for (int k = 0; k < 6; ++k) free = free && model::is_free(b, k);
+                if (!free)
+                    fail(ErrorCode::unsupported, joint->name,
+                         "coordinates of `" + b.name + "` are prescribed beside its joints: ranges are of what joints alone hold");
+            }
+        }
+    }
+
+    // Trees from the world, then from the first body of what hangs on nothing.
+    void hang_bodies() {
+        std::vector<bool> reached(model_.bodies.size(), false);
+        std::vector<bool> used(joints_.size(), false);
+        std::vector<int> pending;
+        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) reached[static_cast<std::size_t>(i)] = is_world(i);
+        grow(-1, reached, used, pending);
+        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
+            if (reached[static_cast<std::size_t>(i)]) continue;
+            out_.held.push_back(name_of(i));
+            reached[static_cast<std::size_t>(i)] = true;
+            grow(i, reached, used, pending);
+        }
+    }
+
+    void grow(int root, std::vector<bool>& reached, std::vector<bool>& used, std::vector<int>& pending) {
+        pending.assign(1, root);
+        while (!pending.empty()) {
+            const int at = pending.front();
+            pending.erase(pending.begin());
+            const auto is_at = [&](int body) { return at < 0 ? is_world(body) : body == at; };
+            for (std::size_t k = 0; k < joints_.size(); ++k) {
+                const Joint& joint = *joints_[k];
+                if (used[k] || (!is_at(joint.a) && !is_at(joint.b))) continue;
+                used[k] = true;
+                const int other = is_at(joint.a) ? joint.b : joint.a;
+                if (is_at(other)) continue;  // between two things that do not move
+                if (reached[static_cast<std::size_t>(other)]) {
+                    name_loop(joint, at, other);
+                    continue;
+                }
+                reached[static_cast<std::size_t>(other)] = true;
+                hang(joint, at, other);
+                pending.push_back(other);
+            }
+        }
+    }
+
+    std::vector<const Joint*> line_of(int body) const {
+        std::vector<const Joint*> out;
+        for (int at = body; at >= 0; at = out_.linkage.bodies[static_cast<std::size_t>(at)].parent) {
+            const auto by = hung_by_.find(at);
+            if (by != hung_by_.end()) out.push_back(by->second);
+        }
+        return out;
+    }
+
+    void name_loop(const Joint& joint, int a, int b) {
+        std::vector<const Joint*> line = line_of(a), other = line_of(b);
+        while (!line.empty() && !other.empty() && line.back() == other.back()) {
+            line.pop_back();
+            other.pop_back();
+        }
+        line.insert(line.end(), other.rbegin(), other.rend());
+        std::string names = "`" + joint.name + "`";
+        for (const Joint* each : line) names += ", `" + each->name + "`";
+        fail(ErrorCode::unsupported, joint.name,
+             "closes a loop (" + names +
+                 "), whose positions depend on one another: ranges are of trees. A loop that a motor drives: --kinematic or --motion");
+    }
+
+    void hang(const Joint& joint, int parent, int body) {
+        certificate::LinkedBody& link = out_.linkage.bodies[static_cast<std::size_t>(body)];
+        link.parent = parent;
+        hung_by_[body] = &joint;
+        if (joint.kind == JointKind::fixed) return;
+        const measure::PlacedFrame& frame = frames_[static_cast<std::size_t>(joint.frame_a)];
+        const double sense = body == joint.b ? 1 : -1;  // the coordinate is of b against a
+        Screw screw{0, frame.point, frame.axes.col(2), 0, 0};
+        const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::screw;
+        screw.coordinate = add_variable(joint, joint.coordinate, turns);
+        (turns ? screw.turn : screw.slide) = sense;
+        if (joint.kind == JointKind::screw) screw.slide = sense * slide_of_screw(joint);
+        link.screws.push_back(screw);
+        if (joint.kind != JointKind::cylindrical) return;
+        screw.coordinate = add_variable(joint, -1, true);
+        screw.turn = sense;
+        screw.slide = 0;
+        link.screws.push_back(screw);
+    }
+
+    int add_variable(const Joint& joint, int measure, bool is_angle) {
+        const auto place = static_cast<int>(variables_.size());
+        double start = 0;
+        if (measure >= 0) {
+            const auto m = static_cast<std::size_t>(measure);
+            start = is_angle ? model_.mechanism.angles_start[m] : value_of(model_.mechanism.set.measures[m], frames_);
+        }
+        variables_.push_back({&joint, measure, is_angle, start, {place, 1, 0}});
+        return place;
+    }
+
+    template <class Visit>
+    void for_rows(const Visit& visit) const {
+        for (const auto* rows : {&model_.mechanism.rows, &model_.mechanism.dependent})
+            for (const constraint::Row& row : *rows) visit(row, model_.mechanism.joints[static_cast<std::size_t>(row.owner)]);
+    }
+
+    // [m] per radian: the row is slide + factor angle = constant.
+    double slide_of_screw(const Joint& joint) const {
+        double out = 0;
+        for_rows([&](const constraint::Row& row, const Joint& owner) {
+            if (&owner == &joint && row.parts.size() == 2) out = -row.parts[1].factor;
+        });
+        return out;
+    }
+
+    int variable_of(int measure) const {
+        for (std::size_t i = 0; i < variables_.size(); ++i)
+            if (variables_[i].measure == measure) return static_cast<int>(i);
+        return -1;
+    }
+
+    // Gears and racks: factor_0 m_0 + factor_1 m_1 = constant.
+    void couple() {
+        for_rows([&](const constraint::Row& row, const Joint& owner) {
+            if (owner.kind != JointKind::gear && owner.kind != JointKind::rack) return;
+            const int first = variable_of(row.parts[0].measure), second = variable_of(row.parts[1].measure);
+            if (first < 0 || second < 0) return;  // of joints between what does not move
+            const Affine a = variables_[static_cast<std::size_t>(first)].is, b = variables_[static_cast<std::size_t>(second)].is;
+            const double f = row.parts[0].factor, g = row.parts[1].factor;
+            if (a.free == b.free) {
+                if (std::abs(f * a.scale + g * b.scale) > 1e-12 * std::abs(f * a.scale))
+                    fail(ErrorCode::unsupported, owner.name,
+                         "couples what other gears couple already, in another ratio: it lets nothing move");
+                return;
+            }
+            // f (a.scale u + a.offset) + g (b.scale v + b.offset) = constant; v follows u.
+            const double scale = -f * a.scale / (g * b.scale), offset = (row.constant - f * a.offset - g * b.offset) / (g * b.scale);
+            for (Variable& each : variables_)
+                if (each.is.free == b.free) each.is = {a.free, each.is.scale * scale, each.is.scale * offset + each.is.offset};
+        });
+    }
+
+    void bound() {
+        std::vector<int> place(variables_.size(), -1);
+        for (std::size_t i = 0; i < variables_.size(); ++i) {
+            if (variables_[i].is.free != static_cast<int>(i)) continue;
+            place[i] = static_cast<int>(out_.linkage.coordinates.size());
+            out_.linkage.coordinates.push_back(coordinate_of(static_cast<int>(i)));
+        }
+        for (certificate::LinkedBody& body : out_.linkage.bodies)
+            for (Screw& screw : body.screws) {
+                const Affine& is = variables_[static_cast<std::size_t>(screw.coordinate)].is;
+                screw.coordinate = place[static_cast<std::size_t>(is.free)];
+                screw.turn *= is.scale;
+                screw.slide *= is.scale;
+            }
+    }
+
+    LinkageCoordinate coordinate_of(int free) {
+        LinkageCoordinate out;
+        out.start = variables_[static_cast<std::size_t>(free)].start;
+        out.low = -std::numeric_limits<double>::infinity();
+        out.high = -out.low;
+        const Variable* slides = nullptr;
+        for (const Variable& each : variables_) {
+            if (each.is.free != free) continue;
+            const bool is_turn = each.measure < 0;
+            out.joints.push_back({each.joint->name + (is_turn ? " (turn)" : ""), each.is_angle, each.is.scale, each.is.offset});
+            if (!each.is_angle || each.joint->kind == JointKind::screw) slides = &each;
+            if (!is_turn) apply_limits(each, out);
+        }
+        const std::string& name = out.joints.front().joint;
+        if (!std::isfinite(out.low)) {
+            const std::optional<double> half = slides != nullptr ? std::nullopt : half_period(out.joints);
+            if (slides != nullptr)
+                fail(ErrorCode::missing_key, slides->joint->name,
+                     "has no limits: say \"limits\": [least, greatest], or everything is possible");
+            else if (!half)
+                fail(ErrorCode::missing_key, name,
+                     "its gears come back to where they were after no whole number of turns: give it \"limits\"");
+            out.low = out.start - half.value_or(0);
+            out.high = out.start + half.value_or(0);
+            out.is_whole_turn = true;
+        } else if (!(out.low <= out.start && out.start <= out.high)) {
+            fail(ErrorCode::out_of_range, name, "starts beyond its limits, or those of what it is geared to");
+        }
+        return out;
+    }
+
+    void apply_limits(const Variable& variable, LinkageCoordinate& out) const {
+        for (const model::MeasureTerm& term : model_.mechanism.terms) {
+            if (term.kind != model::LawKind::stop || term.measure != variable.measure) continue;
+            const double u = (term.reference - variable.is.offset) / variable.is.scale;
+            (term.sign * variable.is.scale > 0 ? out.low : out.high) =
+                term.sign * variable.is.scale > 0 ? std::max(out.low, u) : std::min(out.high, u);
+        }
+    }
+
+    // Half of the turns after which all of them are where they were.
+    static std::optional<double> half_period(const std::vector<JointCoordinate>& joints) {
+        for (int n = 1; n <= most_turns; ++n) {
+            const bool all = std::all_of(joints.begin(), joints.end(), [&](const JointCoordinate& joint) {
+                return std::abs(n * joint.scale - std::round(n * joint.scale)) <= 1e-12 * n * std::max(1.0, std::abs(joint.scale));
+            });
+            if (all) return n * pi * covered;
+        }
+        return std::nullopt;
+    }
+
+    const model::Model& model_;
+    std::vector<kinematics::Pose> poses_;
+    std::vector<measure::PlacedFrame> frames_;
+    std::vector<const Joint*> joints_;
+    std::map<int, const Joint*> hung_by_;
+    std::vector<Variable> variables_;
+    JointRanges out_;
+    Errors errors_;
+};
+
+}  // namespace
+
+base::Result<JointRanges> joint_ranges(const model::Model& model) { return RangeBuilder(model).build(); }
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// A model's joints as a linkage (certificate/linkage.hpp): which coordinates its bodies have, and within which ranges.
+///   revolute, prismatic, screw   one coordinate; cylindrical: its slide, and its turn; fixed: none
+///   gear, rack                   couple coordinates, which then count once: the first joint's, within the limits of all of them
+///   ranges                       the limits of the joint and of springs on it; a joint that only turns has a whole turn without (the
+///                                joints of a gear as many as bring all of them back to where they were)
+///   world                        static bodies; everything that hangs on no joint stays where it starts, and so does, of bodies that are
+///                                joined to one another but not to the world, the first: `held` names them
+/// Motors, springs and loads say where joints are, not where they can be: they count for nothing here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/certificate/linkage.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::clearance {
+
+struct JointRanges {
+    certificate::Linkage linkage;
+    std::vector<std::string> held;  ///< bodies that could move, and stay where they start
+};
+
+/// Errors, each naming its joints: balls and planar joints (unsupported), loops (with the joints that close them), a coordinate without
+/// limits or that starts beyond them, a jointed body whose own coordinates are prescribed, no joint at all.
+base::Result<JointRanges> joint_ranges(const model::Model& model);
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/range_clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/clearance/body_motions.hpp"
+#include "fettle/core/clearance/certificate_builder.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/range_search.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+// What a claim leaves for a checker that rounds in its own way.
+double room_of(const ScrewedPair& pair, double tolerance) { return tolerance / 8 + 8 * pair.slack; }
+
+Witness range_witness(const ScrewedPair& pair, const RangeEncounter& nearest) {
+    const ElementPairDistance& found = nearest.pair;
+    Witness w;
+    w.kind_a = found.kind_a;
+    w.kind_b = found.kind_b;
+    w.edge_edge = found.kind_a == Primitive::edge && found.kind_b == Primitive::edge;
+    w.vertex_on_a = found.kind_a == Primitive::vertex;
+    w.primitive_a = primitive_index(pair.a, nearest.element_a, found.kind_a, found.corner_a);
+    w.primitive_b = primitive_index(pair.b, nearest.element_b, found.kind_b, found.corner_b);
+    w.point_a = found.point_a;
+    w.point_b = found.point_b;
+    w.distance = found.distance;
+    return w;
+}
+
+std::vector<int> bodies_named(const std::vector<PairRequest>& pairs) {
+    std::vector<int> bodies;
+    for (const PairRequest& pair : pairs) {
+        bodies.push_back(pair.a);
+        bodies.push_back(pair.b);
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    return bodies;
+}
+
+class RangeCertification {
+public:
+    RangeCertification(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                       const RangeClearanceOptions& options)
+        : model_(model),
+          ranges_(ranges),
+          pairs_(pairs),
+          options_(options),
+          start_(as_assembled(model)),
+          usable_(have_usable_numbers(model, start_, {{}})),
+          shapes_(body_shapes(model, bodies_named(pairs))) {}
+
+    std::vector<RangeClearance> run() {
+        if (options_.certificate != nullptr) start_record();
+        std::vector<RangeClearance> results(pairs_.size());
+        std::mutex report;
+        int done = 0;
+        const auto count = static_cast<int>(pairs_.size());
+        // Each pair is a search of its own: the number of threads cannot change a result.
+        base::parallel_for(count, 1, [&](int i) {
+            results[static_cast<std::size_t>(i)] = certified(static_cast<std::size_t>(i));
+            if (!options_.on_pair) return;
+            const std::lock_guard<std::mutex> lock(report);
+            options_.on_pair(++done, count);
+        });
+        if (options_.certificate != nullptr) {  // of what could not be measured there is nothing to certify
+            auto& list = options_.certificate->pairs;
+            std::erase_if(list, [](const auto& pair) { return !std::isfinite(pair.upper) || pair.point_a.index < 0; });
+        }
+        return results;
+    }
+
+private:
+    void start_record() {
+        std::vector<const PieceTree*> trees;
+        for (const BodyShape& shape : shapes_) trees.push_back(shape.tree.get());
+        const certificate::Certificate frame = start_certificate(model_, start_, trees, false, 0);
+        certificate::RangeCertificate& out = *options_.certificate;
+        out = {};
+        out.geometry_hash = frame.geometry_hash;
+        out.path_hash = frame.path_hash;
+        out.length_unit = frame.length_unit;
+        out.bodies = frame.bodies;
+        out.linkage = ranges_.linkage;
+        out.pairs.resize(pairs_.size());
+        for (auto& pair : out.pairs) pair.point_a.index = -1;
+    }
+
+    RangeClearance certified(std::size_t i) const {
+        const PairRequest& request = pairs_[i];
+        RangeClearance out;
+        out.a = request.a;
+        out.b = request.b;
+        out.minimum = request.minimum;
+        out.upper = infinity;
+        out.complete = false;
+        const certificate::LinkedPair linked = linked_pair(ranges_.linkage, request.a, request.b);
+        out.coordinates = linked.coordinates;
+        for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[static_cast<std::size_t>(k)].start);
+        if (linked.coordinates.size() > static_cast<std::size_t>(most_coordinates)) {
+            out.reason = std::to_string(linked.coordinates.size()) + " coordinates move the two against each other; at most " +
+                         std::to_string(most_coordinates) + " can be looked at together";
+            return out;
+        }
+        if (std::max(linked.a.size(), linked.b.size()) > static_cast<std::size_t>(most_screws)) {
+            out.reason = "more than " + std::to_string(most_screws) + " joints lie between the two";
+            return out;
+        }
+        for (const int body : {request.a, request.b})
+            if (!usable_[static_cast<std::size_t>(body)]) {
+                out.reason = "its numbers are not finite, or larger than 1e30";
+                return out;
+            }
+        measure(linked, i, out);
+        return out;
+    }
+
+    const kinematics::Pose& start(int body) const { return start_.poses.front()[static_cast<std::size_t>(body)]; }
+
+    void measure(const certificate::LinkedPair& linked, std::size_t index, RangeClearance& out) const {
+        const BodyShape &shape_a = shapes_[static_cast<std::size_t>(out.a)], &shape_b = shapes_[static_cast<std::size_t>(out.b)];
+        const ScrewedPair pair = screwed_pair(*shape_a.tree, *shape_b.tree, ranges_.linkage, linked, start(out.a), start(out.b));
+        const double size = pair.a.radius() + pair.b.radius();
+        out.tolerance = pair.count > 2 && options_.coarse > 0 ? std::max(options_.tolerance, options_.coarse * size) : options_.tolerance;
+        if (!(pair.slack <= 1e-3 * size)) {
+            out.reason = "its numbers are so large that rounding hides the distance";
+            return;
+        }
+        RangeSearchOptions search;
+        search.tolerance = options_.certificate != nullptr ? 0.75 * out.tolerance : out.tolerance;
+        search.minimum = out.minimum;
+        search.max_bounds = options_.max_bounds;
+        search.should_stop = options_.should_stop;
+        const RangeSearchResult found = search_ranges(pair, search);
+        out.lower = found.lower;
+        out.upper = found.upper;
+        out.complete = found.complete;
+        out.intersecting = found.intersecting;
+        out.bounds = found.bounds;
+        if (found.nearest.element_a >= 0) {
+            for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
+            out.witness = range_witness(pair, found.nearest);
+        }
+        if (options_.certificate != nullptr) record(pair, found, search, out, options_.certificate->pairs[index]);
+        decide_solids(out);
+        if (options_.certificate != nullptr) options_.certificate->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
+        judge(out);
+    }
+
+    void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, RangeClearance& out,
+                certificate::RangePairCertificate& record) const {
+        record.a = out.a;
+        record.b = out.b;
+        record.at = out.at;
+        if (found.nearest.element_a < 0) return;
+        double room = room_of(pair, std::min(out.tolerance, std::max(0.0, found.upper - found.lower)));
+        const double above = found.lower - (out.minimum < found.lower ? out.minimum : 0);  // a claim keeps what was decided, if it can
+        room = std::max(8 * pair.slack, std::min(room, 0.5 * above));
+        out.lower = found.lower > room ? found.lower - room : 0;
+        if (out.lower > 0) record.proof = prove_ranges(pair, out.lower + 0.5 * room, search);
+        if (record.proof.splits.empty()) out.lower = 0;
+        record.lower = out.lower;
+        record.upper = found.upper + 4 * pair.slack;  // for the checker's own rounding
+        const auto point = [&](const PieceTree& tree, const ScrewedBody& body, int element, Primitive kind, int corner, const Vector3& x) {
+            const kinematics::Pose pose = pose_of(body, found.nearest.at);
+            return certified_witness(tree, element, found.nearest.pair.intersecting, {kind, corner},
+                                     pose.rotation.transpose() * (x - pose.position));
+        };
+        const ElementPairDistance& near = found.nearest.pair;
+        record.point_a = point(pair.a, pair.body_a, found.nearest.element_a, near.kind_a, near.corner_a, near.point_a);
+        record.point_b = point(pair.b, pair.body_b, found.nearest.element_b, near.kind_b, near.corner_b, near.point_b);
+    }
+
+    // Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box.
+    void decide_solids(RangeClearance& out) const {
+        if (out.intersecting || !(out.lower > 0)) return;
+        out.solids =
+            certificate::solids_of(*shapes_[static_cast<std::size_t>(out.a)].solid, *shapes_[static_cast<std::size_t>(out.b)].solid,
+                                   certificate::body_path(start_, -1, 0, out.a), certificate::body_path(start_, -1, 0, out.b), out.lower);
+        if (out.solids != Solids::overlap) return;
+        out.lower = out.upper = 0;
+    }
+
+    static void judge(RangeClearance& out) {
+        const bool told = out.lower > 0 && out.solids != Solids::unproven;  // what is not closed is told as that
+        if (out.is_clash() || (out.minimum > 0 && out.upper < out.minimum)) {
+            out.status = PairStatus::violated;
+        } else if (told && out.lower >= out.minimum) {
+            out.status = PairStatus::clear;
+        } else {
+            out.status = PairStatus::undecided;
+            out.reason = !out.complete      ? "the search was cut short, by a stop or its budget"
+                         : !(out.lower > 0) ? "the surfaces come within rounding of each other: neither that they cross nor that they "
+                                              "stay apart is proven"
+                         : !told            ? "whether one lies inside the other is a matter of rounding"
+                                            : "the minimum lies between the bounds: a smaller tolerance tells";
+        }
+    }
+
+    const model::Model& model_;
+    const JointRanges& ranges_;
+    const std::vector<PairRequest>& pairs_;
+    const RangeClearanceOptions& options_;
+    const stepper::Trajectory start_;
+    const std::vector<char> usable_;  // [body]
+    const std::vector<BodyShape> shapes_;
+};
+
+}  // namespace
+
+std::vector<RangeClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                           const RangeClearanceOptions& options) {
+    const auto count = static_cast<int>(model.bodies.size());
+    for (const PairRequest& pair : pairs)
+        FETTLE_ASSERT(pair.a >= 0 && pair.a < count && pair.b >= 0 && pair.b < count && pair.a != pair.b,
+                      "a pair of two bodies of the model");
+    return RangeCertification(model, ranges, pairs, options).run();
+}
+
+kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const RangeClearance& pair, int body) {
+    const certificate::LinkedPair linked = linked_pair(ranges.linkage, pair.a, pair.b);
+    ScrewedBody moved;
+    moved.screws = body == pair.a ? linked.a : linked.b;
+    moved.start = model.bodies[static_cast<std::size_t>(body)].pose_start;
+    Coordinates at{};
+    std::copy_n(pair.at.begin(), std::min<std::size_t>(pair.at.size(), at.size()), at.begin());
+    for (const certificate::Screw& screw : moved.screws)
+        moved.starts.push_back(
+            ranges.linkage.coordinates[static_cast<std::size_t>(linked.coordinates[static_cast<std::size_t>(screw.coordinate)])].start);
+    if (pair.at.size() > at.size()) return moved.start;
+    return pose_of(moved, at);
+}
+
+}  // namespace fettle::core::clearance

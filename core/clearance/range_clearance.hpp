@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// Certified clearance over all positions of the joints: for pairs of bodies,
+///   lower <= min over every combination of the coordinates in their ranges of dist(A(u), B(u)) <= upper,
+/// rounding charged to `lower`. A theorem about the meshes as stored and the joints as the linkage has them, not about samples.
+/// docs/method.md section 8.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/clearance/joint_ranges.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
+
+namespace fettle::core::clearance {
+
+struct RangeClearanceOptions {
+    double tolerance = 1e-6;      ///< between the bounds, of pairs with one or two coordinates [m]
+    double coarse = 0;            ///< the same of pairs with more, as a share of the bodies' radii; 0: `tolerance`
+    long max_bounds = 4'000'000;  ///< per pair of bodies; beyond it: undecided with true bounds
+    std::function<void(int done, int of)> on_pair;
+    std::function<bool()> should_stop;
+    certificate::RangeCertificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
+};
+
+/// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
+struct RangeClearance {
+    int a = 0, b = 0;
+    double minimum = 0;
+    double lower = 0, upper = 0;  ///< [m]
+    double tolerance = 0;         ///< that was asked for, of this pair
+    PairStatus status = PairStatus::undecided;
+    Witness witness;               ///< attains `upper`; step -1; in the world, with what moves both bodies at its start
+    std::vector<int> coordinates;  ///< of the linkage: those that move one body against the other
+    std::vector<double> at;        ///< their values at the witness
+    bool complete = true;          ///< false: budget or should_stop ended the search before the tolerance was reached
+    bool intersecting = false;     ///< the surfaces pass through each other there
+    Solids solids = Solids::unproven;
+    std::string reason;  ///< why it is undecided; empty: it is not
+    long bounds = 0;     ///< computed
+
+    bool is_clash() const { return intersecting || solids == Solids::overlap; }
+};
+
+/// Bounds for each pair asked for, in their order; PairRequest::far counts for nothing.
+std::vector<RangeClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                           const RangeClearanceOptions& options);
+
+/// A body's pose at a witness.
+kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const RangeClearance& pair, int body);
+
+}  // namespace fettle::core::clearance

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/stepper/jointed_motion.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/constraint/assembly.hpp"
+#include "fettle/core/stepper/joint_outputs.hpp"
+#include "fettle/core/stepper/prescribed_path.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/step.hpp"
+
+namespace fettle::core::stepper {
+namespace {
+
+using base::ErrorCode;
+using kinematics::ChartPoint;
+using kinematics::Pose;
+
+constexpr int most_parts = 256;
+
+bool is_steady(const scene::Curve& curve) {
+    return curve.rate == 0 && std::all_of(curve.values.begin(), curve.values.end(), [&](double v) { return v == curve.values.front(); });
+}
+
+std::vector<int> bodies_of_row(const model::Model& model, const constraint::Row& row) {
+    std::vector<int> out;
+    for (const constraint::RowPart& part : row.parts) {
+        const measure::Measure& m = model.mechanism.set.measures[static_cast<std::size_t>(part.measure)];
+        for (const int frame : {m.a, m.b}) {
+            const int body = model.mechanism.set.frames[static_cast<std::size_t>(frame)].body;
+            if (body != measure::world) out.push_back(body);
+        }
+    }
+    return out;
+}
+
+// Bodies that rows connect through bodies which can move.
+class Groups {
+public:
+    explicit Groups(const model::Model& model) : model_(model), parent_(model.bodies.size()) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+        for (const constraint::Row& row : model.mechanism.rows) {
+            int first = -1;
+            for (const int body : bodies_of_row(model, row)) {
+                if (is_scripted(model.bodies[static_cast<std::size_t>(body)])) continue;
+                if (first >= 0) parent_[static_cast<std::size_t>(root(body))] = root(first);
+                first = body;
+            }
+        }
+        for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i)
+            for (int k = 0; k < 6; ++k) {
+                const model::Body& body = model.bodies[static_cast<std::size_t>(i)];
+                if (is_free(body, k)) ++counts_[root(i)].free;
+                if (!is_free(body, k) && !is_still(*body.prescribed[static_cast<std::size_t>(k)])) counts_[root(i)].is_driven = true;
+            }
+        for (const constraint::Row& row : model.mechanism.rows) count(row);
+    }
+
+    std::set<std::string> held, open;
+
+    void judge() {
+        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
+            const model::Body& body = model_.bodies[static_cast<std::size_t>(i)];
+            if (is_scripted(body)) continue;
+            const Count& c = counts_[root(i)];
+            if (c.free == c.rows && c.is_driven) continue;
+            (c.is_driven ? open : held).insert(body.name);
+        }
+    }
+
+private:
+    struct Count {
+        int free = 0, rows = 0;
+        bool is_driven = false;
+    };
+
+    static bool is_still(const scene::MotionCurve& curve) {
+        return curve.rate == 0 && std::all_of(curve.values.begin(), curve.values.end(), [](double v) { return v == 0; });
+    }
+
+    int root(int i) const {
+        while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+        return i;
+    }
+
+    void count(const constraint::Row& row) {
+        for (const int body : bodies_of_row(model_, row)) {
+            const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+            if (is_scripted(b)) continue;
+            Count& c = counts_[root(body)];
+            ++c.rows;
+            if (!is_steady(row.curve)) c.is_driven = true;
+            break;
+        }
+        // What hangs on a body that a script moves is driven by it.
+        for (const int body : bodies_of_row(model_, row)) {
+            const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+            if (!is_scripted(b) || b.type == scene::BodyType::static_body) continue;
+            for (const int other : bodies_of_row(model_, row))
+                if (!is_scripted(model_.bodies[static_cast<std::size_t>(other)])) counts_[root(other)].is_driven = true;
+        }
+    }
+
+    const model::Model& model_;
+    std::vector<int> parent_;
+    std::map<int, Count> counts_;
+};
+
+class Follower {
+public:
+    Follower(const model::Model& model, const std::set<std::string>& held)
+        : model_(model), problem_{model.mechanism.set, rows_, {}, {}, {}, 0, model.diagonal} {
+        std::set<int> out_of_it;
+        for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+            const model::Body& body = model.bodies[i];
+            problem_.moments.push_back(body.moments);
+            std::array<int, 6> index{};
+            const bool stays = held.count(body.name) > 0;
+            for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) && !stays ? problem_.count++ : -1;
+            problem_.index.push_back(index);
+            if (stays) out_of_it.insert(static_cast<int>(i));
+        }
+        for (const constraint::Row& row : model.mechanism.rows) {
+            const std::vector<int> bodies = bodies_of_row(model, row);
+            if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return out_of_it.count(body) > 0; })) rows_.push_back(row);
+        }
+        problem_.targets.resize(static_cast<Eigen::Index>(rows_.size()));
+        angles_ = model.mechanism.angles_start;
+    }
+
+    /// Appends a step that ends `h` later; what is wrong, if the joints cannot be met.
+    std::optional<std::string> advance(double time, double h, Trajectory& out) {
+        const std::vector<Pose> poses = out.poses.back();
+        TrajectoryStep step;
+        step.nodes.emplace_back();
+        for (const Pose& pose : poses) step.nodes.back().push_back({pose.position, Vector3::Zero()});
+        step.fractions.push_back(0);
+        std::vector<Pose> at = poses;
+        for (const PrescribedNode& node : prescribed_path(model_, poses, time)) {
+            const double share = node.fraction - step.fractions.back();
+            const auto found = assembled(guess(poses, at, node, share), time + node.fraction * h);
+            if (!found) return unmet(time + node.fraction * h);
+            step.nodes.push_back(points(poses, *found, node, step.nodes.back()));
+            step.fractions.push_back(node.fraction);
+            remember(at, *found, share);
+            at = *found;
+        }
+        if (step.nodes.size() == 2) step.fractions.clear();
+        out.steps.push_back(std::move(step));
+        out.poses.emplace_back();
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const ChartPoint& end = out.steps.back().nodes.back()[i];
+            out.poses.back().push_back(
+                {kinematics::orthonormalised(kinematics::rotation(end.rotation_vector) * poses[i].rotation), end.position});
+        }
+        return std::nullopt;
+    }
+
+private:
+    struct Speed {
+        Vector3 way = Vector3::Zero(), turn = Vector3::Zero();  // of a whole step
+    };
+
+    // Scripted coordinates where they are to be, the others on as they went.
+    std::vector<Pose> guess(const std::vector<Pose>& poses, const std::vector<Pose>& at, const PrescribedNode& node, double share) const {
+        std::vector<Pose> out = at;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const model::Body& body = model_.bodies[i];
+            const auto& index = problem_.index[i];
+            if (!speeds_.empty() && std::all_of(index.begin(), index.end(), [](int k) { return k >= 0; })) {
+                out[i].position += share * speeds_[i].way;
+                out[i].rotation = kinematics::orthonormalised(kinematics::rotation(Vector3(share * speeds_[i].turn)) * out[i].rotation);
+                continue;
+            }
+            Vector3 turn = kinematics::rotation_vector(at[i].rotation * poses[i].rotation.transpose());
+            bool turned = false;
+            for (int k = 0; k < 6; ++k) {
+                if (is_free(body, k)) continue;
+                (k < 3 ? out[i].position[k] : turn[k - 3]) = node.targets[i][k];
+                turned = turned || k >= 3;
+            }
+            if (turned) out[i].rotation = kinematics::orthonormalised(kinematics::rotation(turn) * poses[i].rotation);
+        }
+        return out;
+    }
+
+    void remember(const std::vector<Pose>& from, const std::vector<Pose>& to, double share) {
+        speeds_.resize(from.size());
+        for (std::size_t i = 0; i < from.size() && share > 0; ++i)
+            speeds_[i] = {(to[i].position - from[i].position) / share,
+                          kinematics::rotation_vector(to[i].rotation * from[i].rotation.transpose()) / share};
+    }
+
+    // The assembly counts no turns: targets are taken down to where its angles begin.
+    std::optional<std::vector<Pose>> assembled(const std::vector<Pose>& from, double time) {
+        const std::vector<double> counted = constraint::angles_at(model_.mechanism.set, from, angles_),
+                                  plain = constraint::angles_at(model_.mechanism.set, from, {});
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            double target = target_at(rows_[i], time);
+            for (const constraint::RowPart& part : rows_[i].parts) {
+                const auto m = static_cast<std::size_t>(part.measure);
+                target -= part.factor * (counted[m] - plain[m]);
+            }
+            problem_.targets[static_cast<Eigen::Index>(i)] = target;
+        }
+        const constraint::Assembly found = assemble(problem_, from);
+        gaps_ = found.gaps;
+        if (!found.is_met) return std::nullopt;
+        angles_ = constraint::angles_at(model_.mechanism.set, found.poses, counted);
+        return found.poses;
+    }
+
+    std::vector<ChartPoint> points(const std::vector<Pose>& poses, const std::vector<Pose>& to, const PrescribedNode& node,
+                                   const std::vector<ChartPoint>& before) const {
+        std::vector<ChartPoint> out;
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const auto& index = problem_.index[i];
+            ChartPoint point{to[i].position, kinematics::rotation_vector(to[i].rotation * poses[i].rotation.transpose())};
+            if (std::all_of(index.begin(), index.end(), [](int k) { return k < 0; })) {  // nothing moves but by scripts
+                point = {poses[i].position, before[i].rotation_vector};
+                for (int k = 0; k < 6; ++k)
+                    if (!is_free(model_.bodies[i], k)) (k < 3 ? point.position[k] : point.rotation_vector[k - 3]) = node.targets[i][k];
+            }
+            out.push_back(point);
+        }
+        return out;
+    }
+
+    std::string unmet(double time) const {
+        std::set<std::string> names;
+        const double worst = gaps_.size() > 0 ? gaps_.maxCoeff() : 0;
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            if (gaps_[static_cast<Eigen::Index>(i)] > constraint::assembled_gap * model_.diagonal)
+                names.insert("`" + model_.mechanism.joints[static_cast<std::size_t>(rows_[i].owner)].name + "`");
+        std::ostringstream message;
+        message << "at " << time << " s the joints cannot be met: " << base::joined(names) << ", by " << worst
+                << " m; is a motor's curve out of reach, or the loop at a dead centre?";
+        return message.str();
+    }
+
+    const model::Model& model_;
+    std::vector<constraint::Row> rows_;
+    constraint::AssemblyProblem problem_;
+    std::vector<double> angles_;
+    std::vector<Speed> speeds_;
+    VectorX gaps_;
+};
+
+}  // namespace
+
+base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, double allowed_gap) {
+    Groups groups(model);
+    groups.judge();
+    const std::string where = "joints";
+    if (!groups.open.empty())
+        return base::Error{
+            ErrorCode::unsupported, where,
+            "joints and motors leave " + base::joined(groups.open) +
+                " some freedom, which dynamics would have to decide: --motion simulates it, --ranges looks at all positions"};
+    SimulationOptions options;
+    options.steps = steps;
+    const int count = step_count(model, options);
+    JointedMotion out;
+    out.held.assign(groups.held.begin(), groups.held.end());
+    for (out.parts = 1;; out.parts *= 2) {
+        model::Model finer = model;
+        finer.timestep = model.timestep / out.parts;
+        Follower follower(finer, groups.held);
+        Trajectory trajectory;
+        trajectory.timestep = finer.timestep;
+        for (const model::Body& body : model.bodies) trajectory.body_names.push_back(body.name);
+        trajectory.poses.push_back(start_state(model).history.poses);
+        out.joint_gap = 0;
+        std::optional<std::string> fault;
+        for (int t = 0; !fault && t < count * out.parts; ++t) {
+            fault = follower.advance(t * finer.timestep, finer.timestep, trajectory);
+            if (!fault)
+                out.joint_gap =
+                    std::max(out.joint_gap, path_gap_bound(model, trajectory.poses[trajectory.poses.size() - 2], trajectory.steps.back()));
+            if (out.joint_gap > allowed_gap && out.parts < most_parts) break;
+        }
+        if (fault && out.parts >= most_parts) return base::Error{ErrorCode::inconsistent, where, *fault};
+        if (fault || (out.joint_gap > allowed_gap && out.parts < most_parts)) continue;
+        out.trajectory = std::move(trajectory);
+        return out;
+    }
+}
+
+}  // namespace fettle::core::stepper

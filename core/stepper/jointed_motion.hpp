@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// Motion without dynamics of bodies that joints hold and motors drive: at every node the bodies stand where joints, motors and scripts
+/// have them (constraint/assembly.hpp), so that closed loops are followed through their cycle. Without joints: scripted_motion.hpp.
+///
+/// Only what is determined can be followed: of bodies that rows connect, as many rows as free coordinates. Where no motor and no script
+/// drives any of them they are held at the start, and named; where some freedom is left, or a motor turns by torque alone, dynamics would
+/// have to decide, and that is an error that names them.
+///
+/// Between nodes the path is straight in each body's chart, and joints part by at most `joint_gap` (joint_outputs.hpp). Steps are halved,
+/// all of them, until that is at most what is asked for, or a step is 1/256 of the model's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::core::stepper {
+
+struct JointedMotion {
+    Trajectory trajectory;
+    int parts = 1;                  ///< of each step of the model
+    double joint_gap = 0;           ///< between nodes, over the whole motion [m]
+    std::vector<std::string> held;  ///< bodies that stay where they start although they could move
+};
+
+/// @param steps        of the model; negative: its end_time, or 1000 steps if it has none.
+/// @param allowed_gap  [m] > 0
+/// Errors: what is not determined; a time at which the joints cannot be met (a dead centre that is not passed, a motor out of reach).
+base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, double allowed_gap);
+
+}  // namespace fettle::core::stepper

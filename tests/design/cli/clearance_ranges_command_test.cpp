@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// fettle clearance SCENE --ranges from outside: reports, refusals, certificates.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/program.hpp"
+
+namespace fettle::design::cli::clearance_ranges_command_test {
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace fettle::tests::design_support;
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+
+const char* two_arms = "examples/two_arm/two_arm.scene.json";
+// From the shoulder to the hand's farthest corner, in the scene's millimetres.
+const double reach = 60 + std::hypot(40.0, 6.0);
+
+std::string text_of(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+Json coordinate(const Json& pair, const std::string& joint) {
+    for (const Json& c : pair.at("coordinates"))
+        if (c.at("joint") == joint) return c;
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("ranges: the two-armed robot's worst combination, by hand") {
+    const Answer answer =
+        run(std::string("clearance ") + two_arms + " --ranges --json --minimum 5mm --tolerance 0.001mm --pairs 'post:*_hand'");
+    CHECK(answer.code == 0);
+    const Json pair = answer.pair("post", "left_hand");
+    REQUIRE(!pair.is_null());
+    const double gap = 1e-3 * (110 - reach);
+    CHECK(pair["lower"].get<double>() <= gap);
+    CHECK(pair["upper"].get<double>() >= gap - 1e-15);
+    CHECK(pair["upper"].get<double>() - pair["lower"].get<double>() <= 1e-6);
+    CHECK(pair["status"] == "clear");
+    CHECK(pair["coordinates"].size() == 2);
+    CHECK(coordinate(pair, "left_shoulder")["value"].get<double>() == Approx(-M_PI / 2).margin(1e-2));
+    CHECK(coordinate(pair, "left_shoulder")["low"].get<double>() == Approx(-100 * M_PI / 180));
+    CHECK(coordinate(pair, "left_elbow")["value"].get<double>() == Approx(-std::atan2(6, 40)).margin(2e-2));
+    CHECK(coordinate(pair, "left_elbow")["unit"] == "rad");
+    CHECK(pair["point_b"].is_array());
+    CHECK(run(std::string("clearance ") + two_arms + " --ranges --minimum 10mm --pairs 'post:*_hand'").code == 1);
+}
+
+TEST_CASE("ranges: bodies that joints join are not judged unless named, options that do not go with it are refused") {
+    const Answer answer = run(std::string("clearance ") + two_arms + " --ranges --json --minimum 1mm --pairs 'left_arm:left_hand'");
+    CHECK(answer.code == 1);
+    CHECK(answer.pair("left_arm", "left_hand")["finding"] == "clash");
+    const Answer all = run(std::string("clearance ") + two_arms + " --ranges --json --minimum 1mm --ignore '*_hand:*'");
+    CHECK(all.code == 0);
+    const Json left_out = all.json()["left_out"];
+    CHECK(std::count(left_out.begin(), left_out.end(), Json("base:post")) == 1);
+    CHECK(all.pair("base", "left_arm")["status"] == "clear");  // told to collide
+    for (const char* other : {"--motion", "--kinematic", "--csv x.csv", "--steps 3"})
+        CHECK(run(std::string("clearance ") + two_arms + " --ranges " + other).code == 3);
+    const DesignFolder folder;
+    const Answer none = run("clearance " + folder.file("small.scene.json") + " --ranges", true);
+    CHECK(none.code == 3);
+    CHECK(none.says("there is no joint"));
+}
+
+TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or meshes have changed") {
+    const DesignFolder folder(small_design, text_of(two_arms));
+    const std::string scene = folder.file("small.scene.json"), proof = folder.file("fit.certificate.json");
+    const std::string command = "clearance " + scene + " --ranges --minimum 5mm --pairs 'post:*_hand' --certificate " + proof;
+    REQUIRE(run(command).code == 0);
+    const Answer sound = run("validate " + proof + " --minimum 5mm --json");
+    CHECK(sound.code == 0);
+    CHECK(sound.json()["status"] == "accepted");
+    CHECK(sound.json()["judgement"] == "clear");
+    CHECK(sound.json()["leaves"].get<long>() > 10);
+    const std::string text = text_of(two_arms);
+    for (const auto& [from, to] : {std::pair<const char*, const char*>{"[-100, 30]", "[-100, 35]"},
+                                   {"\"point\": [-120, 60, 0]", "\"point\": [-120, 59, 0]"},
+                                   {"\"size_x\": 12", "\"size_x\": 11"}}) {
+        folder.write("small.scene.json", replaced(text, from, to));
+        const Answer stale = run("validate " + proof + " --json");
+        CHECK(stale.code == 1);
+        CHECK(stale.json()["status"] == "stale");
+    }
+    folder.write("small.scene.json", text);
+    Json damaged = Json::parse(text_of(proof));
+    damaged["pairs"][0]["lower"] = damaged["pairs"][0]["upper"];
+    folder.write("fit.certificate.json", damaged.dump());
+    const Answer rejected = run("validate " + proof + " --json");
+    CHECK(rejected.code == 1);
+    CHECK(rejected.json()["status"] == "rejected");
+}
+
+TEST_CASE("ranges: a joint without limits is named, or turns wholly") {
+    const std::string text = text_of(two_arms);
+    const DesignFolder free(small_design, replaced(text, "\"limits\": [-120, 5]", "\"collide\": false"));
+    const Answer whole = run("clearance " + free.file("small.scene.json") + " --ranges --json --minimum 5mm --pairs post:left_hand");
+    CHECK(whole.code == 0);  // the same farthest corner
+    CHECK(coordinate(whole.pair("post", "left_hand"), "left_elbow")["whole_turn"] == true);
+    const DesignFolder slide(small_design,
+                             replaced(replaced(text, "\"left_elbow\", \"type\": \"revolute\"", "\"left_elbow\", \"type\": \"prismatic\""),
+                                      ", \"limits\": [-120, 5]", ""));
+    const Answer refused = run("clearance " + slide.file("small.scene.json") + " --ranges", true);
+    CHECK(refused.code == 3);
+    CHECK(refused.says("`left_elbow`: has no limits"));
+}
+
+TEST_CASE("the two-armed robot runs; joints part between nodes no more than is asked for") {
+    const std::string command = std::string("simulate ") + two_arms + " --steps 40 --json";
+    const Answer plain = run(command), held = run(command + " --joint-gap 0.001mm");
+    REQUIRE(plain.json()["status"] == "ok");
+    REQUIRE(held.json()["status"] == "ok");
+    CHECK(plain.json()["path_joint_gap"].get<double>() > 1e-6);
+    CHECK(held.json()["path_joint_gap"].get<double>() <= 1e-6);
+    CHECK(held.json()["nodes_added"].get<int>() > 0);
+    CHECK(held.json()["bodies"] == plain.json()["bodies"]);
+    CHECK(run(std::string("simulate ") + two_arms + " --joint-gap 0mm").code == 3);
+    const Answer loose = run(std::string("simulate ") + two_arms + " --steps 5 --json --joint-gap 1e-12mm");
+    CHECK(loose.code == 2);
+    CHECK(loose.json()["status"] == "joints_part");
+    CHECK(loose.json()["message"].get<std::string>().find("between nodes of step") != std::string::npos);
+}
+
+TEST_CASE("kinematic: joints that motors do not determine are refused by name, loops that they do are followed") {
+    const Answer open = run(std::string("clearance ") + two_arms + " --kinematic", true);
+    CHECK(open.code == 3);
+    CHECK(open.says("left_arm, left_hand, right_arm, right_hand some freedom"));
+    // The elbows follow the shoulders: everything is driven.
+    Json scene = Json::parse(text_of(two_arms));
+    for (const char* side : {"left", "right"}) {
+        const std::string name = side;
+        scene["joints"].push_back(
+            {{"name", name + "_gear"}, {"type", "gear"}, {"of", {name + "_shoulder", name + "_elbow"}}, {"ratio", 0.5}});
+    }
+    const DesignFolder folder(small_design, scene.dump());
+    const std::string command = "clearance " + folder.file("small.scene.json") + " --json --minimum 1mm ";
+    const Answer followed = run(command + "--kinematic --steps 50");
+    CHECK(followed.code == 0);
+    const Json pair = followed.pair("post", "left_hand");
+    REQUIRE(!pair.is_null());
+    // At the end the shoulder is at -80 degrees, the elbow at -40: within the worst over all positions, and no worse than what gears allow.
+    const Answer ranges = run(command + "--ranges");
+    CHECK(ranges.pair("post", "left_hand")["coordinates"].size() == 2);  // one free coordinate, two joints that it moves
+    CHECK(ranges.pair("post", "left_hand")["lower"].get<double>() <= pair["upper"].get<double>());
+    CHECK(followed.pair("left_arm", "left_hand").is_null());
+}
+
+}  // namespace fettle::design::cli::clearance_ranges_command_test
