@@ -40,6 +40,7 @@ public:
         out_.assign(seeds.size(), zero_model_gradient(model, steps));
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
+        velocity_end_ = velocity_start_ = velocity_before_ = end_;
         step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = end_;
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
@@ -60,6 +61,7 @@ public:
             // end <- start <- before <- zero
             std::swap(end_, start_);
             std::swap(start_, before_);
+            if (is_bdf2()) rotate_velocities();
         }
         finish();
         return {};
@@ -73,13 +75,33 @@ private:
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) pose_bar[s][i] += seeds_[s].pose_bar[t][i];
     }
 
+    bool is_bdf2() const { return model_.integrator == core::scene::Integrator::bdf2; }
+
+    void rotate_velocities() {
+        for (auto& bodies : velocity_end_)
+            for (Matrix34& p : bodies) p.setZero();
+        std::swap(velocity_end_, velocity_start_);
+        std::swap(velocity_start_, velocity_before_);
+    }
+
+    // BDF2's V = (P - P_slip)/slip_time at the step's end.
+    void velocity_back(const LinearisedStep& step) {
+        for (std::size_t s = 0; s < seeds_.size(); ++s)
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                const Matrix34 bar = velocity_end_[s][i] / step.problem.slip_time;
+                end_[s][i] += bar;
+                step_bar_.slip_reference_bar[s][i] -= bar;
+            }
+    }
+
     Errors step_back(int t) {
         const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
         if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
-        if (!solve(t, step)) return StepSolver::unsolved(trajectory_, t);
         for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
             for (auto& bodies : *bars)
                 for (Matrix34& bar : bodies) bar.setZero();
+        if (is_bdf2()) velocity_back(step);
+        if (!solve(t, step)) return StepSolver::unsolved(trajectory_, t);
         energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
         if (step.rows.count() > 0) constraint::subtract_rows_reverse({step.problem, step.poses, step.multipliers}, motion_, mu_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
@@ -87,7 +109,10 @@ private:
             if (step.rows.count() > 0) add_transposed(step.rows, mu_[s], h_lambda);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 prescribed_back(t, s, i, step, h_lambda[i]);
-                pose_hat_back(t, s, i);
+                if (is_bdf2())
+                    bdf2_back(t, s, i, step.problem.slip_time);
+                else
+                    pose_hat_back(t, s, i);
             }
         }
         return {};
@@ -161,6 +186,22 @@ private:
         }
     }
 
+    // P_slip = (4 P_t - P_t-1)/3, P_hat = P_slip + slip_time (4 V_t - V_t-1)/3 + slip_time^2 gravity; at t = 0 implicit Euler's.
+    void bdf2_back(int t, std::size_t s, std::size_t i, double slip_time) {
+        const Matrix34& hat = step_bar_.pose_hat_bar[s][i];
+        const Matrix34 slip = step_bar_.slip_reference_bar[s][i] + hat;
+        out_[s].gravity_bar += slip_time * slip_time * hat.col(3);
+        if (t == 0) {
+            start_[s][i] += slip;
+            out_[s].bodies[i].velocity_start_bar += velocity_start_[s][i] + slip_time * hat;
+            return;
+        }
+        start_[s][i] += 4.0 / 3 * slip;
+        before_[s][i] -= 1.0 / 3 * slip;
+        velocity_start_[s][i] += 4.0 / 3 * slip_time * hat;
+        velocity_before_[s][i] -= 1.0 / 3 * slip_time * hat;
+    }
+
     // After the first step the swaps have left P_bar[0] in end_.
     void finish() {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
@@ -184,8 +225,9 @@ private:
     const core::solver::FreeDofs dofs_;
     const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
     std::vector<ModelGradient> out_;
-    std::vector<std::vector<Matrix34>> end_, start_, before_;  // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
-    energy::StepGradient step_bar_;                            // P_hat's of the step at hand; the moments' of all
+    std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
+    std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2)
+    energy::StepGradient step_bar_;  // P_hat's of the step at hand; the moments' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
     std::vector<VectorX> mu_;  // [seed]: adjoint variable of the rows
     std::vector<Matrix3> left_jacobian_;

@@ -13,7 +13,7 @@ namespace {
 
 using core::kinematics::pose_matrix;
 
-// Implicit Euler's; a quasi-static step does not look at them.
+// Implicit Euler's, and BDF2's of its first step and of bodies that are driven altogether; a quasi-static step does not look at them.
 std::vector<Matrix34> velocities_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t) {
     std::vector<Matrix34> velocities(model.bodies.size());
     for (std::size_t i = 0; i < velocities.size(); ++i)
@@ -22,13 +22,42 @@ std::vector<Matrix34> velocities_at(const core::model::Model& model, const core:
     return velocities;
 }
 
+// BDF2's: (P - P_slip)/(2h/3).
+std::vector<Matrix34> bdf2_velocities_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t) {
+    std::vector<Matrix34> velocities = velocities_at(model, trajectory, t);
+    for (std::size_t i = 0; t > 1 && i < velocities.size(); ++i) {
+        if (!core::energy::has_free_dof(model.bodies[i])) continue;
+        const Matrix34 slip = (4 * pose_matrix(trajectory.poses[t - 1][i]) - pose_matrix(trajectory.poses[t - 2][i])) / 3;
+        velocities[i] = (pose_matrix(trajectory.poses[t][i]) - slip) / (2 * model.timestep / 3);
+    }
+    return velocities;
+}
+
+core::energy::History history_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                                 const std::vector<double>& angles) {
+    core::energy::History out{trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}, angles};
+    if (model.integrator != core::scene::Integrator::bdf2 || t == 0) return out;
+    out.velocities = bdf2_velocities_at(model, trajectory, t);
+    out.velocities_before = bdf2_velocities_at(model, trajectory, t - 1);
+    for (const core::kinematics::Pose& pose : trajectory.poses[t - 1]) out.poses_before.push_back(pose_matrix(pose));
+    return out;
+}
+
 Errors check_integrator(const core::model::Model& model) {
     using core::scene::Integrator;
     if (model.integrator == Integrator::implicit_euler || model.integrator == Integrator::quasi_static) return {};
-    const std::string name = model.integrator == Integrator::bdf2 ? "bdf2" : "newmark";
-    Errors errors{energy::refusal("integrator", "a simulation by `" + name + "`")};
-    errors.back().message += "; `implicit_euler` and `quasi_static` can";
-    return errors;
+    const auto refused = [](const std::string& what, const std::string& instead) {
+        Errors errors{energy::refusal("integrator", what)};
+        errors.back().message += "; " + instead;
+        return errors;
+    };
+    if (model.integrator == Integrator::newmark)
+        return refused("a simulation by `newmark`", "`implicit_euler`, `bdf2` and `quasi_static` can");
+    if (model.contact_damping_time > 0) return refused("damping of contacts in a simulation by `bdf2`", "with `implicit_euler` it can");
+    for (const core::model::MeasureTerm& term : model.mechanism.terms)
+        if (term.kind == core::model::LawKind::damper || term.kind == core::model::LawKind::friction)
+            return refused("the damping or friction of '" + term.name + "' in a simulation by `bdf2`", "with `implicit_euler` it can");
+    return {};
 }
 
 Errors check_scripts(const core::model::Model& model) {
@@ -222,8 +251,7 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const std::vector<double>& angles, StepSolver& solver) {
     LinearisedStep step;
-    step.problem =
-        core::energy::step_problem(model, {trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}, angles}, model.kappa);
+    step.problem = core::energy::step_problem(model, history_at(model, trajectory, t, angles), model.kappa);
     set_end_time(step.problem, t * model.timestep + model.timestep);
     step.poses = trajectory.poses[t + 1];
     step.points = trajectory.steps[t].nodes.back();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One step, of implicit Euler or quasi-static, linearised about its solution: what the reverse and the forward sweep share. Everything is
-/// computed anew from the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing
-/// else.
+/// One step, of implicit Euler, BDF2 or quasi-static, linearised about its solution: what the reverse and the forward sweep share.
+/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to
+/// store nothing else.
 #pragma once
 
 #include <Eigen/SparseLU>
@@ -72,10 +72,10 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const std::vector<double>& angles, StepSolver& solver);
 
-/// What the sweeps cannot differentiate, by name: bdf2 and newmark, what the terms refuse (adjoint/energy: shells,
-/// wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of poses (all unsupported); a step
-/// that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the
-/// model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: newmark; with bdf2 damping of contacts, dampers and friction of joints; what the terms
+/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of
+/// poses (all unsupported); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract:
+/// the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

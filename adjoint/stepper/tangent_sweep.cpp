@@ -113,9 +113,20 @@ private:
         return change;
     }
 
-    Matrix34 pose_hat_change(std::size_t i) const {
+    bool is_bdf2(int t) const { return model_.integrator == core::scene::Integrator::bdf2 && t > 0; }
+
+    Matrix34 slip_change(int t, std::size_t i) const {
+        return is_bdf2(t) ? Matrix34((4 * poses_dot_[i] - poses_before_dot_[i]) / 3) : poses_dot_[i];
+    }
+
+    Matrix34 pose_hat_change(int t, std::size_t i) const {
         if (model_.integrator == core::scene::Integrator::quasi_static) return poses_dot_[i];
         const double h = model_.timestep;
+        if (is_bdf2(t)) {
+            Matrix34 change = slip_change(t, i) + 2 * h / 9 * (4 * velocities_dot_[i] - velocities_before_dot_[i]);
+            change.col(3) += 4 * h * h / 9 * direction_.gravity_dot;
+            return change;
+        }
         Matrix34 change = poses_dot_[i] + h * velocities_dot_[i];
         change.col(3) += h * h * direction_.gravity_dot;
         return change;
@@ -127,14 +138,15 @@ private:
         const std::size_t n = model_.bodies.size();
         std::vector<RotationDerivatives> r(n);
         std::vector<Matrix34> end_dot(n);
-        std::vector<Matrix34> pose_hat_dot(n);
+        std::vector<Matrix34> pose_hat_dot(n), slip_dot(n);
         for (std::size_t i = 0; i < n; ++i) {
             r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
             end_dot[i] = known_change(t, i, r[i]);
-            pose_hat_dot[i] = pose_hat_change(i);
+            pose_hat_dot[i] = pose_hat_change(t, i);
+            slip_dot[i] = slip_change(t, i);
         }
         contact::PoseGradientTangent energy =
-            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, poses_dot_, moments_dot_}, direction_);
+            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, slip_dot, moments_dot_}, direction_);
         VectorX row_dot;
         if (step.rows.count() > 0)
             row_dot = constraint::add_rows_tangent({step.problem, step.poses, step.multipliers}, end_dot, direction_, energy);
@@ -153,12 +165,18 @@ private:
     }
 
     void advance(int t, const std::vector<Matrix34>& end_dot) {
+        const std::vector<Matrix34> velocities = velocities_dot_, poses = poses_dot_;
         for (std::size_t i = 0; i < end_dot.size(); ++i) {
             const Matrix3& rotation = trajectory_.poses[t + 1][i].rotation;
             const Matrix34 next = matrix_of(tangent_of(end_dot[i], rotation), rotation);  // rounding must not leave the tangent space
-            velocities_dot_[i] = (next - poses_dot_[i]) / model_.timestep;
+            if (is_bdf2(t) && core::energy::has_free_dof(model_.bodies[i]))
+                velocities_dot_[i] = (next - slip_change(t, i)) / (2 * model_.timestep / 3);
+            else
+                velocities_dot_[i] = (next - poses_dot_[i]) / model_.timestep;
             poses_dot_[i] = next;
         }
+        velocities_before_dot_ = velocities;
+        poses_before_dot_ = poses;
         out_.push_back(tangents(t + 1));
     }
 
@@ -169,7 +187,8 @@ private:
     const core::solver::FreeDofs dofs_;
     const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
     std::vector<Matrix4> moments_dot_;
-    std::vector<Matrix34> poses_dot_, velocities_dot_;  // at the current step's start
+    std::vector<Matrix34> poses_dot_, velocities_dot_;                // at the current step's start
+    std::vector<Matrix34> poses_before_dot_, velocities_before_dot_;  // at the start of the one before
     std::vector<std::vector<Vector6>> out_;
     std::vector<VectorX> multipliers_;
 };

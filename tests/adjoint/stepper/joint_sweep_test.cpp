@@ -56,11 +56,12 @@ SweepScene arm() {
 }
 
 // A spatial four-bar: hinge, two balls, hinge; its crank driven by a curve.
-SweepScene spatial_four_bar() {
+SweepScene spatial_four_bar(Integrator integrator = Integrator::implicit_euler) {
     const Vector3 a(0.1, 0, 0), b(0.35, 0.2, 0.05), o(0.35, -0.05, 0.05);
     core::scene::Scene scene =
         scene_of({bar("crank", 0.1), bar("coupler", 0.33, a, Vector3(0, -0.15, 0.68)), bar("rocker", 0.25, o, Vector3(0, 0, 1.57))}, 0.01);
     scene.gravity = Vector3(0.3, -9.81, 0.2);
+    scene.integrator = integrator;
     const double coupler = (b - a).norm();
     scene.mechanism.joints = {
         joint("O", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
@@ -68,7 +69,7 @@ SweepScene spatial_four_bar() {
         joint("B", JointKind::ball, {"coupler", Vector3(coupler, 0, 0), z_axis}, {"rocker", Vector3(0.25, 0, 0), z_axis}),
         joint("C", JointKind::revolute, {"", o, Vector3(0.1, 0, 1)}, {"rocker", Vector3::Zero(), Vector3(0.1, 0, 1)})};
     scene.mechanism.motors = {motor("drive", "O", values(core::scene::CurveKind::cubic, {0, 0.1, 0.2}, {0, 0.9, 2.2}))};
-    return sweep("spatial four-bar", scene, 15);
+    return sweep(integrator == Integrator::bdf2 ? "spatial four-bar, BDF2" : "spatial four-bar", scene, 15);
 }
 
 // Crank, rod between balls, slider; quasi-static, with a load and a spring.
@@ -142,7 +143,9 @@ SweepScene hinged_contact() {
     return sweep("hinged contact", scene, 20);
 }
 
-std::vector<SweepScene> joint_scenes() { return {arm(), spatial_four_bar(), slider_crank(), wheels(), hinged_contact()}; }
+std::vector<SweepScene> joint_scenes() {
+    return {arm(), spatial_four_bar(), spatial_four_bar(Integrator::bdf2), slider_crank(), wheels(), hinged_contact()};
+}
 
 core::stepper::Trajectory trajectory_of(const SweepScene& scene) { return run(scene.model, scene.steps, true).trajectory; }
 

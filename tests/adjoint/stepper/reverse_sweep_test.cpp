@@ -221,7 +221,17 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
     };
     SECTION("integrators") {
         scene.model.integrator = core::scene::Integrator::bdf2;
-        refused("bdf2");
+        scene.model.contact_damping_time = 0.01;
+        refused("damping of contacts in a simulation by `bdf2`");
+        scene.model.contact_damping_time = 0;
+        core::model::MeasureTerm damper;
+        damper.kind = core::model::LawKind::damper;
+        damper.name = "dashpot";
+        scene.model.mechanism.terms = {damper};
+        const auto result = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(result.errors().size() == 1);
+        CHECK(result.errors()[0].message.find("'dashpot' in a simulation by `bdf2`") != std::string::npos);
+        scene.model.mechanism.terms.clear();
         scene.model.integrator = core::scene::Integrator::newmark;
         refused("newmark");
     }

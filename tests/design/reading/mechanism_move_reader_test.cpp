@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Moves of joints, springs, motors, loads, gravity and turns as a design file writes them.
+#include "fettle/design/reading/mechanism_move_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/design/small_design.hpp"
+
+namespace fettle::design::reading::mechanism_move_reader_test {
+
+namespace {
+
+using namespace fettle::tests::design_support;
+using core::model::Origin;
+using description::Move;
+using description::MoveTarget;
+
+const char* scene = R"({
+  "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.1,
+  "bodies": [
+    { "name": "arm", "density": 1000, "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 4, "size_z": 4 } } },
+    { "name": "rack", "density": 1000, "position": [50, 0, 0],
+      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 4, "size_z": 4 } } }
+  ],
+  "joints": [
+    { "name": "hinge", "type": "revolute", "b": "arm", "point": [0, 0, 0], "axis": [0, 0, 1], "stiffness": 2, "preload": 1, "limits": [-90, 90] },
+    { "name": "slide", "type": "prismatic", "b": "rack", "point": [50, 0, 0], "axis": [1, 0, 0], "stiffness": 300, "rest": 2 },
+    { "name": "pinion", "type": "rack", "of": ["hinge", "slide"], "radius": 10 }
+  ],
+  "springs": [{ "name": "across", "a": "arm", "b": "rack", "point_a": [5, 0, 0], "point_b": [-5, 3, 0], "stiffness": 100 }],
+  "dampers": [{ "name": "dash", "joint": "slide", "damping": 4 }],
+  "motors": [{ "name": "push", "joint": "hinge", "torque": { "times": [0, 0.1], "values": [1, 2] } }],
+  "loads": [{ "name": "pull", "body": "arm", "point": [10, 0, 0], "force": [0, 1, 0] }]
+})";
+
+std::string design_of(const std::string& move, const std::string& unit) {
+    return R"({ "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [{ "name": "p", "value": 1, "lower": 0.5, "upper": 2, "unit": ")" +
+           unit + R"(", "moves": [)" + move + R"(] }],
+  "objective": [{ "type": "motor_effort", "motor": "push" }, { "type": "joint_force", "joint": "hinge", "over": "mean" },
+                { "type": "energy", "of": "total" }] })";
+}
+
+Move read(const std::string& move, const std::string& unit) {
+    const DesignFolder folder(design_of(move, unit), scene);
+    const auto file = read_design(folder.design());
+    if (!file) UNSCOPED_INFO(file.errors()[0].where << ": " << file.errors()[0].message);
+    REQUIRE(file);
+    REQUIRE(file->design.parameters[0].moves.size() == 1);
+    return file->design.parameters[0].moves[0];
+}
+
+std::string refused(const std::string& move, const std::string& unit) {
+    const DesignFolder folder(design_of(move, unit), scene);
+    const auto file = read_design(folder.design());
+    REQUIRE_FALSE(file);
+    return file.errors()[0].message;
+}
+
+constexpr double degree = 3.14159265358979323846 / 180;
+
+}  // namespace
+
+TEST_CASE("moves of a mechanism: what they move, and in which unit") {
+    const Move point = read(R"({ "joint": "hinge", "point_b": [1, 0, 2], "scale": 3, "offset": ["1mm", 0, 4] })", "mm");
+    CHECK(point.target == MoveTarget::point_b);
+    CHECK((point.part.list == Origin::List::joint && point.part.index == 0));
+    CHECK(point.direction == Vector3(1, 0, 2));
+    CHECK(point.scale == 3);
+    CHECK(point.position_offset.isApprox(Vector3(1e-3, 0, 4e-3), 1e-15));
+    const Move stiffness = read(R"({ "spring": "across", "stiffness": true, "scale": 2, "offset": "1 N/mm" })", "N/m");
+    CHECK(stiffness.target == MoveTarget::stiffness);
+    CHECK((stiffness.part.list == Origin::List::spring && stiffness.part.index == 0));
+    CHECK((stiffness.scale == 2 && stiffness.offset == 1000));
+    CHECK(read(R"({ "damper": "dash", "damping": true })", "1").part.index == 1);
+    // Of a parameter without unit the scale is in the target's: degrees, lengths of the file, SI.
+    CHECK(read(R"({ "joint": "hinge", "lower_limit": true })", "1").scale == Approx(degree));
+    CHECK(read(R"({ "joint": "slide", "rest": true })", "1").scale == Approx(1e-3));
+    CHECK(read(R"({ "joint": "pinion", "radius": true })", "mm").target == MoveTarget::ratio);
+    CHECK(read(R"({ "joint": "hinge", "preload": true })", "N mm").scale == 1);
+    const Move value = read(R"({ "motor": "push", "value": 1 })", "Nm");
+    CHECK((value.target == MoveTarget::curve_value && value.entry == 1));
+    CHECK(read(R"({ "load": "pull", "force": [0, 1, 0] })", "N").target == MoveTarget::load_force);
+    CHECK(read(R"({ "gravity": [0, 0, -1] })", "m/s^2").target == MoveTarget::gravity);
+    const Move turn = read(R"({ "body": "rack", "turn": [1, 0, 0] })", "deg");
+    CHECK((turn.target == MoveTarget::turn && turn.body == 1 && turn.scale == 1));
+    CHECK(read(R"({ "body": "arm", "velocity": [1, 0, 0] })", "mm/s").target == MoveTarget::velocity);
+}
+
+TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong") {
+    for (const auto& [message, part] :
+         {std::pair(refused(R"({ "joint": "hing", "point_a": [1, 0, 0] })", "mm"), "no joint \"hing\""),
+          std::pair(refused(R"({ "joint": "hinge", "stiffness": true })", "mm"), "not a measure of what it moves"),
+          std::pair(refused(R"({ "joint": "hinge", "rest": true })", "deg"), "`hinge` has a `preload`"),
+          std::pair(refused(R"({ "joint": "pinion", "point_a": [1, 0, 0] })", "mm"), "`pinion` has no point"),
+          std::pair(refused(R"({ "spring": "across", "point_a": [1, 0, 0], "rest": true })", "mm"), "says one thing"),
+          std::pair(refused(R"({ "motor": "push", "value": 2 })", "Nm"), "no such value"),
+          std::pair(refused(R"({ "load": "pull", "force": [0, 0, 0] })", "N"), "this moves nothing"),
+          std::pair(refused(R"({ "load": "pull", "force": [0, 1, 0], "offset": [1, 0, 0] })", "N"), "coefficient is 0")}) {
+        CAPTURE(message);
+        CHECK(message.find(part) != std::string::npos);
+    }
+}
+
+}  // namespace fettle::design::reading::mechanism_move_reader_test
