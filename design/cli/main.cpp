@@ -43,6 +43,7 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.flag("--json", common.json, "Answer with one JSON object on stdout, and nothing else there");
     program.flag("--quiet", common.quiet, "No narration, no progress bars");
     program.flag("--strict", common.strict, "Meshes: what is mended or a warning else (copies, turned triangles, gaps, ...) is an error");
+    program.flag("--allow-programs", common.allow_programs, "Run the programs that a scene names to make its parts (such as OpenSCAD)");
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 
@@ -51,8 +52,13 @@ int run(int argc, char** argv) {
     CommandLine program = line.options();
     CommonOptions common;
     add_common_options(program, common);
-    const std::vector<Command> commands{add_validate(program, common), add_simulate(program, common), add_clearance(program, common),
-                                        add_gradient(program, common), add_optimise(program, common), add_ccd(program)};
+    const std::vector<Command> commands{add_validate(program, common),
+                                        add_simulate(program, common),
+                                        add_clearance(program, common),
+                                        add_gradient(program, common),
+                                        add_optimise(program, common),
+                                        add_explore(program, common),
+                                        add_ccd(program)};
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
         "Exit codes: 0 done, requirements certified; 1 a requirement is violated; 2 undecided or not converged;\n"

@@ -66,6 +66,36 @@ class FunctionShape(Record, Shape):
 
 
 @dataclasses.dataclass(eq=False)
+class MeshShape(Record):
+    """A part from any function that makes a mesh (CadQuery, build123d, trimesh): function(dimensions) -> Mesh, everything in metres. Its
+    derivative comes from rebuilt meshes (design/shapes/rebuilt_shape.hpp); triangles may differ from mesh to mesh, the topology not."""
+
+    function: Callable[[Dict[str, float]], Mesh]
+    values: Dict[str, float]  #: as drawn [m]
+    unit: float = 1e-3  #: that coordinates were rounded in: their digits tell the rounding [m]
+    rounding: Optional[float] = None  #: of coordinates, if it is known [m]
+
+
+@dataclasses.dataclass(eq=False)
+class MeshProgram(Record):
+    """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
+
+    command: List[str] = dataclasses.field(default_factory=list)
+    directory: str = ""  #: that it runs in
+    format: Literal["stl", "obj", "off", "ply", "3mf"] = "stl"
+    unit: float = 1.0  #: [m]
+    time_limit: float = 300.0  #: [s]
+
+
+@dataclasses.dataclass(eq=False)
+class ProgramShape(Record):
+    """A part from a program that writes a mesh file: ProgramShape(MeshProgram(["openscad", "-o", "{out}", ...], unit=1e-3), {"radius": 3e-3})."""
+
+    program: MeshProgram
+    values: Dict[str, float]  #: as drawn [m]
+
+
+@dataclasses.dataclass(eq=False)
 class QuantityGradient(Record):
     """Derivatives of a number in what a simulated design is made of; None or absent: zero."""
 
@@ -130,21 +160,32 @@ class MarkerPath(Record):
 
 
 AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, "_fettle.OpaqueQuantity"]
-AnyShape = Union[Shape, "_fettle.OpaqueShape"]
+AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
+
+
+@dataclasses.dataclass(eq=False)
+class Origin(Record):
+    """A place in one of the scene's lists of joints, springs, motors and loads."""
+
+    list: Literal["joint", "spring", "motor", "load"] = "joint"
+    index: int = -1
 
 
 @dataclasses.dataclass(eq=False)
 class Move(Record):
-    """One target of a parameter: target = scale p + offset, summed over all moves of that target."""
+    """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
+    design/description/parameter.hpp lists the targets."""
 
-    target: str = "dimension"  #: "dimension", "position", "density", "motor_rate"
+    target: str = "dimension"  #: "dimension", "position", "density", "motor_rate", "turn", "gravity", "point_a", "stiffness", ...
     body: int = 0
     dimension: str = ""
     dof: int = 0  #: motor_rate: 0 .. 5
     scale: float = 1.0
     offset: float = 0.0
     direction: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: position
-    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: [m]
+    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of a vector, SI
+    part: Origin = dataclasses.field(default_factory=Origin)  #: the joint, spring, motor or load
+    entry: int = 0  #: of a curve's values
 
 
 @dataclasses.dataclass(eq=False)
