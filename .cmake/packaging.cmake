@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # `cpack --config build/release/CPackConfig.cmake` makes a Debian package, and a tar file of the same tree for any prefix.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # what has been built is packed; not the tests for it
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_NAME fettle)
 set(CPACK_PACKAGE_VENDOR fettle)

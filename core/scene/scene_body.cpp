@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/scene/scene_body.hpp"
+#include "fettle/core/files/json_writer.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
+#include "fettle/core/files/json_writer.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
@@ -45,6 +48,26 @@ const std::vector<std::string_view> body_keys{"name",
                                               "damping",
                                               "group",
                                               "split_components"};
+
+// A part that a program makes: what runs it, as the generator's name (design/shapes/mesh_program.hpp reads it back).
+std::string program_text(const files::JsonNode& node, const std::string& scene, double unit) {
+    const auto words = node["program"].elements();
+    files::JsonWriter out;
+    out.text = "{";
+    out.key("program");
+    out.list(words.size(), ",", [&](std::size_t i) { out.string(words[i].string().value_or("")); });
+    out.key("directory");
+    out.string(std::filesystem::path(scene).parent_path().string());
+    out.key("format");
+    out.string(node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or("stl"));
+    out.key("unit");
+    out.number(unit);
+    if (const auto limit = node["time_limit"].number(files::positive)) {
+        out.key("time_limit");
+        out.number(*limit);
+    }
+    return out.text + "}";
+}
 
 }  // namespace
 
@@ -155,9 +178,15 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
 }
 
 void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
-    node.allow_keys({"generator", "dimensions", "counts"});
     ShapeSpec spec;
-    spec.generator = node.require("generator").string().value_or("");
+    if (node["program"].exists()) {
+        node.allow_keys({"program", "format", "time_limit", "dimensions"});
+        spec.generator = program_text(node, document_.path(), unit_);
+        body.mesh_policy = MeshPolicy::tolerant;
+    } else {
+        node.allow_keys({"generator", "program", "dimensions", "counts"});
+        spec.generator = node.require("generator").string().value_or("");
+    }
     for (const auto& [name, value] : node["dimensions"].members()) spec.dimensions[name] = value.length(unit_).value_or(0);
     for (const auto& [name, value] : node["counts"].members()) spec.counts[name] = value.integer(0).value_or(0);
     body.shape = spec;

@@ -53,9 +53,13 @@ Errors foreign_error(const std::string& path) {
     return {{ErrorCode::unsupported, path, what + "; " + read_here}};
 }
 
+reading::Programs programs_of(const CommonOptions& common) {
+    return common.allow_programs ? reading::Programs::allowed : reading::Programs::refused;
+}
+
 /// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
 Errors strict_faults(const std::string& scene_path, const CommonOptions& common) {
-    core::scene::ReadOptions options = reading::scene_read_options(common.mesh_dirs);
+    core::scene::ReadOptions options = reading::scene_read_options(common.mesh_dirs, programs_of(common));
     options.strict_meshes = true;
     const Result<core::scene::Scene> scene = core::scene::read_scene(scene_path, options);
     if (!scene) return scene.errors();
@@ -82,7 +86,7 @@ Result<LoadedModel> load_design(const std::string& path, const CommonOptions& co
 }
 
 Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& common, bool check_start) {
-    core::scene::ReadOptions read_options = reading::scene_read_options(common.mesh_dirs);
+    core::scene::ReadOptions read_options = reading::scene_read_options(common.mesh_dirs, programs_of(common));
     read_options.strict_meshes = common.strict;
     const Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
     if (!scene) return scene.errors();
@@ -118,7 +122,7 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
 
 Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common) {
     if (is_foreign(path)) return foreign_error(path);
-    Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs});
+    Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs, programs_of(common)});
     if (!file || !common.strict) return file;
     Errors errors = strict_faults(file->scene_path, common);
     if (!errors.empty()) return errors;

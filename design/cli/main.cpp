@@ -63,6 +63,7 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.option("--log", common.log, "Write narration and progress to this file too, --quiet or not");
     program.flag("--quiet", common.quiet, "No narration, no progress bars");
     program.flag("--strict", common.strict, "Meshes: what is mended or a warning else (copies, turned triangles, gaps, ...) is an error");
+    program.flag("--allow-programs", common.allow_programs, "Run the programs that a scene names to make its parts (such as OpenSCAD)");
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 
@@ -77,7 +78,8 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     };
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
     add("Check what there is", {add_validate(program, common), add_clearance(program, common)});
-    add("Move and tune", {add_simulate(program, common), add_optimise(program, common), add_gradient(program, common)});
+    add("Move and tune",
+        {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
     add("See and pass on",
         {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
     add("About the program", {add_ccd(program), add_completion(program), add_manual(program)});

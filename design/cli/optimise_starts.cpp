@@ -26,6 +26,7 @@ std::vector<std::string> arguments_of(const StartsRequest& request, const StartR
     if (request.resume) words.emplace_back("--resume");
     if (request.repair) words.emplace_back("--repair");
     if (common.strict) words.emplace_back("--strict");
+    if (common.allow_programs) words.emplace_back("--allow-programs");
     for (const std::string& folder : common.mesh_dirs) words.insert(words.end(), {"--mesh-dir", folder});
     return words;
 }

@@ -16,8 +16,9 @@ struct CommonOptions {
     bool json = false, quiet = false;
     bool strict = false;  ///< faults of meshes that are warnings else are errors
     std::vector<std::string> mesh_dirs;
-    std::string log;      ///< file for narration and progress; empty: none
-    std::string command;  ///< what was typed, for those who read its results
+    std::string log;              ///< file for narration and progress; empty: none
+    std::string command;          ///< what was typed, for those who read its results
+    bool allow_programs = false;  ///< parts of a scene may be made by the programs that it names
 };
 
 /// A subcommand: adds itself to the program's options; `run` is called once the command line has been read, and returns the exit code.
@@ -42,6 +43,7 @@ Command add_simulate(CommandLine& program, const CommonOptions& common);
 Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
 Command add_report(CommandLine& program, const CommonOptions& common);
+Command add_explore(CommandLine& program, const CommonOptions& common);
 Command add_ccd(CommandLine& program);
 
 /// From now on the first Ctrl-C asks the work to stop with what it has; a second one ends the program at once.

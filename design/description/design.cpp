@@ -7,9 +7,9 @@ namespace fettle::design::description {
 
 Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape) {
     FETTLE_ASSERT(shape != nullptr, "a part has a shape; a body with a fixed mesh goes into the scene as it is");
-    Result<ShapeInstance> drawn = as_drawn(*shape);
+    Result<core::geometry::Mesh> drawn = drawn_mesh(*shape);
     if (!drawn) return drawn.errors();
-    body.mesh = std::move(drawn->mesh);
+    body.mesh = std::move(drawn).value();
     design.scene.bodies.push_back(std::move(body));
     design.shapes.resize(design.scene.bodies.size());
     design.shapes.back() = std::move(shape);

@@ -3,10 +3,22 @@
 
 namespace fettle::design::description {
 
-Result<ShapeInstance> as_drawn(const Shape& shape) {
+Result<core::geometry::Mesh> Shape::mesh(const std::vector<double>& values) const {
+    Result<ShapeInstance> part = at(values);
+    if (!part) return part.errors();
+    return std::move(part->mesh);
+}
+
+std::vector<std::string> Shape::remarks(const std::vector<double>& /*values*/) const { return {}; }
+
+std::vector<double> drawn_values(const Shape& shape) {
     std::vector<double> values;
     for (const ShapeDimension& dimension : shape.dimensions()) values.push_back(dimension.value);
-    return shape.at(values);
+    return values;
 }
+
+Result<ShapeInstance> as_drawn(const Shape& shape) { return shape.at(drawn_values(shape)); }
+
+Result<core::geometry::Mesh> drawn_mesh(const Shape& shape) { return shape.mesh(drawn_values(shape)); }
 
 }  // namespace fettle::design::description

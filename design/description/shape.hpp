@@ -31,16 +31,28 @@ public:
     virtual const std::vector<ShapeDimension>& dimensions() const = 0;
 
     /// The part at other dimensions, one value for each of dimensions(), in their order [m]. A pure function; the mesh's connectivity is
-    /// the same for all values. Called from several threads at once.
+    /// the same for all values, unless has_fixed_triangles() says otherwise. Called from several threads at once.
     /// Errors: values that make no valid part; `where` names the dimension.
     virtual Result<ShapeInstance> at(const std::vector<double>& values) const = 0;
+
+    /// The mesh alone, where its derivative costs something.
+    virtual Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const;
+
+    /// Are the mesh's triangles the same for all values? Where not, each trial has its own.
+    virtual bool has_fixed_triangles() const { return true; }
+
+    /// What is to be said of the part at these dimensions: how its derivative was found, and how exact it is. A sentence each.
+    virtual std::vector<std::string> remarks(const std::vector<double>& values) const;
 
     /// Are the triangles that at() returns always a solid's: closed, outward oriented, without self-intersection? Where this is not said,
     /// the mesh of every trial is checked, and one that is no solid is a trial that cannot be built.
     virtual bool is_always_solid() const { return false; }
 };
 
-/// The part as drawn.
+/// The values of the part as drawn.
+std::vector<double> drawn_values(const Shape& shape);
+/// The part as drawn; its mesh alone.
 Result<ShapeInstance> as_drawn(const Shape& shape);
+Result<core::geometry::Mesh> drawn_mesh(const Shape& shape);
 
 }  // namespace fettle::design::description

@@ -63,14 +63,14 @@ Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
 }
 
 Result<Model> DesignProblem::model_at(const VectorX& p) const {
-    const Result<MovedScene> moved = move_scene(design_, p);
+    const Result<MovedScene> moved = move_scene(design_, p, SceneDerivative::not_wanted);
     if (!moved) return moved.errors();
     return build(moved->scene);
 }
 
 // A trial stands in no file: what is wrong with it is told by bodies and dimensions alone.
-Result<MovedScene> DesignProblem::trial_scene(const VectorX& p) const {
-    Result<MovedScene> moved = move_scene(design_, p);
+Result<MovedScene> DesignProblem::trial_scene(const VectorX& p, SceneDerivative derivative) const {
+    Result<MovedScene> moved = move_scene(design_, p, derivative);
     if (moved) moved->scene.path.clear();
     return moved;
 }
@@ -101,7 +101,7 @@ Errors DesignProblem::undefined(const optimisers::Rows& relations) const {
 Errors DesignProblem::obstacles(const VectorX& p) const {
     Errors errors = undefined(relations(p));
     if (!errors.empty()) return errors;
-    const Result<MovedScene> moved = trial_scene(p);
+    const Result<MovedScene> moved = trial_scene(p, SceneDerivative::not_wanted);
     if (!moved) return moved.errors();
     const Result<Model> model = build(moved->scene);
     return model ? Errors() : model.errors();
@@ -120,7 +120,7 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
         evaluation.reason = first_reason(errors);
         return evaluation;
     }
-    const Result<MovedScene> moved = trial_scene(p);
+    const Result<MovedScene> moved = trial_scene(p, options.gradients ? SceneDerivative::wanted : SceneDerivative::not_wanted);
     if (!moved) {
         evaluation.reason = first_reason(moved.errors());
         return evaluation;

@@ -89,7 +89,7 @@ public:
 private:
     DesignProblem() = default;
     Result<core::model::Model> build(const core::scene::Scene& scene) const;
-    Result<MovedScene> trial_scene(const VectorX& p) const;
+    Result<MovedScene> trial_scene(const VectorX& p, SceneDerivative derivative) const;
     Errors undefined(const optimisers::Rows& relations) const;
     void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
     void measure(DesignEvaluation& evaluation) const;

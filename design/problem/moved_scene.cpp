@@ -35,7 +35,10 @@ BodyChange& change_of(std::vector<BodyChange>& changes, int parameter, int body)
 // Sums of moves: sum of scale * p + offset in the order of the file, so that the same file gives the same bits.
 class Mover {
 public:
-    Mover(const Design& design, const VectorX& p) : design_(design), parameters_(design.parameters), p_(p) { moved_.scene = design.scene; }
+    Mover(const Design& design, const VectorX& p, SceneDerivative derivative)
+        : design_(design), parameters_(design.parameters), p_(p), derivative_(derivative) {
+        moved_.scene = design.scene;
+    }
 
     Result<MovedScene> run() {
         for (size_t k = 0; k < parameters_.size(); ++k) {
@@ -193,6 +196,13 @@ private:
         }
     }
 
+    Result<ShapeInstance> part_of(const Shape& shape, const std::vector<double>& values) const {
+        if (derivative_ == SceneDerivative::wanted) return shape.at(values);
+        Result<core::geometry::Mesh> mesh = shape.mesh(values);
+        if (!mesh) return mesh.errors();
+        return ShapeInstance{std::move(mesh).value(), {}};
+    }
+
     Errors make_shapes() {
         Errors errors;
         for (const auto& [index, moved] : dimensions_) {
@@ -204,7 +214,7 @@ private:
                 const auto found = moved.find(dimension.name);
                 values.push_back(found == moved.end() ? dimension.value : found->second);
             }
-            Result<ShapeInstance> part = shape->at(values);
+            Result<ShapeInstance> part = part_of(*shape, values);
             if (!part) {
                 for (Error error : part.errors()) {
                     error.where = "body " + body.name + ": " + error.where;
@@ -212,11 +222,12 @@ private:
                 }
                 continue;
             }
-            if (part->mesh.triangles != body.mesh.triangles || part->mesh.vertices.cols() != body.mesh.vertices.cols()) {
+            const bool differs = part->mesh.triangles != body.mesh.triangles || part->mesh.vertices.cols() != body.mesh.vertices.cols();
+            if (differs && shape->has_fixed_triangles()) {
                 errors.push_back({ErrorCode::mesh_invalid, "body " + body.name, "its shape has other triangles here than as drawn"});
                 continue;
             }
-            add_vertex_changes(index, *shape, part->jacobian);
+            if (derivative_ == SceneDerivative::wanted) add_vertex_changes(index, *shape, part->jacobian);
             body.mesh = std::move(part->mesh);
         }
         return errors;
@@ -241,6 +252,7 @@ private:
     const Design& design_;
     const std::vector<Parameter>& parameters_;
     const VectorX& p_;
+    SceneDerivative derivative_;
     MovedScene moved_;
     std::map<int, std::map<std::string, double>> dimensions_;
     std::map<Key, VectorSum> vectors_;
@@ -311,9 +323,9 @@ double linear_part(const Move& move, const adjoint::ModelGradient& gradient, con
 
 }  // namespace
 
-Result<MovedScene> move_scene(const Design& design, const VectorX& p) {
+Result<MovedScene> move_scene(const Design& design, const VectorX& p, SceneDerivative derivative) {
     FETTLE_ASSERT(p.size() == static_cast<Eigen::Index>(design.parameters.size()), "one value per parameter");
-    return Mover(design, p).run();
+    return Mover(design, p, derivative).run();
 }
 
 VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& of_model, int parameter_count) {

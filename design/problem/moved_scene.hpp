@@ -34,11 +34,14 @@ struct MovedScene {
     std::vector<LinearChange> linear_changes;
 };
 
+/// Without its derivative the vertices' changes are missing: shapes are asked for their meshes alone, which can be far cheaper.
+enum class SceneDerivative { wanted, not_wanted };
+
 /// The scene at parameter values p (SI, one per parameter), and its derivative there.
 /// Errors: dimensions that make no valid part; `where` names the parameter's body and dimension. Springs, dampers and loads of 0
 /// (mechanism_moves.hpp).
 /// Contract: check_design finds nothing.
-Result<MovedScene> move_scene(const description::Design& design, const VectorX& p);
+Result<MovedScene> move_scene(const description::Design& design, const VectorX& p, SceneDerivative derivative = SceneDerivative::wanted);
 
 /// dJ/dp from dJ/d(model data), exactly transposed to move_scene:
 ///   dJ/dp_k = sum over bodies <vertices_bar, dX/dp_k> + <R_bar, dR> + q_bar . (dR c + dx) + density_bar drho + sum_t increment_bar_t .

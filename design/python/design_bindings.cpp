@@ -22,6 +22,10 @@ std::function<RelationValue(const VectorX&)> relation_function(py::handle callab
     };
 }
 
+reading::DesignReadOptions read_options(const std::vector<std::string>& mesh_dirs, bool allow_programs) {
+    return {mesh_dirs, allow_programs ? reading::Programs::allowed : reading::Programs::refused};
+}
+
 description::Design design_round_trip(description::Design design) { return with_formulas(std::move(design)); }
 
 }  // namespace
@@ -68,14 +72,18 @@ void bind_design(py::module_& module) {
     bind_quantities(module);
     const py::call_guard<py::gil_scoped_release> unlocked;
     module.def(
-        "read_design", [](const std::string& path, const Paths& dirs) { return value_or_raise(reading::read_design(path, {dirs})); },
-        py::arg("path"), py::arg("mesh_dirs") = Paths(), unlocked, "The DesignFile of a *.design.json, with its scene.");
+        "read_design",
+        [](const std::string& path, const Paths& dirs, bool allow_programs) {
+            return value_or_raise(reading::read_design(path, read_options(dirs, allow_programs)));
+        },
+        py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
+        "The DesignFile of a *.design.json, with its scene. allow_programs: the programs that it names may be run to make its parts.");
     module.def(
         "parse_design",
-        [](const std::string& text, const std::string& path, const Paths& dirs) {
-            return value_or_raise(reading::parse_design(text, path, {dirs}));
+        [](const std::string& text, const std::string& path, const Paths& dirs, bool allow_programs) {
+            return value_or_raise(reading::parse_design(text, path, read_options(dirs, allow_programs)));
         },
-        py::arg("text"), py::arg("path"), py::arg("mesh_dirs") = Paths(), unlocked,
+        py::arg("text"), py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The same of a text; `path` says where its scene is looked for.");
     module.def(
         "design_text",

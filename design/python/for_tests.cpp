@@ -40,7 +40,9 @@ py::dict defaults() {
     add_default<fettle::core::scene::PointLoad>(all);
     add_default<fettle::core::scene::PoseScript>(all);
     add_default<fettle::core::scene::Scene>(all);
+    add_default<fettle::design::shapes::MeshProgram>(all);
     add_default<fettle::core::scene::ShapeSpec>(all);
+    add_default<fettle::core::model::Origin>(all);
     add_default<fettle::core::scene::Spring>(all);
     add_default<fettle::core::stepper::DriveForce>(all);
     add_default<fettle::core::stepper::JointForce>(all);

@@ -191,7 +191,9 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
 }
 
 void bind_quantities(py::module_& module) {
-    py::class_<OpaqueQuantity>(module, "OpaqueQuantity", "A quantity of the library's that Python has no class for; it is not pickled.");
+    py::class_<OpaqueQuantity>(module, "OpaqueQuantity", "A quantity of the library's that Python has no class for; it is not pickled.")
+        .def(
+            "__eq__", [](const OpaqueQuantity& a, const OpaqueQuantity& b) { return a.quantity == b.quantity; }, py::is_operator());
     const auto model = [](const SimulatedView& view) -> const core::model::Model& { return view.get().model; };
     py::class_<SimulatedView>(module, "Simulated",
                               "A design, simulated; valid while the call that it is handed to runs. Arrays are copies.")

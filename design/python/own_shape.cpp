@@ -4,6 +4,7 @@
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/scene_records.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/mesh_program.hpp"
 
 namespace fettle::design::python {
 
@@ -72,18 +73,61 @@ private:
     bool always_solid_;
 };
 
+std::vector<ShapeDimension> drawn_dimensions(py::handle shape) {
+    std::vector<ShapeDimension> dimensions;
+    for (const auto& [name, value] : shape.attr("values").cast<std::map<std::string, double>>()) dimensions.push_back({name, value});
+    if (dimensions.empty()) throw py::value_error("a shape has dimensions");
+    return dimensions;
+}
+
+/// A function of Python's that makes meshes (fettle.MeshShape); its derivative comes from rebuilt ones.
+class PythonMeshShape : public shapes::RebuiltShape {
+public:
+    explicit PythonMeshShape(py::handle shape)
+        : RebuiltShape(drawn_dimensions(shape), maker(drawn_dimensions(shape), shared_object(shape.attr("function"))),
+                       {.unit = shape.attr("unit").cast<double>(), .rounding = shape.attr("rounding").cast<std::optional<double>>()}),
+          shape_(shared_object(shape)) {}
+    py::object object() const { return *shape_; }
+
+private:
+    static shapes::MeshMaker maker(const std::vector<ShapeDimension>& dimensions, std::shared_ptr<py::object> function) {
+        return [dimensions, function = std::move(function)](const std::vector<double>& values) -> Result<core::geometry::Mesh> {
+            const py::gil_scoped_acquire locked;
+            try {
+                py::dict given;
+                for (std::size_t k = 0; k < values.size(); ++k) given[py::str(dimensions[k].name)] = values[k];
+                return (*function)(given).cast<core::geometry::Mesh>();
+            } catch (py::error_already_set& raised) {
+                return errors_of(raised, dimensions.front().name);
+            }
+        };
+    }
+
+    std::shared_ptr<py::object> shape_;
+};
+
 /// Any other shape of the library's, handed through Python.
 struct OpaqueShape {
     std::shared_ptr<const Shape> shape;
 };
 
-py::tuple instance(const Shape& shape, const std::map<std::string, double>& values) {
+std::vector<double> in_order(const Shape& shape, const std::map<std::string, double>& values) {
     std::vector<double> ordered;
     for (const ShapeDimension& dimension : shape.dimensions()) {
         const auto found = values.find(dimension.name);
         ordered.push_back(found == values.end() ? dimension.value : found->second);
     }
-    ShapeInstance part = value_or_raise(shape.at(ordered));
+    return ordered;
+}
+
+// Without the lock: a shape of Python's takes it when it is asked, on whatever thread.
+ShapeInstance unlocked_at(const Shape& shape, const std::vector<double>& values) {
+    const py::gil_scoped_release unlocked;
+    return value_or_raise(shape.at(values));
+}
+
+py::tuple instance(const Shape& shape, const std::map<std::string, double>& values) {
+    ShapeInstance part = unlocked_at(shape, in_order(shape, values));
     py::dict jacobian;
     for (std::size_t k = 0; k < part.jacobian.size(); ++k)
         jacobian[py::str(shape.dimensions()[k].name)] = rows_of(std::move(part.jacobian[k]));
@@ -106,6 +150,9 @@ std::shared_ptr<const Shape> shape_from_python(py::handle shape) {
         const auto dimensions = shape.attr("values").cast<std::map<std::string, double>>();
         return value_or_raise(GeneratedPart::create(generator, dimensions, {shape.attr("segments").cast<int>()}));
     }
+    if (py::isinstance(shape, record_class("MeshShape"))) return std::make_shared<PythonMeshShape>(shape);
+    if (py::isinstance(shape, record_class("ProgramShape")))
+        return value_or_raise(shapes::ProgramPart::create(shape.attr("program").cast<shapes::MeshProgram>(), drawn_dimensions(shape)));
     if (!py::isinstance(shape, record_class("Shape"))) throw py::type_error("a body's shape is a fettle.Shape");
     return std::make_shared<PythonShape>(shape);
 }
@@ -115,11 +162,16 @@ py::object shape_to_python(const std::shared_ptr<const Shape>& shape) {
     if (const auto* own = dynamic_cast<const PythonShape*>(shape.get())) return own->object();
     if (const auto* part = dynamic_cast<const GeneratedPart*>(shape.get()))
         return record_class("GeneratedPart")(part->generator(), named_dimensions(*part), part->options().segments);
+    if (const auto* made = dynamic_cast<const PythonMeshShape*>(shape.get())) return made->object();
+    if (const auto* part = dynamic_cast<const shapes::ProgramPart*>(shape.get()))
+        return record_class("ProgramShape")(part->program(), named_dimensions(*part));
     return py::cast(OpaqueShape{shape});
 }
 
 void bind_shapes(py::module_& module) {
     py::class_<OpaqueShape>(module, "OpaqueShape", "A shape of the library's that Python has no class for.")
+        .def(
+            "__eq__", [](const OpaqueShape& a, const OpaqueShape& b) { return a.shape == b.shape; }, py::is_operator())
         .def("dimensions", [](const OpaqueShape& self) { return named_dimensions(*self.shape); })
         .def("at", [](const OpaqueShape& self, const std::map<std::string, double>& values) { return instance(*self.shape, values); });
     module.def(
@@ -127,6 +179,16 @@ void bind_shapes(py::module_& module) {
         [](const py::object& shape, const std::map<std::string, double>& values) { return instance(*shape_from_python(shape), values); },
         py::arg("shape"), py::arg("values") = std::map<std::string, double>(),
         "(mesh, {dimension: d vertices / d dimension, (n, 3)}) of a shape at these dimensions [m]; those left out are as drawn.");
+    module.def(
+        "shape_remarks",
+        [](const py::object& given, const std::map<std::string, double>& values) {
+            const auto shape = shape_from_python(given);
+            const std::vector<double> ordered = in_order(*shape, values);
+            const py::gil_scoped_release unlocked;
+            return shape->remarks(ordered);
+        },
+        py::arg("shape"), py::arg("values") = std::map<std::string, double>(),
+        "How a shape's derivative was found at these dimensions, and how exact it is; empty: it is exact.");
     module.def(
         "generators",
         [] {

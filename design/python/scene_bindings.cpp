@@ -16,14 +16,16 @@ namespace {
 
 using Paths = std::vector<std::string>;
 
-scene::Scene read_scene(const std::string& path, const Paths& mesh_dirs, bool strict_meshes) {
-    scene::ReadOptions options = reading::scene_read_options(mesh_dirs);
+reading::Programs programs(bool allowed) { return allowed ? reading::Programs::allowed : reading::Programs::refused; }
+
+scene::Scene read_scene(const std::string& path, const Paths& mesh_dirs, bool strict_meshes, bool allow_programs) {
+    scene::ReadOptions options = reading::scene_read_options(mesh_dirs, programs(allow_programs));
     options.strict_meshes = strict_meshes;
     return value_or_raise(scene::read_scene(path, options));
 }
 
-scene::Scene parse_scene(const std::string& text, const std::string& path, const Paths& mesh_dirs) {
-    return value_or_raise(scene::parse_scene(text, path, reading::scene_read_options(mesh_dirs)));
+scene::Scene parse_scene(const std::string& text, const std::string& path, const Paths& mesh_dirs, bool allow_programs) {
+    return value_or_raise(scene::parse_scene(text, path, reading::scene_read_options(mesh_dirs, programs(allow_programs))));
 }
 
 core::geometry::Mesh read_mesh(const std::string& path, double unit, bool weld) {
@@ -40,10 +42,11 @@ std::vector<std::string> judge_mesh(const core::geometry::Mesh& mesh, bool as_so
 
 void bind_scene(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> unlocked;
-    module.def("read_scene", &read_scene, py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("strict_meshes") = false, unlocked,
-               "The scene of a file, SI units.");
-    module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("path") = "", py::arg("mesh_dirs") = Paths(), unlocked,
-               "The scene of a text; meshes are looked for as if it came from `path`.");
+    module.def("read_scene", &read_scene, py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("strict_meshes") = false,
+               py::arg("allow_programs") = false, unlocked,
+               "The scene of a file, SI units. allow_programs: the programs that it names may be run to make its parts.");
+    module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("path") = "", py::arg("mesh_dirs") = Paths(),
+               py::arg("allow_programs") = false, unlocked, "The scene of a text; meshes are looked for as if it came from `path`.");
     module.def("read_mesh", &read_mesh, py::arg("path"), py::arg("unit") = 1.0, py::arg("weld") = true, unlocked,
                "The mesh of a file (.stl .obj .off .ply .3mf) [m]. unit: metres per unit of the file.");
     module.def("judge_mesh", &judge_mesh, py::arg("mesh"), py::arg("as_solid") = true, unlocked,

@@ -7,6 +7,7 @@
 
 #include "fettle/core/scene/scene.hpp"
 #include "fettle/design/python/records.hpp"
+#include "fettle/design/shapes/mesh_program.hpp"
 
 namespace fettle::design::python {
 
@@ -54,6 +55,8 @@ FETTLE_RECORD(fettle::core::scene::Friction::Pair, "FrictionPair", field("materi
 FETTLE_RECORD(fettle::core::scene::Friction, "Friction", field("mu", &Type::mu), field("materials", &Type::materials),
               field("pairs", &Type::pairs), field("eps_v", &Type::eps_v), field("rounds", &Type::rounds))
 FETTLE_RECORD(fettle::core::scene::Damping, "Damping", field("linear", &Type::linear), field("angular", &Type::angular))
+FETTLE_RECORD(fettle::design::shapes::MeshProgram, "MeshProgram", field("command", &Type::command), field("directory", &Type::directory),
+              field("format", &Type::format), field("unit", &Type::unit), field("time_limit", &Type::time_limit))
 FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("generator", &Type::generator), field("dimensions", &Type::dimensions),
               field("counts", &Type::counts))
 FETTLE_RECORD(fettle::core::scene::Curve, "Curve", field("kind", &Type::kind), field("rate", &Type::rate), field("times", &Type::times),

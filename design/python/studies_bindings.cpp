@@ -90,14 +90,16 @@ void bind_studies(py::module_& module) {
     module.def(
         "optimise_file",
         [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::uint64_t seed,
-           const std::optional<int>& max_evaluations, const py::object& progress) {
+           const std::optional<int>& max_evaluations, bool allow_programs, const py::object& progress) {
             FileArguments arguments{out, resume, max_evaluations, {}};
             arguments.options.optimiser = optimiser;
             arguments.options.seed = seed;
-            return optimise_file(value_or_raise(reading::read_design(path)), std::move(arguments), progress);
+            return optimise_file(
+                value_or_raise(reading::read_design(path, {{}, allow_programs ? reading::Programs::allowed : reading::Programs::refused})),
+                std::move(arguments), progress);
         },
         py::arg("path"), py::arg("out"), py::arg("resume") = false, py::arg("optimiser") = "", py::arg("seed") = 0,
-        py::arg("max_evaluations") = py::none(), py::arg("progress") = py::none(),
+        py::arg("max_evaluations") = py::none(), py::arg("allow_programs") = false, py::arg("progress") = py::none(),
         "Optimises a *.design.json into a folder: history, final design, trajectory; resume goes on with what is there.");
     module.def(
         "start_of_seed", [](const DesignProblem& problem, std::uint64_t seed) { return studies::start_of_seed(problem.design(), seed); },

@@ -13,7 +13,6 @@
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::reading {
 
@@ -54,6 +53,7 @@ public:
         if (!document_.errors().empty()) return all_errors();
         file_.warnings = document_.warnings();
         file_.warnings.insert(file_.warnings.end(), design_.scene.warnings.begin(), design_.scene.warnings.end());
+        file_.warnings.insert(file_.warnings.end(), remarks_.begin(), remarks_.end());
         return std::move(file_);
     }
 
@@ -63,7 +63,8 @@ private:
         const auto name = node.string();
         if (!name) return false;
         file_.scene_path = (fs::path(file_.path).parent_path() / *name).string();
-        Result<core::scene::Scene> scene = core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs));
+        Result<core::scene::Scene> scene =
+            core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs));
         if (!scene) {
             scene_errors_ = scene.errors();
             return false;
@@ -77,10 +78,13 @@ private:
         for (const core::scene::Body& body : design_.scene.bodies) {
             design_.shapes.emplace_back();
             if (!body.shape) continue;
-            const auto part = generated_part(*body.shape);
+            const auto part = shape_of_spec(*body.shape, options_.programs);
             if (!part) continue;  // the scene's own reading has said so
-            const auto drawn = description::as_drawn(**part);
-            if (drawn && drawn->mesh.vertices == body.mesh.vertices) design_.shapes.back() = *part;
+            const auto drawn = description::drawn_mesh(**part);
+            if (!drawn || drawn->vertices != body.mesh.vertices) continue;
+            design_.shapes.back() = *part;
+            for (const std::string& remark : (*part)->remarks(description::drawn_values(**part)))
+                remarks_.push_back("body " + body.name + ": " + remark);
         }
     }
 
@@ -136,6 +140,7 @@ private:
     DesignFile file_;
     description::Design& design_ = file_.design;
     Errors scene_errors_;
+    std::vector<std::string> remarks_;  // of parts whose derivative is not exact
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::reading {
 
@@ -22,7 +23,8 @@ struct DesignFile {
 };
 
 struct DesignReadOptions {
-    std::vector<std::string> mesh_dirs;  ///< also looked in for meshes
+    std::vector<std::string> mesh_dirs = {};  ///< also looked in for meshes
+    Programs programs = Programs::refused;    ///< scene_shapes.hpp
 };
 
 /// Reads a design and its scene. @return the design, or every fault of both files, each with its file and JSON pointer; bodies, dimensions

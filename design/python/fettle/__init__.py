@@ -41,6 +41,7 @@ from ._fettle import (
     read_scene,
     read_trajectory,
     shape_at,
+    shape_remarks,
     simulate,
     start_of_seed,
     to_si,
@@ -56,11 +57,14 @@ from .design import (
     GeneratedPart,
     MarkerPath,
     Mass,
+    MeshProgram,
+    MeshShape,
     Move,
     ObjectiveTerm,
     OptimiserSettings,
     Origin,
     Parameter,
+    ProgramShape,
     Quantity,
     QuantityGradient,
     Relation,
@@ -69,6 +73,7 @@ from .design import (
     add_part,
 )
 from .errors import Error, EvaluationError, Fault
+from .exploration import Exploration, explore, read_exploration
 from .results import (
     CertificateFault,
     CertificateReport,
@@ -116,4 +121,4 @@ from .scene import (
     held,
 )
 
-__all__ = [name for name in dir() if not name.startswith("_") and name not in ("design", "errors", "results", "scene")]
+__all__ = [name for name in dir() if not name.startswith("_") and name not in ("design", "errors", "exploration", "results", "scene")]

@@ -66,6 +66,36 @@ class FunctionShape(Record, Shape):
 
 
 @dataclasses.dataclass(eq=False)
+class MeshShape(Record):
+    """A part from any function that makes a mesh (CadQuery, build123d, trimesh): function(dimensions) -> Mesh, everything in metres. Its
+    derivative comes from rebuilt meshes (design/shapes/rebuilt_shape.hpp); triangles may differ from mesh to mesh, the topology not."""
+
+    function: Callable[[Dict[str, float]], Mesh]
+    values: Dict[str, float]  #: as drawn [m]
+    unit: float = 1e-3  #: that coordinates were rounded in: their digits tell the rounding [m]
+    rounding: Optional[float] = None  #: of coordinates, if it is known [m]
+
+
+@dataclasses.dataclass(eq=False)
+class MeshProgram(Record):
+    """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
+
+    command: List[str] = dataclasses.field(default_factory=list)
+    directory: str = ""  #: that it runs in
+    format: Literal["stl", "obj", "off", "ply", "3mf"] = "stl"
+    unit: float = 1.0  #: [m]
+    time_limit: float = 300.0  #: [s]
+
+
+@dataclasses.dataclass(eq=False)
+class ProgramShape(Record):
+    """A part from a program that writes a mesh file: ProgramShape(MeshProgram(["openscad", "-o", "{out}", ...], unit=1e-3), {"radius": 3e-3})."""
+
+    program: MeshProgram
+    values: Dict[str, float]  #: as drawn [m]
+
+
+@dataclasses.dataclass(eq=False)
 class QuantityGradient(Record):
     """Derivatives of a number in what a simulated design is made of; None or absent: zero."""
 
@@ -130,20 +160,21 @@ class MarkerPath(Record):
 
 
 AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, "_fettle.OpaqueQuantity"]
-AnyShape = Union[Shape, "_fettle.OpaqueShape"]
+AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
 @dataclasses.dataclass(eq=False)
 class Origin(Record):
-    """A place in one of the lists of a scene's mechanism."""
+    """A place in one of the scene's lists of joints, springs, motors and loads."""
 
-    list: str = "joint"  #: "joint", "spring", "motor", "load"
+    list: Literal["joint", "spring", "motor", "load"] = "joint"
     index: int = -1
 
 
 @dataclasses.dataclass(eq=False)
 class Move(Record):
-    """One target of a parameter: target = scale p + offset, summed over all moves of that target."""
+    """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
+    design/description/parameter.hpp lists the targets."""
 
     #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force"; "gravity"; of `part`
     #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",

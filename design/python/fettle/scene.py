@@ -88,7 +88,7 @@ class Damping(Record):
 
 @dataclasses.dataclass(eq=False)
 class ShapeSpec(Record):
-    """The generator that a body's mesh came from."""
+    """What a body's mesh came from: a generator's name, or of a program what runs it, as JSON."""
 
     generator: str = ""
     dimensions: Dict[str, float] = dataclasses.field(default_factory=dict)  #: [m]

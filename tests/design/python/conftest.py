@@ -7,6 +7,11 @@ import pytest
 
 import fettle
 
+def pytest_configure(config):
+    """Marks that tests use."""
+    config.addinivalue_line("markers", "slow: not among the fast tests")
+
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "examples"
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The dataclasses have the library's members and defaults, and what passes through the library comes back as it was."""
 import dataclasses
+import json
 import pickle
 
 import numpy as np
@@ -10,8 +11,19 @@ import fettle
 from conftest import EXAMPLES, box, tilted_plate
 from fettle import _fettle
 
-DESIGNS = sorted(EXAMPLES.glob("*/*.design.json"))
-SCENES = sorted(EXAMPLES.glob("*/*.scene.json"))
+
+def without_programs(paths):
+    """Those whose parts no other program makes (mesh_shape_test.py has them)."""
+
+    def scene(path):
+        text = json.loads(path.read_text())
+        return json.loads((path.parent / text["scene"]).read_text()) if "fettle_design" in text else text
+
+    return [path for path in sorted(paths) if all("program" not in body.get("shape", {}) for body in scene(path)["bodies"])]
+
+
+DESIGNS = without_programs(EXAMPLES.glob("*/*.design.json"))
+SCENES = without_programs(EXAMPLES.glob("*/*.scene.json"))
 
 
 def test_there_are_examples():
@@ -64,6 +76,8 @@ def test_designs_pickle():
     assert pickle.loads(pickle.dumps(design)) == design
     for path in DESIGNS:
         file = fettle.read_design(str(path))
+        if "OpaqueQuantity" in repr(file.design):  # of a kind that Python has no class for
+            continue
         assert pickle.loads(pickle.dumps(file)) == file
 
 

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+/// `fettle explore`: hands over to the Python package (design/python/fettle/exploration.py), which has the worker processes and Dask.
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "fettle/design/cli/session.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExploreOptions {
+    std::string design, out, dask;
+    std::vector<std::string> sweeps;
+    int samples = 0, starts = 0, seed = 1;
+    std::optional<int> workers;
+};
+
+std::vector<std::string> python_words(const ExploreOptions& options, const CommonOptions& common) {
+    std::vector<std::string> words{"-m", "fettle", "explore", options.design, "--out", options.out, "--seed", std::to_string(options.seed)};
+    for (const std::string& sweep : options.sweeps) words.insert(words.end(), {"--sweep", sweep});
+    const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
+    if (options.samples > 0) add("--samples", std::to_string(options.samples));
+    if (options.starts > 0) add("--starts", std::to_string(options.starts));
+    if (options.workers) add("--workers", std::to_string(*options.workers));
+    if (!options.dask.empty()) add("--dask", options.dask);
+    if (common.allow_programs) words.emplace_back("--allow-programs");
+    if (common.json) words.emplace_back("--json");
+    if (common.quiet) words.emplace_back("--quiet");
+    return words;
+}
+
+// Where the package lies beside this program: in the build tree, or installed with it.
+std::string package_path(const fs::path& program) {
+    for (const char* place : {"../python", "../lib/python3/dist-packages"}) {
+        const fs::path folder = program.parent_path() / place;
+        if (fs::exists(folder / "fettle" / "__init__.py")) return fs::weakly_canonical(folder).string();
+    }
+    return {};
+}
+
+// Only returns where there is no Python.
+Error become_python(const ExploreOptions& options, const CommonOptions& common) {
+    std::error_code ignored;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    if (const std::string path = package_path(program); !path.empty()) {
+        const char* before = std::getenv("PYTHONPATH");
+        setenv("PYTHONPATH", (path + (before != nullptr && *before != '\0' ? ":" + std::string(before) : "")).c_str(), 1);
+    }
+    std::vector<std::string> words = python_words(options, common);
+    std::vector<std::string> interpreters{(program.parent_path() / "python3").string(), "/usr/bin/python3", "python3"};
+    for (std::string& interpreter : interpreters) {
+        std::vector<char*> pointers{interpreter.data()};
+        for (std::string& word : words) pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        execvp(pointers.front(), pointers.data());
+    }
+    return {ErrorCode::file_not_found, "python3",
+            "exploring takes the Python package: Debian's python3 and python3-numpy, and `pip install .`"};
+}
+
+}  // namespace
+
+Command add_explore(CommandLine& program, const CommonOptions& common) {
+    auto options = std::make_shared<ExploreOptions>();
+    CommandLine line = program.command("explore", "Evaluates many designs, or optimises from many starts, in parallel");
+    line.option("DESIGN", options->design, "Design file").required();
+    line.option("--out", options->out, "File of the results, a line each; an exploration that is there goes on").required();
+    line.option("--sweep", options->sweeps, "NAME=COUNT between its bounds, or NAME=LOW:HIGH:COUNT in its unit; all combinations")
+        .one_value_each();
+    line.option("--samples", options->samples, "So many designs, drawn from the bounds").at_least(0);
+    line.option("--starts", options->starts, "So many runs of the optimiser").at_least(0);
+    line.option("--seed", options->seed, "Of samples and starts").at_least(0);
+    line.option("--workers", options->workers, "Worker processes (default: the machine's processors)").at_least(1);
+    line.option("--dask", options->dask, "Address of a running Dask scheduler, whose workers are used instead");
+    line.closing_words("Example:  fettle explore hinge.design.json --out sweep.jsonl --sweep pin_radius=10 --sweep wall=1.6:3:8");
+    return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); }};
+}
+
+}  // namespace fettle::design::cli

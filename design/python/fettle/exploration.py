@@ -1,0 +1,381 @@
+# SPDX-License-Identifier: MIT
+"""Exploring a design space: sweeps, samples and many starts, in parallel processes of this machine or on a Dask cluster.
+
+    found = fettle.explore("hinge.design.json", "hinge.jsonl", samples=200, workers=4)
+    found = fettle.explore(design, "starts.jsonl", starts=20, dask="tcp://10.0.0.5:8786")
+    for result in found.best(3):
+        print(result["objective"], result["parameters"])
+
+Results land as they come, one JSON object per line, flushed to the disk; the first line says of which design. An exploration that was stopped
+goes on where it ended: what the file has is not computed again. A lost worker costs the work on its current design only, which is
+given to another one; a design that is lost twice is written down as lost.
+"""
+import collections
+import contextlib
+import dataclasses
+import fcntl
+import hashlib
+import itertools
+import json
+import math
+import multiprocessing
+import multiprocessing.connection
+import os
+import pickle
+import threading
+import time
+from typing import Any, Callable, Deque, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _fettle
+from .design import Design
+from .errors import Error, Fault
+
+VERSION = 1
+Result = Dict[str, Any]
+Progress = Callable[[int, int, Result], object]
+
+
+@dataclasses.dataclass(frozen=True)
+class Job:
+    """One design to evaluate (`point`, SI) or one run of the optimiser to make (`seed`)."""
+
+    kind: str  # "evaluate" or "optimise"
+    point: Tuple[float, ...] = ()
+    seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """The same for the same job, by the bits of its numbers."""
+        text = f"{self.kind} {self.seed} " + " ".join(float(x).hex() for x in self.point)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _canonical(value: Any) -> str:
+    """The same text for the same plain data, whoever made it."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        members = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+        return type(value).__qualname__ + _canonical(members)
+    if isinstance(value, dict):
+        return "{" + ",".join(f"{_canonical(k)}:{_canonical(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ",".join(map(_canonical, value)) + "]"
+    if isinstance(value, np.ndarray):
+        return _canonical(value.tolist())
+    if isinstance(value, (bool, int, str, type(None))):
+        return repr(value)
+    if isinstance(value, float):
+        return float(value).hex()
+    return hashlib.sha256(pickle.dumps(value)).hexdigest()
+
+
+def _design_name(design: Design) -> str:
+    return hashlib.sha256((_canonical(design) + _fettle.__version__).encode()).hexdigest()[:16]
+
+
+def _number(value: float) -> Optional[float]:
+    return float(value) if math.isfinite(value) else None
+
+
+_ONE_OPTIMISER = threading.Lock()  # Ipopt is not for several threads of one process, which a Dask worker can have
+
+
+class _Worker:
+    """What a process keeps between jobs: the problem."""
+
+    problems: Dict[str, _fettle.DesignProblem] = {}
+
+    @classmethod
+    def problem(cls, name: str, design: bytes) -> _fettle.DesignProblem:
+        if name not in cls.problems:
+            cls.problems.clear()
+            cls.problems[name] = _fettle.DesignProblem(pickle.loads(design))
+        return cls.problems[name]
+
+
+def _evaluated(problem: _fettle.DesignProblem, job: Job) -> Result:
+    at = problem.evaluate(np.array(job.point), gradients=False)
+    if not at.usable:
+        return {"status": "unusable", "reason": at.reason}
+    return {"status": "feasible" if at.violation <= 0 else "infeasible", **_measured(problem, at)}
+
+
+def _measured(problem: _fettle.DesignProblem, at: Any) -> Result:
+    design = problem.design
+    return {
+        "objective": _number(at.objective),
+        "violation": _number(at.violation),
+        "terms": {term.name: _number(m.value) for term, m in zip(design.objective, at.terms)},
+        "constraints": {c.name: _number(m.value) for c, m in zip(design.constraints, at.constraints)},
+        "certified": {c.name: _number(m.lower) for c, m in zip(design.constraints, at.constraints)},
+    }
+
+
+def _optimised(problem: _fettle.DesignProblem, job: Job) -> Result:
+    with _ONE_OPTIMISER:
+        outcome = _fettle.optimise(problem, seed=job.seed)
+    result = {"status": outcome.report.status, "reason": outcome.report.message, "evaluations": outcome.report.evaluations}
+    result["parameters"] = dict(zip(problem.parameter_names, map(float, outcome.report.point)))
+    if outcome.final.usable:
+        result.update(_measured(problem, outcome.final))
+    return result
+
+
+def run_job(name: str, design: bytes, job: Job) -> Result:
+    """One job, on one thread; what it raises becomes a result with status "failed"."""
+    begin = time.perf_counter()
+    limit = _fettle.ThreadLimit(1)
+    try:
+        problem = _Worker.problem(name, design)
+        start = job.point if job.kind == "evaluate" else tuple(_fettle.start_of_seed(problem, job.seed))
+        result: Result = {"parameters": dict(zip(problem.parameter_names, map(float, start)))}
+        result.update(_evaluated(problem, job) if job.kind == "evaluate" else _optimised(problem, job))
+    except Exception as raised:  # of the design's own shapes and quantities: any
+        result = {"status": "failed", "reason": f"{type(raised).__name__}: {raised}"}
+    del limit
+    return {"key": job.key, "kind": job.kind, "seed": job.seed, **result, "seconds": time.perf_counter() - begin}
+
+
+def _serve(pipe: Any, name: str, design: bytes) -> None:
+    """A worker process: jobs in, results out, until the pipe closes."""
+    with contextlib.suppress(EOFError, KeyboardInterrupt, BrokenPipeError):
+        while True:
+            pipe.send(run_job(name, design, pipe.recv()))
+
+
+def _lost(job: Job) -> Result:
+    return {"key": job.key, "kind": job.kind, "seed": job.seed, "status": "lost", "reason": "two workers were lost on this design"}
+
+
+@dataclasses.dataclass
+class _Local:
+    """One worker process, and what it works on."""
+
+    process: Any
+    pipe: Any
+    job: Optional[Job] = None
+
+    def close(self) -> None:
+        self.pipe.close()
+        self.process.terminate()
+        self.process.join()
+
+
+class _LocalPool:
+    """Workers beside this process. One that ends, however it ends, is replaced."""
+
+    def __init__(self, workers: int, name: str, design: bytes):
+        self.arguments = (name, design)
+        self.context = multiprocessing.get_context("spawn")
+        self.workers = [self._start() for _ in range(workers)]
+
+    def _start(self) -> _Local:
+        here, there = self.context.Pipe()
+        process = self.context.Process(target=_serve, args=(there, *self.arguments), daemon=True)
+        process.start()
+        there.close()
+        return _Local(process, here)
+
+    def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
+        """Results as they come."""
+        waiting: Deque[Job] = collections.deque(jobs)
+        lost_once = set()
+        while waiting or any(worker.job for worker in self.workers):
+            for i, worker in enumerate(self.workers):
+                if worker.job is None and waiting:
+                    worker.job = waiting.popleft()
+                    try:
+                        worker.pipe.send(worker.job)
+                    except (BrokenPipeError, OSError):
+                        pass  # its end is seen below
+            busy = {worker.pipe: i for i, worker in enumerate(self.workers) if worker.job}
+            for ready in multiprocessing.connection.wait(list(busy)):
+                i = busy[ready]
+                job = self.workers[i].job
+                assert job is not None
+                try:
+                    result = self.workers[i].pipe.recv()
+                    self.workers[i].job = None
+                    yield result
+                except (EOFError, OSError):
+                    self.workers[i].close()
+                    self.workers[i] = self._start()
+                    if job.key in lost_once:
+                        yield _lost(job)
+                    else:
+                        lost_once.add(job.key)
+                        waiting.appendleft(job)
+
+    def close(self) -> None:
+        for worker in self.workers:
+            worker.close()
+
+
+def _run_on_dask(address: str, name: str, design: bytes, jobs: Sequence[Job]) -> Iterator[Result]:
+    """On the workers of a running scheduler, which have this package. Designs of a lost worker are given to others by the scheduler."""
+    from distributed import Client, KilledWorker, as_completed  # Debian's python3-distributed
+
+    with Client(address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        # The design goes with each job: what is scattered is lost with the workers that have it.
+        futures = {client.submit(run_job, name, design, job, pure=False): job for job in jobs}
+        for future in as_completed(futures, loop=client.loop):  # type: ignore[no-untyped-call]
+            try:
+                yield future.result()
+            except KilledWorker:
+                yield _lost(futures[future])
+
+
+class Exploration:
+    """What an exploration's file holds."""
+
+    def __init__(self, header: Result, results: List[Result]):
+        self.header = header
+        self.results = results
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def where(self, wanted: Callable[[Result], bool]) -> List[Result]:
+        """The results that `wanted` is true of."""
+        return [result for result in self.results if wanted(result)]
+
+    def best(self, count: int = 1) -> List[Result]:
+        """Those with the least objective among the designs that meet every requirement, proven."""
+        met = self.where(lambda r: r.get("violation") is not None and r["violation"] <= 0 and r.get("objective") is not None)
+        return sorted(met, key=lambda r: float(r["objective"]))[:count]
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """Of every result: "objective", "violation", or a parameter's, term's or constraint's value; NaN where there is none."""
+
+        def value(result: Result) -> float:
+            for group in (result, result.get("parameters", {}), result.get("terms", {}), result.get("constraints", {})):
+                if isinstance(group.get(name), (int, float)):
+                    return float(group[name])
+            return math.nan
+
+        return np.array([value(result) for result in self.results])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{r['status']}</td><td>{r.get('objective')}</td></tr>" for r in self.best(10))
+        return f"<table><caption>{len(self)} designs; the best</caption><tr><th>status</th><th>objective</th></tr>{rows}</table>"
+
+
+def _fail(code: str, where: str, message: str) -> Error:
+    return Error([Fault(code, where, message)])
+
+
+def read_exploration(path: str) -> Exploration:
+    """Reads a file of explore(). A last line that was cut off is left out."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    whole = [line for line in lines[:-1] if line]  # what follows the last line feed was cut off
+    try:
+        records = [json.loads(line) for line in whole]
+    except json.JSONDecodeError as fault:
+        raise _fail("parse", str(path), f"a line is no JSON: {fault}") from fault
+    if not records or records[0].get("fettle_explore") != VERSION:
+        raise _fail("missing_key", str(path), f"no exploration: its first line has no `fettle_explore` {VERSION}")
+    return Exploration(records[0], records[1:])
+
+
+def grid(problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence[float]]]) -> List[Job]:
+    """Every combination of the swept parameters (SI values, or how many between the bounds), the others as the design has them."""
+    names = problem.parameter_names
+    columns = {}
+    for name, values in sweep.items():
+        if name not in names:
+            raise _fail("unknown_key", name, f"there is no parameter {name!r}; there are {', '.join(names)}")
+        k = names.index(name)
+        columns[k] = np.linspace(problem.lower[k], problem.upper[k], values) if isinstance(values, int) else np.asarray(values, float)
+    jobs = []
+    for combination in itertools.product(*columns.values()):
+        point = problem.values
+        point[list(columns)] = combination
+        jobs.append(Job("evaluate", tuple(point)))
+    return jobs
+
+
+def _jobs(
+    problem: _fettle.DesignProblem, sweep: Optional[Mapping[str, Union[int, Sequence[float]]]], samples: int, starts: int, seed: int
+) -> List[Job]:
+    jobs = grid(problem, sweep) if sweep else []
+    jobs += [Job("evaluate", tuple(_fettle.start_of_seed(problem, 1000 * seed + k))) for k in range(1, samples + 1)]
+    jobs += [Job("optimise", seed=0 if k == 0 else 1000 * seed + k) for k in range(starts)]
+    return list({job.key: job for job in jobs}.values())
+
+
+@contextlib.contextmanager
+def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Result]]]:
+    """The file, locked, at its end; and what it has already."""
+    with open(path, "a+", encoding="utf-8") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as fault:
+            raise _fail("file_unreadable", path, "another exploration is writing this file") from fault
+        file.seek(0)
+        text = file.read()
+        whole = text[: text.rfind("\n") + 1]
+        if len(whole) < len(text):
+            file.truncate(len(whole.encode()))
+        results: List[Result] = []
+        if whole:
+            known = read_exploration(path)
+            if known.header != header:
+                raise _fail("inconsistent", path, "this file is the exploration of another design; name another file")
+            results = known.results
+        else:
+            _write(file, header)
+        yield file, results
+
+
+def _write(file: TextIO, record: Result) -> None:
+    file.write(json.dumps(record, allow_nan=False) + "\n")
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def explore(
+    design: Union[Design, str],
+    out: str,
+    *,
+    sweep: Optional[Mapping[str, Union[int, Sequence[float]]]] = None,
+    samples: int = 0,
+    starts: int = 0,
+    seed: int = 1,
+    workers: Optional[int] = None,
+    dask: Optional[str] = None,
+    allow_programs: bool = False,
+    progress: Optional[Progress] = None,
+) -> Exploration:
+    """Evaluates designs, or optimises from starts, in parallel, and writes each result to `out` as it comes.
+
+    design: a Design that can be pickled, or the path of a *.design.json. sweep: {parameter: SI values, or how many between its bounds}, all
+    combinations. samples: so many designs drawn from the bounds. starts: so many runs of the optimiser, the first from the design's own
+    values. seed: of samples and starts; the same seed gives the same ones on any machine. workers: processes (default: the processors).
+    dask: address of a scheduler, whose workers are used instead. progress(done, of, result)."""
+    if isinstance(design, str):
+        design = _fettle.read_design(design, allow_programs=allow_programs).design
+    problem = _fettle.DesignProblem(design)
+    packed = pickle.dumps(design)
+    name = _design_name(design)
+    header = {"fettle_explore": VERSION, "program": _fettle.__version__, "design": name, "parameters": problem.parameter_names}
+    jobs = _jobs(problem, sweep, samples, starts, seed)
+    del problem
+    with _results_file(out, header) as (file, known):
+        done = {result["key"] for result in known if result["status"] != "lost"}
+        wanted = [job for job in jobs if job.key not in done]
+        count = len(jobs) - len(wanted)
+        pool = None if dask or not wanted else _LocalPool(min(workers or os.cpu_count() or 1, len(wanted)), name, packed)
+        try:
+            results = pool.run(wanted) if pool else _run_on_dask(dask, name, packed, wanted) if dask and wanted else iter(())
+            for result in results:
+                _write(file, result)
+                count += 1
+                if progress:
+                    progress(count, len(jobs), result)
+        finally:
+            if pool:
+                pool.close()
+    return read_exploration(out)

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/shapes/mesh_program.hpp"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <numeric>
+#include <regex>
+#include <thread>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+
+namespace fettle::design::shapes {
+
+namespace {
+
+namespace fs = std::filesystem;
+using description::ShapeDimension;
+using Clock = std::chrono::steady_clock;
+
+constexpr int could_not_start = 127;
+
+std::string program_number(double value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// Calls replace(name) for each "{name}" of a word.
+template <class Replace>
+std::string filled(const std::string& word, const Replace& replace) {
+    static const std::regex placeholder("\\{([A-Za-z_][A-Za-z0-9_]*)\\}");
+    std::string result;
+    auto begin = word.cbegin();
+    for (std::sregex_iterator match(word.begin(), word.end(), placeholder), end; match != end; ++match) {
+        result.append(begin, (*match)[0].first);
+        result += replace((*match)[1].str());
+        begin = (*match)[0].second;
+    }
+    return result.append(begin, word.cend());
+}
+
+// A folder of its own, gone at the end.
+class Workplace {
+public:
+    Workplace() {
+        std::string name = (fs::temp_directory_path() / "fettle_part_XXXXXX").string();
+        if (::mkdtemp(name.data()) != nullptr) path_ = name;
+    }
+    ~Workplace() {
+        std::error_code ignored;
+        if (!path_.empty()) fs::remove_all(path_, ignored);
+    }
+    Workplace(const Workplace&) = delete;
+    Workplace& operator=(const Workplace&) = delete;
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+// Between fork and exec, where nothing may allocate or lock: the parent has other threads.
+[[noreturn]] void become(char* const* words, const char* directory, const char* log, pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(could_not_start);
+    setpgid(0, 0);
+    const int in = open("/dev/null", O_RDONLY), out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (in < 0 || out < 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(out, 2) < 0) _exit(could_not_start);
+    if (*directory != '\0' && chdir(directory) != 0) _exit(could_not_start);
+    execvp(words[0], words);
+    _exit(could_not_start);
+}
+
+struct ProgramEnd {
+    int code = 0;  // 128 + the signal that killed it
+    bool out_of_time = false;
+};
+
+ProgramEnd wait_for(pid_t process, double time_limit) {
+    const auto limit = Clock::now() + std::chrono::duration<double>(time_limit);
+    auto pause = std::chrono::microseconds(500);
+    ProgramEnd end;
+    int status = 0;
+    while (true) {
+        const pid_t reaped = waitpid(process, &status, end.out_of_time ? 0 : WNOHANG);
+        if (reaped == process) break;
+        if (reaped < 0 && errno != EINTR) return {could_not_start, end.out_of_time};
+        if (Clock::now() > limit) {
+            end.out_of_time = true;
+            kill(-process, SIGKILL);
+            kill(process, SIGKILL);
+            continue;
+        }
+        std::this_thread::sleep_for(pause);
+        pause = std::min(2 * pause, std::chrono::microseconds(10'000));
+    }
+    end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return end;
+}
+
+// The same mesh in one order: programs write the same triangles in another order each time.
+core::geometry::Mesh in_order(const core::geometry::Mesh& mesh, const std::string& name) {
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(mesh.vertices.cols()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    const auto place = [&](Eigen::Index i) { return std::array{mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i)}; };
+    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return place(a) < place(b); });
+    Matrix3X vertices(3, mesh.vertices.cols());
+    std::vector<int> renamed(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        vertices.col(static_cast<Eigen::Index>(k)) = mesh.vertices.col(order[k]);
+        renamed[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+    }
+    std::vector<core::geometry::Triangle> triangles = mesh.triangles;
+    for (core::geometry::Triangle& t : triangles) {
+        for (int& i : t) i = renamed[static_cast<std::size_t>(i)];
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
+    return core::geometry::make_mesh(name, std::move(vertices), std::move(triangles));
+}
+
+// The last lines that a program said, in one.
+std::string last_words(const fs::path& log) {
+    const Result<std::string> text = core::files::read_file(log);
+    if (!text || text->empty()) return "it said nothing";
+    std::string tail = text->substr(text->size() > 400 ? text->size() - 400 : 0);
+    for (char& c : tail)
+        if (c == '\n' || c == '\r') c = ' ';
+    return "it said: ..." + tail;
+}
+
+}  // namespace
+
+std::optional<MeshProgram> program_of(const core::scene::ShapeSpec& spec) {
+    if (spec.generator.empty() || spec.generator.front() != '{') return std::nullopt;
+    Result<core::files::JsonDocument> document = core::files::JsonDocument::parse(spec.generator, "shape");
+    if (!document) return std::nullopt;
+    const core::files::JsonNode root = document->root();
+    MeshProgram program;
+    for (const core::files::JsonNode& word : root["program"].elements()) program.command.push_back(word.string().value_or(""));
+    program.directory = root["directory"].string().value_or("");
+    program.format = root["format"].string().value_or(program.format);
+    program.unit = root["unit"].number().value_or(program.unit);
+    program.time_limit = root["time_limit"].number().value_or(program.time_limit);
+    return program;
+}
+
+Errors check_program(const MeshProgram& program, const std::vector<ShapeDimension>& dimensions) {
+    Errors errors;
+    if (program.command.empty()) return {{ErrorCode::missing_key, "program", "a program has a command: its name and its arguments"}};
+    std::vector<std::string_view> known{"out"};
+    for (const ShapeDimension& dimension : dimensions) known.push_back(dimension.name);
+    std::vector<bool> named(known.size(), false);
+    for (const std::string& word : program.command) {
+        filled(word, [&](const std::string& name) {
+            const auto found = std::find(known.begin(), known.end(), name);
+            if (found != known.end()) {
+                named[static_cast<std::size_t>(found - known.begin())] = true;
+            } else {
+                errors.push_back(
+                    {ErrorCode::unknown_key, "program", "{" + name + "} is no dimension; " + core::files::did_you_mean(name, known)});
+            }
+            return std::string();
+        });
+    }
+    if (!named[0])
+        errors.push_back({ErrorCode::missing_key, "program", "the command does not name {out}, the file that the mesh is to go to"});
+    for (std::size_t k = 1; k < known.size(); ++k) {
+        if (!named[k])
+            errors.push_back({ErrorCode::missing_key, "program",
+                              "the command does not name {" + std::string(known[k]) + "}, so this dimension changes nothing"});
+    }
+    if (dimensions.empty()) errors.push_back({ErrorCode::missing_key, "dimensions", "a part from a program has dimensions"});
+    return errors;
+}
+
+Result<core::geometry::Mesh> run_program(const MeshProgram& program, const std::vector<ShapeDimension>& dimensions,
+                                         const std::vector<double>& values) {
+    const Workplace place;
+    const std::string& name = program.command.front();
+    if (place.path().empty()) return Error{ErrorCode::file_unreadable, name, "no temporary folder can be made for what it writes"};
+    const fs::path out = place.path() / ("part." + program.format), log = place.path() / "log.txt";
+    std::vector<std::string> words;
+    for (const std::string& word : program.command) {
+        words.push_back(filled(word, [&](const std::string& placeholder) {
+            for (std::size_t k = 0; k < dimensions.size(); ++k)
+                if (dimensions[k].name == placeholder) return program_number(values[k] / program.unit);
+            return out.string();
+        }));
+    }
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    const std::string log_name = log.string();
+    const pid_t parent = getpid();
+    const pid_t process = fork();
+    if (process == 0) become(pointers.data(), program.directory.c_str(), log_name.c_str(), parent);
+    if (process < 0) return Error{ErrorCode::file_unreadable, name, "the system starts no further program"};
+    const ProgramEnd end = wait_for(process, program.time_limit);
+    if (end.out_of_time)
+        return Error{ErrorCode::inconsistent, name,
+                     "the program took longer than " + program_number(program.time_limit) + " s; " + last_words(log)};
+    if (end.code == could_not_start)
+        return Error{ErrorCode::file_not_found, name, "this program could not be started: is it installed, and on the PATH?"};
+    if (end.code != 0 || !fs::exists(out)) {
+        const std::string what = end.code != 0 ? "ended with code " + std::to_string(end.code) : "wrote no " + program.format + " file";
+        return Error{ErrorCode::inconsistent, name, "the program " + what + "; " + last_words(log)};
+    }
+    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(out.string(), {program.unit, true});
+    if (!mesh) {
+        Errors errors = mesh.errors();
+        for (Error& error : errors) error.where = name;
+        return errors;
+    }
+    return in_order(*mesh, name);
+}
+
+ProgramPart::ProgramPart(const MeshProgram& program, std::vector<ShapeDimension> dimensions)
+    : RebuiltShape(dimensions,
+                   [program, dimensions](const std::vector<double>& values) { return run_program(program, dimensions, values); },
+                   {.unit = program.unit}),
+      program_(program) {}
+
+Result<std::shared_ptr<const ProgramPart>> ProgramPart::create(const MeshProgram& program, std::vector<ShapeDimension> dimensions) {
+    Errors errors = check_program(program, dimensions);
+    if (!errors.empty()) return errors;
+    return std::shared_ptr<const ProgramPart>(new ProgramPart(program, std::move(dimensions)));
+}
+
+}  // namespace fettle::design::shapes

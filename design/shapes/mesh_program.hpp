@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// Parts from the designer's own program: any that writes a mesh file when it is given dimensions, as OpenSCAD does.
+///     { "openscad", "-o", "{out}", "-D", "radius={radius}", "rod.scad" }
+/// {out} stands for the file to write, {radius} for the dimension of that name, a number in the file's unit. No shell is asked. Programs
+/// run only where the user has allowed it; who calls this has seen to that.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/scene/scene.hpp"
+#include "fettle/design/shapes/rebuilt_shape.hpp"
+
+namespace fettle::design::shapes {
+
+/// A command that writes a mesh when it is given dimensions.
+struct MeshProgram {
+    std::vector<std::string> command = {};  ///< program and arguments, with {out} and {dimension} in them
+    std::string directory = {};             ///< that it runs in; empty: the working directory
+    std::string format = "stl";             ///< of the file that it writes: stl, obj, off, ply or 3mf
+    double unit = 1;                        ///< of the numbers that it is given and writes [m]
+    double time_limit = 300;                ///< [s]
+};
+
+/// A scene says it in place of a generator's name, as a JSON object { program, directory, format, unit, time_limit }; nothing: it is a
+/// generator's name.
+std::optional<MeshProgram> program_of(const core::scene::ShapeSpec& spec);
+
+/// What is wrong with the command: no {out}, a name in braces that is no dimension (with the nearest), a dimension that it does not name.
+Errors check_program(const MeshProgram& program, const std::vector<description::ShapeDimension>& dimensions);
+
+/// Runs the program once, and reads what it wrote; vertices and triangles in an order of their own, whatever the file's. Errors:
+/// file_not_found (no such program), inconsistent (it failed, or took longer than `time_limit`; with its last words), and those of the
+/// mesh's reader.
+Result<core::geometry::Mesh> run_program(const MeshProgram& program, const std::vector<description::ShapeDimension>& dimensions,
+                                         const std::vector<double>& values);
+
+class ProgramPart : public RebuiltShape {
+public:
+    /// Errors: those of check_program.
+    static Result<std::shared_ptr<const ProgramPart>> create(const MeshProgram& program,
+                                                             std::vector<description::ShapeDimension> dimensions);
+
+    const MeshProgram& program() const { return program_; }
+
+private:
+    ProgramPart(const MeshProgram& program, std::vector<description::ShapeDimension> dimensions);
+    MeshProgram program_;
+};
+
+}  // namespace fettle::design::shapes
