@@ -98,6 +98,15 @@ struct Instant {
     std::optional<PairClearance> worst;
 };
 
+// Of --time.
+Errors time_faults(const DrawArguments& options, const Trajectory& path) {
+    const double first = core::stepper::time_at(path, 0), last = core::stepper::time_at(path, static_cast<int>(path.steps.size()));
+    if (!options.time || (*options.time >= first && *options.time <= last)) return {};
+    const std::string known = path.steps.empty() ? "there is no motion, only where the parts stand: draw the folder of a run"
+                                                 : formatted("the motion is from %.6g s to %.6g s", first, last);
+    return {{ErrorCode::out_of_range, "--time", known + formatted("; found %.6g s", *options.time)}};
+}
+
 Instant instant_of(const DrawArguments& options, const Subject& subject) {
     const Trajectory& path = subject.trajectory;
     const bool motion = !path.steps.empty();
@@ -108,8 +117,7 @@ Instant instant_of(const DrawArguments& options, const Subject& subject) {
         out.poses = poses_at(path, out.time);
         return out;
     }
-    const double first = core::stepper::time_at(path, 0), last = core::stepper::time_at(path, static_cast<int>(path.steps.size()));
-    out.time = std::clamp(options.time.value_or(first), first, last);
+    out.time = options.time.value_or(core::stepper::time_at(path, 0));
     out.poses = poses_at(path, out.time);
     if (options.plain) return out;
     Trajectory still = path;  // judged as it stands there
@@ -137,6 +145,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     if (!shown) return console.input_errors(shown.errors());
     const auto view = exports::projection_view(options.view, shown->assembly.up, "--view");
     if (!view) return console.input_errors(view.errors());
+    if (const Errors errors = time_faults(options, shown->subject.trajectory); !errors.empty()) return console.input_errors(errors);
     const Instant instant = instant_of(options, shown->subject);
     exports::PictureOptions picture_options;
     picture_options.view = *view;

@@ -127,6 +127,8 @@ TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
     CHECK(run("draw " + out + " --time 0.004 --out " + folder.file("b.svg") + " --view 20,30").code == 0);
     CHECK(contents(folder.file("b.svg")).find("upper") != std::string::npos);
     CHECK(contents(folder.file("b.svg")).find("t = 0.004 s") != std::string::npos);
+    for (const std::string& late : {out + " --time 99", in + " --time 0.1"})  // after the motion; of what has none
+        CHECK(run("draw " + late + " --out " + folder.file("late.svg")).code == 3);
     const Answer worst = run("draw " + out + " --worst --out " + folder.file("c.svg") + " --json");
     CHECK(worst.json()["time"].get<double>() == Approx(0.006));  // it falls all the while
     CHECK(worst.json()["worst"]["upper"].get<double>() < 0.001);
