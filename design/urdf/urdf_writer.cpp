@@ -6,7 +6,6 @@
 
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
-#include "fettle/design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

@@ -8,6 +8,7 @@
 
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/scene/scene.hpp"
+#include "fettle/design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 
