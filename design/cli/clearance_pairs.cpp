@@ -303,4 +303,23 @@ private:
 
 Result<PairSelection> select_pairs(const Model& model, const PairOptions& options) { return Selector(model, options).select(); }
 
+std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
+    std::vector<std::string> names;
+    for (const PairSpec& pair : pairs) names.push_back(pair.a.name + ":" + pair.b.name);
+    return names;
+}
+
+std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection& selection) {
+    std::set<std::pair<int, int>> covered;
+    for (const PairSpec& pair : selection.pairs)
+        for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
+    std::vector<std::string> list;
+    const auto count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b)
+            if (covered.count({a, b}) == 0)
+                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
+    return list;
+}
+
 }  // namespace fettle::design::cli

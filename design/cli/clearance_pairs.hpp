@@ -50,4 +50,10 @@ struct PairSelection {
 /// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one.
 Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options);
 
+/// "A:B" of each.
+std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
+
+/// "A:B" of the pairs of bodies that none of the selection's pairs speaks of.
+std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
+
 }  // namespace fettle::design::cli

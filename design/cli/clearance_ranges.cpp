@@ -6,7 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <set>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -68,25 +67,6 @@ RangeClearance worst_of(const std::vector<RangeClearance>& members) {
     return least;
 }
 
-std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
-    std::vector<std::string> names;
-    for (const PairSpec& pair : pairs) names.push_back(pair.a.name + ":" + pair.b.name);
-    return names;
-}
-
-std::vector<std::string> without_row(const Model& model, const PairSelection& selection) {
-    std::set<std::pair<int, int>> covered;
-    for (const PairSpec& pair : selection.pairs)
-        for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
-    std::vector<std::string> list;
-    const auto count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a)
-        for (int b = a + 1; b < count; ++b)
-            if (covered.count({a, b}) == 0)
-                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
-    return list;
-}
-
 std::vector<std::string> notes_of(const Model& model, const JointRanges& ranges) {
     std::vector<std::string> notes, turns, motors;
     if (!ranges.held.empty()) notes.push_back("held at the start pose, as no joint connects them to the world: " + joined(ranges.held));
@@ -115,7 +95,7 @@ RangeReport make_range_report(const Model& model, const JointRanges& ranges, con
     if (!report.rows.empty()) report.status = report.rows.front().least.status;
     report.ignored = selection.ignored;
     report.left_out = pair_names(selection.left_out);
-    report.uncovered = without_row(model, selection);
+    report.uncovered = uncovered_pairs(model, selection);
     report.notes = notes_of(model, ranges);
     if (report.rows.empty()) report.message = "nothing was judged: no pair of bodies may collide; name pairs with --pairs";
     if (interrupted()) report.message = "interrupted: what was not looked at is undecided";

@@ -6,7 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 #include <unordered_map>
 
 #include "fettle/core/base/units.hpp"
@@ -182,19 +181,6 @@ int count_changes(const ClearanceReport& report, const char* change) {
         std::count_if(report.pairs.begin(), report.pairs.end(), [&](const ReportedPair& p) { return p.change == change; }));
 }
 
-std::vector<std::string> uncovered(const core::model::Model& model, const PairSelection& selection) {
-    std::set<std::pair<int, int>> covered;
-    for (const PairSpec& pair : selection.pairs)
-        for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
-    std::vector<std::string> list;
-    const auto count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a)
-        for (int b = a + 1; b < count; ++b)
-            if (covered.count({a, b}) == 0)
-                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
-    return list;
-}
-
 // Worst first; rows are large, and there may be many.
 void sort(std::vector<ReportedPair>& pairs) {
     std::vector<size_t> order(pairs.size());
@@ -252,7 +238,7 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
                             double tolerance, bool stopped) {
     ClearanceReport report;
     report.ignored = selection.ignored;
-    for (const PairSpec& pair : selection.left_out) report.left_out.push_back(pair.a.name + ":" + pair.b.name);
+    report.left_out = pair_names(selection.left_out);
     report.tolerance = tolerance;
     size_t next = 0;
     const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
@@ -273,7 +259,7 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
         if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
         report.pairs.push_back(std::move(pair));
     }
-    report.uncovered = uncovered(subject.model, selection);
+    report.uncovered = uncovered_pairs(subject.model, selection);
     report.message = why_not_judged(subject, selection, stopped);
     if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
     sort(report.pairs);
