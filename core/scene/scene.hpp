@@ -80,11 +80,21 @@ enum class MeshPolicy {
     lenient    ///< as the source paper's program: the reader has said what there is to say
 };
 
-/// A part that a generator makes (design/shapes/); core knows none of them, see ReadOptions in scene_reader.hpp.
+/// A command that writes a mesh when it is given dimensions: {out} in its words stands for the file to write, {NAME} for a dimension.
+struct MeshProgram {
+    std::vector<std::string> command = {};  ///< program and arguments
+    std::string directory = {};             ///< that it runs in; empty: the working directory
+    std::string format = "stl";             ///< of the file that it writes: stl, obj, off, ply or 3mf
+    double unit = 1;                        ///< of the numbers that it is given and writes [m]
+    double time_limit = 300;                ///< [s]
+};
+
+/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see ReadOptions in scene_reader.hpp.
 struct ShapeSpec {
-    std::string generator;
+    std::string generator;                     ///< its name; empty: a program makes the part
     std::map<std::string, double> dimensions;  ///< lengths [m]
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
+    std::optional<MeshProgram> program = {};
 };
 
 struct Body {
@@ -92,7 +102,7 @@ struct Body {
     std::string where;  ///< file and JSON pointer, for messages
     BodyType type = BodyType::dynamic_body;
     geometry::Mesh mesh;             ///< vertices in the file's frame, scaled, [m]
-    std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if a generator made it
+    std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if a generator or a program made it
     MeshPolicy mesh_policy = MeshPolicy::strict;
     double density = 1000;      ///< per what `mass_kind` says
     bool density_given = true;  ///< false: the file names none, and `density` stands for nothing (a static or kinematic body)

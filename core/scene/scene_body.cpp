@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/scene/scene_body.hpp"
-#include "fettle/core/files/json_writer.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
-#include "fettle/core/files/json_writer.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
@@ -49,24 +47,15 @@ const std::vector<std::string_view> body_keys{"name",
                                               "group",
                                               "split_components"};
 
-// A part that a program makes: what runs it, as the generator's name (design/shapes/mesh_program.hpp reads it back).
-std::string program_text(const files::JsonNode& node, const std::string& scene, double unit) {
-    const auto words = node["program"].elements();
-    files::JsonWriter out;
-    out.text = "{";
-    out.key("program");
-    out.list(words.size(), ",", [&](std::size_t i) { out.string(words[i].string().value_or("")); });
-    out.key("directory");
-    out.string(std::filesystem::path(scene).parent_path().string());
-    out.key("format");
-    out.string(node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or("stl"));
-    out.key("unit");
-    out.number(unit);
-    if (const auto limit = node["time_limit"].number(files::positive)) {
-        out.key("time_limit");
-        out.number(*limit);
-    }
-    return out.text + "}";
+// A part that a program makes: what runs it.
+MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
+    MeshProgram program;
+    for (const files::JsonNode& word : node["program"].elements()) program.command.push_back(word.string().value_or(""));
+    program.directory = std::filesystem::path(scene).parent_path().string();
+    program.format = node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or(program.format);
+    program.unit = unit;
+    program.time_limit = node["time_limit"].number(files::positive).value_or(program.time_limit);
+    return program;
 }
 
 }  // namespace
@@ -181,7 +170,7 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
     ShapeSpec spec;
     if (node["program"].exists()) {
         node.allow_keys({"program", "format", "time_limit", "dimensions"});
-        spec.generator = program_text(node, document_.path(), unit_);
+        spec.program = read_program(node, document_.path(), unit_);
         body.mesh_policy = MeshPolicy::tolerant;
     } else {
         node.allow_keys({"generator", "program", "dimensions", "counts"});
@@ -190,9 +179,10 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
     for (const auto& [name, value] : node["dimensions"].members()) spec.dimensions[name] = value.length(unit_).value_or(0);
     for (const auto& [name, value] : node["counts"].members()) spec.counts[name] = value.integer(0).value_or(0);
     body.shape = spec;
-    if (spec.generator.empty()) return;
+    if (spec.generator.empty() && (!spec.program || spec.program->command.empty())) return;
     if (!options_.shape_generator) {
-        node.fail(ErrorCode::unsupported, "shape \"" + spec.generator + "\" cannot be made here: this program was given no generators");
+        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.generator) +
+                                              "\" cannot be made here: this program was given no generators");
         return;
     }
     auto made = options_.shape_generator(spec);

@@ -55,10 +55,10 @@ FETTLE_RECORD(fettle::core::scene::Friction::Pair, "FrictionPair", field("materi
 FETTLE_RECORD(fettle::core::scene::Friction, "Friction", field("mu", &Type::mu), field("materials", &Type::materials),
               field("pairs", &Type::pairs), field("eps_v", &Type::eps_v), field("rounds", &Type::rounds))
 FETTLE_RECORD(fettle::core::scene::Damping, "Damping", field("linear", &Type::linear), field("angular", &Type::angular))
-FETTLE_RECORD(fettle::design::shapes::MeshProgram, "MeshProgram", field("command", &Type::command), field("directory", &Type::directory),
+FETTLE_RECORD(fettle::core::scene::MeshProgram, "MeshProgram", field("command", &Type::command), field("directory", &Type::directory),
               field("format", &Type::format), field("unit", &Type::unit), field("time_limit", &Type::time_limit))
 FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("generator", &Type::generator), field("dimensions", &Type::dimensions),
-              field("counts", &Type::counts))
+              field("counts", &Type::counts), field("program", &Type::program))
 FETTLE_RECORD(fettle::core::scene::Curve, "Curve", field("kind", &Type::kind), field("rate", &Type::rate), field("times", &Type::times),
               field("values", &Type::values), field("stop_time", &Type::stop_time))
 FETTLE_RECORD(fettle::core::scene::Attachment, "Attachment", field("body", &Type::body), field("point", &Type::point),

@@ -181,8 +181,9 @@ private:
         std::vector<std::string_view> known;
         for (const description::ShapeDimension& dimension : shape->dimensions()) known.push_back(dimension.name);
         if (std::find(known.begin(), known.end(), move.dimension) != known.end()) return true;
-        node.fail(ErrorCode::out_of_range, "generator \"" + body.shape->generator + "\" has no dimension " + node.shown() + "; " +
-                                               core::files::did_you_mean(move.dimension, known));
+        node.fail(ErrorCode::out_of_range,
+                  (body.shape->program ? "the program of body \"" + body.name : "generator \"" + body.shape->generator) +
+                      "\" has no dimension " + node.shown() + "; " + core::files::did_you_mean(move.dimension, known));
         return false;
     }
 

@@ -17,20 +17,19 @@ Result<std::shared_ptr<const shapes::GeneratedPart>> generated_part(const core::
 }
 
 Result<std::shared_ptr<const description::Shape>> shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
-    const std::optional<shapes::MeshProgram> program = shapes::program_of(spec);
-    if (!program) {
+    if (!spec.program) {
         const auto part = generated_part(spec);
         if (!part) return part.errors();
         return std::shared_ptr<const description::Shape>(*part);
     }
     if (programs == Programs::refused) {
-        const std::string name = program->command.empty() ? "" : program->command.front();
+        const std::string name = spec.program->command.empty() ? "" : spec.program->command.front();
         return Error{ErrorCode::unsupported, "program",
                      "this part is made by running `" + name + "`; programs run only where they are allowed: --allow-programs"};
     }
     std::vector<description::ShapeDimension> dimensions;
     for (const auto& [name, value] : spec.dimensions) dimensions.push_back({name, value});
-    const auto part = shapes::ProgramPart::create(*program, std::move(dimensions));
+    const auto part = shapes::ProgramPart::create(*spec.program, std::move(dimensions));
     if (!part) return part.errors();
     return std::shared_ptr<const description::Shape>(*part);
 }

@@ -19,7 +19,6 @@
 #include <thread>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 
@@ -142,20 +141,6 @@ std::string last_words(const fs::path& log) {
 }
 
 }  // namespace
-
-std::optional<MeshProgram> program_of(const core::scene::ShapeSpec& spec) {
-    if (spec.generator.empty() || spec.generator.front() != '{') return std::nullopt;
-    Result<core::files::JsonDocument> document = core::files::JsonDocument::parse(spec.generator, "shape");
-    if (!document) return std::nullopt;
-    const core::files::JsonNode root = document->root();
-    MeshProgram program;
-    for (const core::files::JsonNode& word : root["program"].elements()) program.command.push_back(word.string().value_or(""));
-    program.directory = root["directory"].string().value_or("");
-    program.format = root["format"].string().value_or(program.format);
-    program.unit = root["unit"].number().value_or(program.unit);
-    program.time_limit = root["time_limit"].number().value_or(program.time_limit);
-    return program;
-}
 
 Errors check_program(const MeshProgram& program, const std::vector<ShapeDimension>& dimensions) {
     Errors errors;

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,18 +15,7 @@
 
 namespace fettle::design::shapes {
 
-/// A command that writes a mesh when it is given dimensions.
-struct MeshProgram {
-    std::vector<std::string> command = {};  ///< program and arguments, with {out} and {dimension} in them
-    std::string directory = {};             ///< that it runs in; empty: the working directory
-    std::string format = "stl";             ///< of the file that it writes: stl, obj, off, ply or 3mf
-    double unit = 1;                        ///< of the numbers that it is given and writes [m]
-    double time_limit = 300;                ///< [s]
-};
-
-/// A scene says it in place of a generator's name, as a JSON object { program, directory, format, unit, time_limit }; nothing: it is a
-/// generator's name.
-std::optional<MeshProgram> program_of(const core::scene::ShapeSpec& spec);
+using core::scene::MeshProgram;
 
 /// What is wrong with the command: no {out}, a name in braces that is no dimension (with the nearest), a dimension that it does not name.
 Errors check_program(const MeshProgram& program, const std::vector<description::ShapeDimension>& dimensions);

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _fettle
 from ._record import Record
-from .scene import Body, Mesh, Scene, Vector
+from .scene import Body, Mesh, MeshProgram, Scene, Vector
 
 Array = NDArray[np.float64]
 
@@ -74,17 +74,6 @@ class MeshShape(Record):
     values: Dict[str, float]  #: as drawn [m]
     unit: float = 1e-3  #: that coordinates were rounded in: their digits tell the rounding [m]
     rounding: Optional[float] = None  #: of coordinates, if it is known [m]
-
-
-@dataclasses.dataclass(eq=False)
-class MeshProgram(Record):
-    """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
-
-    command: List[str] = dataclasses.field(default_factory=list)
-    directory: str = ""  #: that it runs in
-    format: Literal["stl", "obj", "off", "ply", "3mf"] = "stl"
-    unit: float = 1.0  #: [m]
-    time_limit: float = 300.0  #: [s]
 
 
 @dataclasses.dataclass(eq=False)

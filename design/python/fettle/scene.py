@@ -87,12 +87,24 @@ class Damping(Record):
 
 
 @dataclasses.dataclass(eq=False)
-class ShapeSpec(Record):
-    """What a body's mesh came from: a generator's name, or of a program what runs it, as JSON."""
+class MeshProgram(Record):
+    """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
 
-    generator: str = ""
+    command: List[str] = dataclasses.field(default_factory=list)
+    directory: str = ""  #: that it runs in
+    format: Literal["stl", "obj", "off", "ply", "3mf"] = "stl"
+    unit: float = 1.0  #: [m]
+    time_limit: float = 300.0  #: [s]
+
+
+@dataclasses.dataclass(eq=False)
+class ShapeSpec(Record):
+    """What makes a body's mesh: a generator, or a program."""
+
+    generator: str = ""  #: its name; empty: a program makes the part
     dimensions: Dict[str, float] = dataclasses.field(default_factory=dict)  #: [m]
     counts: Dict[str, int] = dataclasses.field(default_factory=dict)
+    program: Optional[MeshProgram] = None
 
 
 def held() -> List[Optional[MotionCurve]]:
