@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One step, of implicit Euler, BDF2 or quasi-static, linearised about its solution: what the reverse and the forward sweep share.
-/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to
-/// store nothing else.
+/// One step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from the trajectory's
+/// configurations (broad phase, contacts, true Hessian), so that a trajectory needs to store nothing else.
 #pragma once
 
 #include <Eigen/SparseLU>
@@ -36,7 +35,8 @@ public:
     const core::solver::FreeDofs& dofs() const { return dofs_; }
 
     /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
-    /// was not solved for gradients, or with another kappa; the matrix is singular.
+    /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
+    /// contact whose areas are the same.
     Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
 
     struct Solution {
@@ -57,6 +57,7 @@ public:
 
 private:
     Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
+    static Errors check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     core::solver::FreeDofs dofs_;
@@ -68,14 +69,29 @@ private:
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.
 std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-/// Step t, which leads from trajectory.poses[t] to poses[t + 1]. @param angles  at its start.
-LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                              const std::vector<double>& angles, StepSolver& solver);
+/// Newmark's velocities and accelerations, which a trajectory does not store; of other integrators nothing.
+struct NewmarkHistory {
+    std::vector<std::vector<Matrix34>> velocities, accelerations;  ///< [t][body], t = 0 .. steps - 1
+};
 
-/// What the sweeps cannot differentiate, by name: newmark; with bdf2 damping of contacts, dampers and friction of joints; what the terms
-/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of
-/// poses (all unsupported); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract:
-/// the trajectory belongs to the model (number of bodies, time step).
+/// What of a step's start follows from all the steps before it.
+struct SweepHistory {
+    std::vector<std::vector<double>> angles;  ///< angles_along
+    NewmarkHistory newmark;
+};
+SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+
+/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1].
+core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                                     const SweepHistory& history);
+
+/// That step.
+LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                              const SweepHistory& history, StepSolver& solver);
+
+/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy: friction of contacts), bodies whose mass is not
+/// that of their mesh and density, scripts of poses (all unsupported); a step that turns a body by a full revolution or more, where the
+/// chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

@@ -41,10 +41,10 @@ struct ContactCount {
 };
 ContactCount count_contacts(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, increments };
-inline constexpr ParameterKind all_kinds[] = {ParameterKind::vertices,  ParameterKind::pose_start, ParameterKind::velocity_start,
-                                              ParameterKind::density,   ParameterKind::gravity,    ParameterKind::force,
-                                              ParameterKind::increments};
+enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, torque, increments };
+inline constexpr ParameterKind all_kinds[] = {ParameterKind::vertices, ParameterKind::pose_start, ParameterKind::velocity_start,
+                                              ParameterKind::density,  ParameterKind::gravity,    ParameterKind::force,
+                                              ParameterKind::torque,   ParameterKind::increments};
 const char* to_string(ParameterKind kind);
 
 /// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures.
@@ -53,7 +53,7 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
 /// The gradient's own direction in the vertices, largest entry 0.05 m.
 ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradient& gradient);
 
-/// model + s * direction, poses moved on the manifold.
+/// model + s * direction, poses moved on the manifold. Masses stay of their kind: solids, shells, wires, points.
 core::model::Model moved(const SweepScene& scene, const ModelTangent& direction, double s);
 
 /// <gradient, direction>.
