@@ -242,7 +242,7 @@ double largest_step(ParameterKind kind) {
     if (kind == ParameterKind::vertices) return 1e-5;
     return kind == ParameterKind::density || kind == ParameterKind::force || kind == ParameterKind::torque || kind == ParameterKind::gravity
                ? 0.1
-               : 1e-3;
+               : 5e-4;
 }
 
 void check_forwards(const SweepScene& scene, const core::stepper::Simulation& done) {
