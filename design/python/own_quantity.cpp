@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "fettle/design/description/quantity.hpp"
+#include "fettle/design/python/motion_records.hpp"
 
 namespace fettle::design::python {
 
@@ -18,3 +19,6 @@ pybind11::object quantity_to_python(const std::shared_ptr<const description::Qua
 void bind_quantities(pybind11::module_& module);
 
 }  // namespace fettle::design::python
+
+FETTLE_RECORD(fettle::design::description::Measurement, "Measurement", field("value", &Type::value), field("lower", &Type::lower),
+              field("upper", &Type::upper), field("clearance", &Type::clearance), field("fault", &Type::fault))
