@@ -108,6 +108,7 @@ from .scene import (
     Damping,
     Friction,
     FrictionPair,
+    Inertial,
     Joint,
     Mechanism,
     Mesh,
