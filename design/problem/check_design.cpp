@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/design/problem/friction_moves.hpp"
 #include "fettle/design/problem/mechanism_moves.hpp"
 
 namespace fettle::design::problem {
@@ -58,13 +59,6 @@ public:
 private:
     // What is not differentiated of joints and springs: refused, never left out.
     void check_joints() {
-        for (const core::model::Body& body : model_.bodies) {
-            const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-            if (body.type != core::scene::BodyType::dynamic_body || (body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
-            add(ErrorCode::unsupported, "body `" + body.name + "`",
-                "beside joints and springs a body's mass must be that of a solid of its density: that of wires, shells, points and meshes "
-                "with openings cannot be differentiated");
-        }
         const auto& terms = model_.mechanism.terms;
         const auto is_stop = [](const model::MeasureTerm& term) { return term.kind == model::LawKind::stop; };
         if (model_.area_weighted && std::any_of(terms.begin(), terms.end(), is_stop))
@@ -127,6 +121,9 @@ private:
             if (is_of_mechanism(move.target)) {
                 const std::string reason = misfit(design_.scene.mechanism, move);
                 if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
+            } else if (is_of_friction(move.target)) {
+                const std::string reason = friction_misfit(design_.scene, move);
+                if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
             } else if (move.target == MoveTarget::gravity) {
                 continue;
             } else if (!has_body(move.body)) {
@@ -147,6 +144,9 @@ private:
                 add(ErrorCode::out_of_range, place(parameter),
                     "body `" + body.name + "` has no shape with a dimension \"" + move.dimension + "\"");
         }
+        if (move.target == MoveTarget::density && body.inertial)
+            add(ErrorCode::inconsistent, place(parameter),
+                "the mass of body `" + body.name + "` is given (`inertial`), and follows no density");
         if (move.target == MoveTarget::motor_rate && (move.dof < 0 || move.dof > 5 || !body.prescribed[static_cast<size_t>(move.dof)]))
             add(ErrorCode::inconsistent, place(parameter), "body `" + body.name + "` has no motor on that coordinate");
     }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of mechanisms that have closed forms: oscillators (of the steps as they are made, exactly), crank torque, gears, a hanging
-// chain.
+// chain, what slides and stops by friction.
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "fettle/core/contact/barrier.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
 
@@ -35,6 +37,40 @@ private:
     Vector3 arm(const Simulated& s) const { return point_ - s.model.bodies[body_].reference_point; }
     size_t body_;
     Vector3 point_, along_;
+};
+
+// Where the first body's reference point comes down to z = 0: on along the parabola through the last two steps.
+class Landing : public Quantity {
+public:
+    Dimension dimension() const override { return Dimension::length; }
+    Measurement value(const Simulated& s) const override { return exact(fall(s).range); }
+    void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
+        const Fall f = fall(s);
+        const double h = s.model.timestep, steep = -s.model.gravity.z() * f.time - f.up;  // dtime = (dz + time dup)/steep
+        const double by_z = f.forwards / steep, by_up = by_z * f.time;
+        auto& bar = seeds.trajectory_bar.pose_bar;
+        const size_t last = bar.size() - 1;
+        bar[last][0](0, 3) += scale * (1 + f.time / h);
+        bar[last - 1][0](0, 3) -= scale * f.time / h;
+        bar[last][0](2, 3) += scale * (by_z + by_up / h);
+        bar[last - 1][0](2, 3) -= scale * by_up / h;
+    }
+
+private:
+    struct Fall {
+        double forwards = 0, up = 0, time = 0, range = 0;
+    };
+    static Fall fall(const Simulated& s) {
+        const double h = s.model.timestep, g = -s.model.gravity.z();
+        const auto& poses = s.trajectory.poses;
+        const Vector3 end = poses.back()[0].position, moved = end - poses[poses.size() - 2][0].position;
+        Fall f;
+        f.forwards = moved.x() / h;
+        f.up = moved.z() / h - 0.5 * g * h;
+        f.time = (f.up + std::sqrt(f.up * f.up + 2 * g * end.z())) / g;
+        f.range = end.x() + f.forwards * f.time;
+        return f;
+    }
 };
 
 Parameter parameter(const std::string& name, double value, Move move) {
@@ -86,7 +122,132 @@ Dual oscillator(double w, double h, int n) {
     return now;
 }
 
+// A flat block on a plate, both with their file frames' origins at the world's, at rest on its contacts under `weight` [N].
+constexpr double block_dhat = 1e-3, block_kappa = 1e3, block_mass = 0.1;
+Design block_on_plate(double weight, double mu, double h, int steps) {
+    const auto parameters = core::contact::barrier_parameters(block_dhat, 0, block_kappa, 1);
+    const auto force = [&](double d) { return -2 * parameters.factor * core::contact::barrier(d * d, parameters.gap_hat).first * d; };
+    double low = 0, high = block_dhat;
+    while (high - low > 1e-15) (force(0.5 * (low + high)) > 0.25 * weight ? low : high) = 0.5 * (low + high);
+    Design design;
+    core::scene::Body plate = bar("plate", 1), block = bar("block", 1);
+    plate.mesh = tests::support::box_mesh({-1, -1, -0.1}, {3, 1, 0});
+    plate.type = core::scene::BodyType::static_body;
+    for (auto& dof : plate.prescribed) dof = core::scene::MotionCurve{};
+    block.mesh = tests::support::box_mesh({-0.05, -0.05, low}, {0.05, 0.05, low + 0.01});
+    design.scene = scene_of({plate, block}, h);
+    for (core::scene::Body& body : design.scene.bodies) body.group = -1;
+    design.scene.gravity = Vector3(0, 0, -gravity);
+    design.scene.dhat = block_dhat;
+    design.scene.kappa = block_kappa;
+    design.scene.friction.mu = mu;
+    design.steps = steps;
+    return design;
+}
+
 }  // namespace
+
+TEST_CASE("closed form: the range of a throw in speed and angle", "[throw]") {
+    constexpr double speed = 4, angle = 0.7, h = 0.01;
+    const auto thrown = [&](core::scene::Integrator integrator, double step) {
+        Design design;
+        design.scene = scene_of({bar("stone", 0.1)}, step);
+        design.scene.integrator = integrator;
+        design.scene.gravity = Vector3(0, 0, -gravity);
+        design.scene.bodies[0].linear_velocity = speed * Vector3(std::cos(angle), 0, std::sin(angle));
+        design.scene.bodies[0].reference_point = Vector3(0.05, 0, 0);
+        design.scene.bodies[0].pose.position = Vector3(-0.05, 0, 0);
+        design.steps = static_cast<int>(std::lround(0.4 / step));
+        design.parameters = {parameter("forwards", speed * std::cos(angle), along({.target = MoveTarget::velocity, .body = 0}, x_axis)),
+                             parameter("upwards", speed * std::sin(angle), along({.target = MoveTarget::velocity, .body = 0}, z_axis))};
+        return evaluated(std::move(design), {std::make_shared<Landing>()});
+    };
+    const double range = speed * speed * std::sin(2 * angle) / gravity, by_speed = 2 * range / speed,
+                 by_angle = 2 * speed * speed * std::cos(2 * angle) / gravity;
+    const auto errors_of = [&](const DesignEvaluation& at) {
+        const Vector2 direction(std::cos(angle), std::sin(angle)), across(-std::sin(angle), std::cos(angle));
+        return Vector3(at.constraints[0].value - range, at.jacobian.row(0).dot(direction) - by_speed,
+                       at.jacobian.row(0).dot(speed * across) - by_angle);
+    };
+    CHECK(errors_of(thrown(core::scene::Integrator::newmark, h)).norm() < 1e-9);  // whose free fall is exact
+    const Vector3 coarse = errors_of(thrown(core::scene::Integrator::implicit_euler, h)),
+                  fine = errors_of(thrown(core::scene::Integrator::implicit_euler, h / 2));
+    for (int k = 0; k < 3; ++k) {
+        CAPTURE(k, coarse[k], fine[k]);
+        CHECK(std::abs(fine[k]) < 0.02);
+        CHECK(coarse[k] / fine[k] == Approx(2).epsilon(0.05));
+    }
+}
+
+TEST_CASE("closed form: a double pendulum keeps its energy, which follows gravity and density", "[joints]") {
+    const auto swung = [](double h) {
+        Design design;
+        design.scene =
+            scene_of({bar("upper", 0.3, Vector3::Zero(), Vector3(0, 0.4, 0)),
+                      bar("lower", 0.2, core::kinematics::rotation(Vector3(0, 0.4, 0)) * Vector3(0.3, 0, 0), Vector3(0, -0.5, 0))},
+                     h);
+        design.scene.gravity = Vector3(0, 0, -gravity);
+        design.steps = static_cast<int>(std::lround(0.4 / h));
+        design.scene.mechanism.joints = {
+            joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis}),
+            joint("elbow", JointKind::revolute, {"upper", Vector3(0.3, 0, 0), y_axis}, {"lower", Vector3::Zero(), y_axis})};
+        design.parameters = {parameter("gravity", -gravity, along({.target = MoveTarget::gravity}, z_axis)),
+                             parameter("density", 1000, {.target = MoveTarget::density, .body = 1})};
+        const auto energy = std::make_shared<quantities::Energy>(quantities::EnergyKind::total, quantities::Over::end);
+        return evaluated(std::move(design), {energy});
+    };
+    // At the start: both at rest, their centres at these heights.
+    const double a = 0.4, area = 0.02 * 0.02, upper = -0.15 * std::sin(a), lower = -0.3 * std::sin(a) + 0.1 * std::sin(0.5);
+    const double moment = 1000 * area * (0.3 * upper + 0.2 * lower);
+    const Vector3 exact(gravity * moment, -moment, gravity * area * 0.2 * lower);
+    const auto errors_of = [&](double h) {
+        const DesignEvaluation at = swung(h);
+        return Vector3((Vector3(at.constraints[0].value, at.jacobian(0, 0), at.jacobian(0, 1)) - exact).cwiseQuotient(exact));
+    };
+    const Vector3 coarse = errors_of(0.002), fine = errors_of(0.001);
+    for (int k = 0; k < 3; ++k) {
+        CAPTURE(k, coarse[k], fine[k]);
+        CHECK(std::abs(fine[k]) < 0.05);
+        CHECK(std::abs(coarse[k] / fine[k] - 2) < 0.1);
+        CHECK(std::abs(2 * fine[k] - coarse[k]) < 5e-4);  // extrapolated to no step
+    }
+}
+
+TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]") {
+    // x_1, x_2, v_1, v_2 at the start; where the one that is struck is after a second: x_1 + v_1 and the bodies' length.
+    const auto struck = [](double dhat, double h) {
+        Design design;
+        design.scene = scene_of({bar("first", 0.1, Vector3(-0.4, 0, 0)), bar("second", 0.1)}, h);
+        design.scene.integrator = core::scene::Integrator::newmark;
+        for (core::scene::Body& body : design.scene.bodies) {
+            body.group = -1;
+            for (const int dof : {1, 2, 3, 4, 5}) body.prescribed[static_cast<size_t>(dof)] = core::scene::MotionCurve{};
+        }
+        design.scene.bodies[0].linear_velocity = Vector3(1, 0, 0);
+        design.scene.dhat = dhat;
+        design.scene.kappa = 10 / dhat / dhat;  // stops the one on the other well within dhat
+        design.steps = static_cast<int>(std::lround(1 / h));
+        for (const MoveTarget target : {MoveTarget::position, MoveTarget::velocity})
+            for (const int body : {0, 1}) {
+                const bool is_place = target == MoveTarget::position;
+                const double value = body == 1 ? 0 : is_place ? -0.4 : 1;
+                design.parameters.push_back(
+                    parameter(std::to_string(design.parameters.size()), value, along({.target = target, .body = body}, x_axis)));
+                design.parameters.back().lower = value - 1;
+                design.parameters.back().upper = value + 1;
+            }
+        const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
+        Eigen::Matrix<double, 5, 1> out;
+        out << at.constraints[0].value, at.jacobian.row(0).transpose();
+        return out;
+    };
+    const Eigen::Matrix<double, 5, 1> exact = (Eigen::Matrix<double, 5, 1>() << -0.4 + 1 + 0.1, 1, 0, 1, 0).finished();
+    const Eigen::Matrix<double, 5, 1> coarse = struck(8e-3, 4e-4) - exact, fine = struck(4e-3, 2e-4) - exact;
+    CAPTURE(coarse.transpose(), fine.transpose());
+    // What the impact takes its time for is of the size of dhat, and so is its derivative.
+    CHECK(fine.lpNorm<Eigen::Infinity>() < 0.02);
+    for (int k = 0; k < 5; ++k) CHECK(std::abs(fine[k]) < 0.65 * std::abs(coarse[k]) + 1e-4);
+}
 
 TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[joints]") {
     constexpr double h = 0.01, stiffness = 30, start = 0.05;
@@ -224,6 +385,81 @@ TEST_CASE("closed form: what a hanging chain's joints carry, in density and grav
         CHECK(at.constraints[static_cast<size_t>(k)].value == Approx((3 - k) * 1000 * volume * 9.81).epsilon(1e-8));
         for (int j = 0; j < 3; ++j) CHECK(at.jacobian(k, j) == Approx(j < k ? 0 : volume * 9.81).epsilon(1e-7).margin(1e-10));
         CHECK(at.jacobian(k, 3) == Approx(-(3 - k) * 1000 * volume).epsilon(1e-7));
+    }
+}
+
+TEST_CASE("closed form: stopping distance in speed and friction", "[friction]") {
+    constexpr double speed = 0.6, mu = 0.3, deceleration = mu * gravity, eps_v = 1e-3;
+    const auto slid = [&](double h) {
+        Design design = block_on_plate(block_mass * gravity, mu, h, static_cast<int>(0.3 / h));
+        design.scene.bodies[1].linear_velocity = Vector3(speed, 0, 0);
+        design.parameters = {parameter("speed", speed, along({.target = MoveTarget::velocity, .body = 1}, x_axis)),
+                             parameter("mu", mu, {.target = MoveTarget::default_mu})};
+        return evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
+    };
+    // As the steps are made: v' + a h f0'(v') = v, f0' = 2 u - u^2 at u = v'/eps_v < 1.
+    struct Stop {
+        double x = 0, by_speed = 0, by_mu = 0;
+    };
+    const auto steps_of = [&](double h) {
+        Stop out;
+        double v = speed, v_speed = 1, v_mu = 0;
+        const double ah = deceleration * h;
+        for (int k = 0; k < static_cast<int>(0.3 / h); ++k) {
+            double next = v - ah, slope = 0;
+            if (next < eps_v) {  // u^2 a h - u (eps_v + 2 a h) + v = 0
+                const double b = eps_v + 2 * ah, root = std::sqrt(b * b - 4 * ah * v), u = 2 * v / (b + root);
+                next = u * eps_v;
+                slope = (2 - 2 * u) / eps_v;
+            }
+            const double rubbing = (v - next) / ah;  // f0'
+            v_mu = (v_mu - gravity * h * rubbing) / (1 + ah * slope);
+            v_speed /= 1 + ah * slope;
+            v = next;
+            out.x += h * v;
+            out.by_speed += h * v_speed;
+            out.by_mu += h * v_mu;
+        }
+        return out;
+    };
+    for (const double h : {0.01, 0.005, 0.0025}) {
+        const DesignEvaluation at = slid(h);
+        const Stop exact = steps_of(h);
+        CAPTURE(h);
+        CHECK(at.constraints[0].value == Approx(exact.x).epsilon(1e-4));
+        CHECK(at.jacobian(0, 0) == Approx(exact.by_speed).epsilon(1e-3));
+        CHECK(at.jacobian(0, 1) == Approx(exact.by_mu).epsilon(1e-3));
+        // The continuous motion's, to the first order in h.
+        const double lost = 0.5 * speed * h;
+        CHECK(std::abs(at.constraints[0].value - speed * speed / (2 * deceleration)) < 1.1 * lost);
+        CHECK(std::abs(at.jacobian(0, 0) - speed / deceleration) < 1.1 * h);
+        CHECK(std::abs(at.jacobian(0, 1) + speed * speed / (2 * mu * deceleration)) < 1.1 * lost / mu);
+    }
+}
+
+TEST_CASE("closed form: the way down an incline in angle and friction", "[friction]") {
+    constexpr double angle = 0.5, mu = 0.2, time = 0.3;
+    const double s = std::sin(angle), c = std::cos(angle), acceleration = gravity * (s - mu * c);
+    const Vector3 down(c, 0, -s);
+    for (const double h : {0.01, 0.005}) {
+        const int steps = static_cast<int>(std::lround(time / h));
+        Design design = block_on_plate(block_mass * gravity * c, mu, h, steps);
+        Move plate = along({.target = MoveTarget::turn, .body = 0}, y_axis), block = plate;
+        block.body = 1;
+        design.parameters = {parameter("angle", angle, plate), parameter("mu", mu, {.target = MoveTarget::default_mu})};
+        design.parameters[0].moves.push_back(block);
+        const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), down)});
+        CAPTURE(h);
+        const double half = 0.5 * h * h * steps * (steps + 1);  // h^2 (1 + ... + n); t^2/2 as h goes to 0
+        CHECK(at.constraints[0].value == Approx(acceleration * half).epsilon(1e-4));
+        // The first step rubs with the normal forces of the start, which the angle does not change.
+        CHECK(at.jacobian(0, 0) == Approx(gravity * (c * half + mu * s * (half - h * h * steps))).epsilon(1e-4));
+        CHECK(at.jacobian(0, 0) == Approx(0.5 * gravity * (c + mu * s) * time * time).epsilon(1.1 * h / time));
+        CHECK(at.jacobian(0, 1) == Approx(-gravity * c * half).epsilon(1e-3));
+        // How long it takes for a given way: t = sqrt(2 way / acceleration), dt = - dway / speed.
+        const double way = at.constraints[0].value, speed = acceleration * time;
+        CHECK(time == Approx(std::sqrt(2 * way / acceleration)).epsilon(h / time));
+        CHECK(-at.jacobian(0, 1) / speed == Approx(0.5 * time * gravity * c / acceleration).epsilon(1.1 * h / time));
     }
 }
 
