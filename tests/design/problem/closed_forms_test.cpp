@@ -204,12 +204,12 @@ TEST_CASE("closed form: a double pendulum keeps its energy, which follows gravit
         const DesignEvaluation at = swung(h);
         return Vector3((Vector3(at.constraints[0].value, at.jacobian(0, 0), at.jacobian(0, 1)) - exact).cwiseQuotient(exact));
     };
-    const Vector3 coarse = errors_of(0.002), fine = errors_of(0.001);
+    const Vector3 coarse = errors_of(5e-4), fine = errors_of(2.5e-4);
     for (int k = 0; k < 3; ++k) {
         CAPTURE(k, coarse[k], fine[k]);
-        CHECK(std::abs(fine[k]) < 0.05);
-        CHECK(std::abs(coarse[k] / fine[k] - 2) < 0.1);
-        CHECK(std::abs(2 * fine[k] - coarse[k]) < 5e-4);  // extrapolated to no step
+        CHECK(std::abs(fine[k]) < 0.08);
+        CHECK(std::abs(coarse[k] / fine[k] - 2) < 0.05);
+        CHECK(std::abs(2 * fine[k] - coarse[k]) < 4e-3);  // extrapolated to no step
     }
 }
 
@@ -225,7 +225,7 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         }
         design.scene.bodies[0].linear_velocity = Vector3(1, 0, 0);
         design.scene.dhat = dhat;
-        design.scene.kappa = 10 / dhat / dhat;  // stops the one on the other well within dhat
+        design.scene.kappa = 0.01 / dhat / dhat;  // turns them round at about half of dhat
         design.steps = static_cast<int>(std::lround(1 / h));
         for (const MoveTarget target : {MoveTarget::position, MoveTarget::velocity})
             for (const int body : {0, 1}) {
@@ -242,11 +242,14 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         return out;
     };
     const Eigen::Matrix<double, 5, 1> exact = (Eigen::Matrix<double, 5, 1>() << -0.4 + 1 + 0.1, 1, 0, 1, 0).finished();
-    const Eigen::Matrix<double, 5, 1> coarse = struck(8e-3, 4e-4) - exact, fine = struck(4e-3, 2e-4) - exact;
-    CAPTURE(coarse.transpose(), fine.transpose());
-    // What the impact takes its time for is of the size of dhat, and so is its derivative.
-    CHECK(fine.lpNorm<Eigen::Infinity>() < 0.02);
-    for (int k = 0; k < 5; ++k) CHECK(std::abs(fine[k]) < 0.65 * std::abs(coarse[k]) + 1e-4);
+    const Eigen::Matrix<double, 5, 1> coarse = struck(0.016, 2e-4) - exact, fine = struck(0.016, 1e-4) - exact,
+                                      wider = struck(0.03, 2e-4) - exact;
+    CAPTURE(coarse.transpose(), fine.transpose(), wider.transpose());
+    // The impact begins before the bodies touch, by a length in proportion to dhat; what the derivatives lack is the steps'.
+    CHECK(fine[0] > 0);
+    CHECK(wider[0] / fine[0] == Approx(0.03 / 0.016).epsilon(0.01));
+    CHECK(fine.tail<4>().lpNorm<Eigen::Infinity>() < 0.02);
+    for (int k = 1; k < 5; ++k) CHECK(std::abs(fine[k]) < 0.5 * std::abs(coarse[k]));
 }
 
 TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[joints]") {
