@@ -51,7 +51,7 @@ from .design import (
     Bounds,
     Clearance,
     Constraint,
-    ContactForce,
+    ContactLoad,
     Design,
     DesignFile,
     Energy,

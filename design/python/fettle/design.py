@@ -173,7 +173,7 @@ class JointLoad(Record):
 
 
 @dataclasses.dataclass(eq=False)
-class ContactForce(Record):
+class ContactLoad(Record):
     """Resultant force of contact on a body at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
 
     body: int
@@ -190,7 +190,7 @@ class Energy(Record):
     over: str = "end"
 
 
-AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, ContactForce, Energy, "_fettle.OpaqueQuantity"]
+AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, ContactLoad, Energy, "_fettle.OpaqueQuantity"]
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 

@@ -98,8 +98,8 @@ def test_forces_of_contact_have_a_class(tmp_path):
     path.write_text(json.dumps(text))
     design = fettle.read_design(str(path)).design
     whole, part = (term.quantity for term in design.objective)
-    assert whole == fettle.ContactForce(1, None, "mean")
-    assert part == fettle.ContactForce(1, 0, axis=np.array([0, 0, 1]))
+    assert whole == fettle.ContactLoad(1, None, "mean")
+    assert part == fettle.ContactLoad(1, 0, axis=np.array([0, 0, 1]))
     assert pickle.loads(pickle.dumps(design)) == design
     assert _fettle.as_library_has_it(design) == design
 
