@@ -109,7 +109,8 @@ private:
 
     // Through the rounds of friction, last to first: each hands back what it owes to where the one before ended.
     Errors step_back(int t) {
-        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)]);
+        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], std::move(known_));
+        known_ = rounds.at_start();
         set_zero(step_bar_.pose_hat_bar);
         set_zero(step_bar_.slip_reference_bar);
         for (int round = rounds.count(); round > 0; --round) {
@@ -282,7 +283,8 @@ private:
     std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2)
     energy::StepGradient step_bar_;  // P_hat's and P_slip's of the step at hand, the lag's of the round; the moments' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
-    std::vector<VectorX> mu_;  // [seed]: adjoint variable of the rows
+    std::shared_ptr<const contact::LaggedContacts> known_;  // with friction: at the start of the step that was gone through last
+    std::vector<VectorX> mu_;                               // [seed]: adjoint variable of the rows
     std::vector<Matrix3> left_jacobian_;
 };
 

@@ -55,8 +55,8 @@ public:
     /// Of the whole step, where a solution is none.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
-    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that `most_repeats` solves leave more than
-    /// `repeated` of what they had at first.
+    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that the simulation's rounds have not settled, or
+    /// `most_repeats` solves leave more than `repeated` of what they had at first.
     static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;
@@ -82,7 +82,9 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
 class StepRounds {
 public:
     /// @param angles  at the step's start.
-    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const std::vector<double>& angles);
+    /// @param known   contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
+    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const std::vector<double>& angles,
+               std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
     int count() const { return static_cast<int>(ends_.size()) - 1; }
 
@@ -90,6 +92,10 @@ public:
     bool is_fixed_point() const { return is_fixed_point_; }
 
     double slip_time() const { return problem_.slip_time; }
+
+    /// Contacts where friction was taken from for the first round (null without friction), and at the step's end.
+    const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
+    const std::shared_ptr<const contact::LaggedContacts>& at_end() const { return ends_.back().at; }
 
     /// @param round  1 .. count(); the last is the step's end.
     LinearisedStep linearise(int round, StepSolver& solver) const;
@@ -102,6 +108,7 @@ private:
     void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses);
 
     core::energy::StepProblem problem_;
+    std::shared_ptr<const contact::LaggedContacts> known_;
     std::vector<End> ends_;  // the first is where friction was taken from for the first round; empty without friction
     bool is_fixed_point_ = false;
 };

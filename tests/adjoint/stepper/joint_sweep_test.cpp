@@ -144,7 +144,13 @@ SweepScene hinged_contact() {
 }
 
 std::vector<SweepScene> joint_scenes() {
-    return {arm(), spatial_four_bar(), spatial_four_bar(Integrator::bdf2), slider_crank(), wheels(), hinged_contact()};
+    return {arm(),
+            spatial_four_bar(),
+            spatial_four_bar(Integrator::bdf2),
+            slider_crank(),
+            wheels(),
+            hinged_contact(),
+            rubbed(hinged_contact())};
 }
 
 core::stepper::Trajectory trajectory_of(const SweepScene& scene) { return run(scene.model, scene.steps, true).trajectory; }
