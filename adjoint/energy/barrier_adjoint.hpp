@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work. The area-weighted one is refused.
+/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work. Refused is
+/// friction with area weights.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"

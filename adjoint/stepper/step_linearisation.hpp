@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One step, of implicit Euler, BDF2 or quasi-static, linearised about its solution: what the reverse and the forward sweep share.
-/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, friction's lag, true Hessian), so that a
-/// trajectory needs to store nothing else, but for where the rounds of friction ended.
+/// One step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from the trajectory's
+/// configurations (broad phase, contacts, friction's lag, true Hessian), so that a trajectory needs to store nothing else, but for where
+/// the rounds of friction ended.
 #pragma once
 
 #include <Eigen/SparseLU>
@@ -39,7 +39,8 @@ public:
     const core::solver::FreeDofs& dofs() const { return dofs_; }
 
     /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
-    /// was not solved for gradients, or with another kappa; the matrix is singular.
+    /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
+    /// contact whose areas are the same.
     Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
 
     struct Solution {
@@ -55,8 +56,8 @@ public:
     /// Of the whole step, where a solution is none.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
-    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that `most_repeats` solves leave more than
-    /// `repeated` of what they had at first.
+    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that the simulation's rounds have not settled, or
+    /// `most_repeats` solves leave more than `repeated` of what they had at first.
     static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;
@@ -66,6 +67,7 @@ public:
 
 private:
     Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
+    static Errors check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     core::solver::FreeDofs dofs_;
@@ -77,12 +79,29 @@ private:
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.
 std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-/// The rounds of friction of step t, which leads from trajectory.poses[t] to poses[t + 1]: each a solve of its own, with the normal forces
-/// and tangents of where the one before ended, the first with those of the step's start. Without friction there is one.
+/// Newmark's velocities and accelerations, which a trajectory does not store; of other integrators nothing.
+struct NewmarkHistory {
+    std::vector<std::vector<Matrix34>> velocities, accelerations;  ///< [t][body], t = 0 .. steps - 1
+};
+
+/// What of a step's start follows from all the steps before it.
+struct SweepHistory {
+    std::vector<std::vector<double>> angles;  ///< angles_along
+    NewmarkHistory newmark;
+};
+SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+
+/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1]; friction left out.
+core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                                     const SweepHistory& history);
+
+/// The rounds of friction of step t: each a solve of its own, with the normal forces and tangents of where the one before ended, the first
+/// with those of the step's start. Without friction there is one.
 class StepRounds {
 public:
-    /// @param angles  at the step's start.
-    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const std::vector<double>& angles);
+    /// @param known  contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
+    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
+               std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
     int count() const { return static_cast<int>(ends_.size()) - 1; }
 
@@ -90,6 +109,11 @@ public:
     bool is_fixed_point() const { return is_fixed_point_; }
 
     double slip_time() const { return problem_.slip_time; }
+    double weight() const { return problem_.weight; }
+
+    /// Contacts where friction was taken from for the first round (null without friction), and at the step's end.
+    const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
+    const std::shared_ptr<const contact::LaggedContacts>& at_end() const { return ends_.back().at; }
 
     /// @param round  1 .. count(); the last is the step's end.
     LinearisedStep linearise(int round, StepSolver& solver) const;
@@ -102,19 +126,19 @@ private:
     void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses);
 
     core::energy::StepProblem problem_;
+    std::shared_ptr<const contact::LaggedContacts> known_;
     std::vector<End> ends_;  // the first is where friction was taken from for the first round; empty without friction
     bool is_fixed_point_ = false;
 };
 
-/// The last round of step t. @param angles  at its start.
+/// The last round of step t.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                              const std::vector<double>& angles, StepSolver& solver);
+                              const SweepHistory& history, StepSolver& solver);
 
-/// What the sweeps cannot differentiate, by name: newmark; with bdf2 damping of contacts, dampers and friction of joints; what the terms
-/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier), scripts of poses,
-/// with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not hold where its rounds
-/// ended (inconsistent); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the
-/// trajectory belongs to the model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy: friction with an area-weighted barrier), bodies
+/// whose mass is not that of their mesh and density, scripts of poses, with friction a motion that changes within a step (all unsupported);
+/// with friction a trajectory that does not hold where its rounds ended (inconsistent); a step that turns a body by a full revolution or
+/// more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.
