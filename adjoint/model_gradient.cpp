@@ -70,6 +70,7 @@ void add(ModelGradient& sum, const ModelGradient& part) {
         to.velocity_start_bar += from.velocity_start_bar;
         to.density_bar += from.density_bar;
         to.force_bar += from.force_bar;
+        to.torque_bar += from.torque_bar;
         for (std::size_t t = 0; t < to.increment_bar.size() && t < from.increment_bar.size(); ++t)
             to.increment_bar[t] += from.increment_bar[t];
     }

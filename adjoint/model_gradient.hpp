@@ -28,8 +28,8 @@ struct BodyGradient {
     /// pair it with tangents dP = [[phi] R, dq]. Body::velocity_start is held (a caller that holds omega in [[omega] R, v] adds that term).
     Matrix34 pose_start_bar = Matrix34::Zero();
     Matrix34 velocity_start_bar = Matrix34::Zero();  ///< Pdot at the start, entry by entry
-    double density_bar = 0;                          ///< moments = density * solid_moments(vertices)
-    Vector3 force_bar = Vector3::Zero();
+    double density_bar = 0;                          ///< of the moments, by the body's MassKind
+    Vector3 force_bar = Vector3::Zero(), torque_bar = Vector3::Zero();
     std::vector<Vector6> increment_bar;  ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
 };
 
@@ -75,7 +75,7 @@ struct BodyTangent {
     Vector6 pose_start_dot = Vector6::Zero();  ///< position, then left rotation: dR = [phi] R
     Matrix34 velocity_start_dot = Matrix34::Zero();
     double density_dot = 0;
-    Vector3 force_dot = Vector3::Zero();
+    Vector3 force_dot = Vector3::Zero(), torque_dot = Vector3::Zero();
     std::vector<Vector6> increment_dot;  ///< [step]
 };
 using MechanismTangent = MechanismGradient;

@@ -21,6 +21,7 @@ struct DampedPairSlopes {
     Four eps;                 // deps/dX: 0 where phi depends on eps neither at the end nor at P0
     Four end_eps;             // d(dphi/dx)/deps at the end
     double closeness_by_eps;  // d(phi - phi_t0)/deps
+    double weight;            // of the contact: in the stiffness
 };
 
 double closeness_by_eps(const ContactPair& pair, const BarrierParameters& closeness) {
@@ -32,6 +33,7 @@ DampedPairSlopes slopes_of(const DampedContacts& at, const core::contact::BodyPa
     DampedPairSlopes s;
     s.pair = damped_pair(at.model, at.damping, list, contact);
     s.body = bodies_of(list, contact);
+    s.weight = contact.weight;
     s.X = undeformed(at.model, s.body, contact);
     s.end = pair_forces(s.pair.end, closeness);
     s.start = pair_forces(s.pair.start, closeness);
@@ -44,15 +46,19 @@ DampedPairSlopes slopes_of(const DampedContacts& at, const core::contact::BodyPa
 
 template <class Visit>
 void for_each_damped(const DampedContacts& at, const Visit& visit) {
+    std::size_t place = 0;
     for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
-        for (const ContactPair& contact : list.contacts) visit(slopes_of(at, list, contact));
+        for (const ContactPair& contact : list.contacts) {
+            visit(slopes_of(at, list, contact), at.areas == nullptr ? nullptr : &at.areas->shares[place]);
+            ++place;
+        }
 }
 
 }  // namespace
 
 void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vector<std::vector<Vector6>>& lambda,
-                                      std::vector<std::vector<Matrix34>>& start_bar, std::vector<ModelGradient>& model_bar) {
-    for_each_damped(at, [&](const DampedPairSlopes& p) {
+                                      const DampingGradients& to) {
+    for_each_damped(at, [&](const DampedPairSlopes& p, const std::vector<core::contact::AreaShare>* of_weight) {
         const double a = p.pair.slope();
         for (std::size_t s = 0; s < lambda.size(); ++s) {
             Four v;
@@ -62,31 +68,33 @@ void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vecto
             }
             const Four change = pair_hessian_product(p.pair.end, at.damping.closeness, v);
             const double along = p.pair.stiffness * dot(p.end, v);
+            if (of_weight != nullptr) add_weight_gradient(*of_weight, -a * dot(p.end, v) / p.weight, to.areas_bar[s]);
             const double eps_bar = a * dot(p.end_eps, v) + along * p.closeness_by_eps;
             for (int i = 0; i < 4; ++i) {
                 const int body = p.body[i];
                 const Matrix3 &R = at.poses[body].rotation, R0 = at.damping.start[body].leftCols<3>();
                 const Vector3 turned = change[i] - lambda[s][body].tail<3>().cross(p.end[i]);
-                model_bar[s].bodies[body].vertices_bar.col(p.pair.end.vertex[i]) -=
+                to.model_bar[s].bodies[body].vertices_bar.col(p.pair.end.vertex[i]) -=
                     R.transpose() * (a * turned + along * p.end[i]) - along * R0.transpose() * p.start[i] + eps_bar * p.eps[i];
-                start_bar[s][body] += along * p.start[i] * p.X[i].homogeneous().transpose();
+                to.start_bar[s][body] += along * p.start[i] * p.X[i].homogeneous().transpose();
             }
         }
     });
 }
 
-void add_contact_damping_tangent(const DampedContacts& at, const std::vector<Matrix34>& poses_dot, const std::vector<Matrix34>& start_dot,
-                                 const ModelTangent& direction, PoseGradientTangent& out) {
-    for_each_damped(at, [&](const DampedPairSlopes& p) {
+void add_contact_damping_tangent(const DampedContacts& at, const DampingChanges& dot_of, const ModelTangent& direction,
+                                 PoseGradientTangent& out) {
+    for_each_damped(at, [&](const DampedPairSlopes& p, const std::vector<core::contact::AreaShare>* of_weight) {
         Four X_dot, v, v_start;
         for (int i = 0; i < 4; ++i) {
             const int body = p.body[i];
             X_dot[i] = direction.bodies[body].vertices_dot.col(p.pair.end.vertex[i]);
-            v[i] = poses_dot[body] * p.X[i].homogeneous() + at.poses[body].rotation * X_dot[i];
-            v_start[i] = start_dot[body] * p.X[i].homogeneous() + at.damping.start[body].leftCols<3>() * X_dot[i];
+            v[i] = dot_of.poses_dot[body] * p.X[i].homogeneous() + at.poses[body].rotation * X_dot[i];
+            v_start[i] = dot_of.start_dot[body] * p.X[i].homogeneous() + at.damping.start[body].leftCols<3>() * X_dot[i];
         }
         const double eps_dot = dot(p.eps, X_dot), a = p.pair.slope();
-        const double a_dot = p.pair.stiffness * (dot(p.end, v) - dot(p.start, v_start) + p.closeness_by_eps * eps_dot);
+        double a_dot = p.pair.stiffness * (dot(p.end, v) - dot(p.start, v_start) + p.closeness_by_eps * eps_dot);
+        if (of_weight != nullptr) a_dot += a * weight_tangent(*of_weight, dot_of.areas_dot) / p.weight;
         const Four change = pair_hessian_product(p.pair.end, at.damping.closeness, v);
         for (int i = 0; i < 4; ++i) {
             const int body = p.body[i];

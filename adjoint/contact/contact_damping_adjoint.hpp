@@ -18,17 +18,29 @@ struct DampedContacts {
     const core::contact::ContactSet& contacts;
     const std::vector<core::kinematics::Pose>& poses;
     const core::contact::ContactDamping& damping;
+    const core::contact::ContactAreas* areas = nullptr;  ///< of the same contacts, if the barrier is area-weighted
 };
 
 /// For every seed s, with the motion lambda[s][body] = (dq, phi) at the end and g = sum_i f_i . v_i:
 ///   vertices_bar -= dr/dX,  dr/dX_i = a R^T ((H v)_i - phi x f_i) + a sum_j (df_j/deps . v_j) deps/dX_i
 ///                                     + stiffness g (R^T f_i - R0^T f0_i + (dphi/deps - dphi_t0/deps) deps/dX_i),
-///   start_bar[s][body] -= dr/dP0 = - stiffness g sum_i f0_i [X_i; 1]^T.
+///   start_bar[s][body] -= dr/dP0 = - stiffness g sum_i f0_i [X_i; 1]^T,
+/// and where stiffness is area-weighted, of each pair's weight w: weight_bar -= r/w.
+struct DampingGradients {
+    std::vector<std::vector<Matrix34>>& start_bar;
+    std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted
+    std::vector<ModelGradient>& model_bar;
+};
 void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vector<std::vector<Vector6>>& lambda,
-                                      std::vector<std::vector<Matrix34>>& start_bar, std::vector<ModelGradient>& model_bar);
+                                      const DampingGradients& to);
 
-/// Adds dE/dP (3x4 per body) of the damping and its change along poses_dot and start_dot (3x4 per body, any matrices) and vertices_dot.
-void add_contact_damping_tangent(const DampedContacts& at, const std::vector<Matrix34>& poses_dot, const std::vector<Matrix34>& start_dot,
-                                 const ModelTangent& direction, PoseGradientTangent& out);
+/// Changes of the end and of P0 (3x4 per body, any matrices), and of the areas.
+struct DampingChanges {
+    const std::vector<Matrix34>&poses_dot, &start_dot;
+    const std::vector<AreaChange>& areas_dot;
+};
+/// Adds dE/dP (3x4 per body) of the damping and its change along those and vertices_dot.
+void add_contact_damping_tangent(const DampedContacts& at, const DampingChanges& dot, const ModelTangent& direction,
+                                 PoseGradientTangent& out);
 
 }  // namespace fettle::adjoint::contact

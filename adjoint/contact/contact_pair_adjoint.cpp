@@ -17,8 +17,9 @@ std::array<Vector3, 4> pair_forces_eps_derivative(const ContactPair& pair, const
     const Vector3 c1 = 2 * e2.cross(n), c2 = 2 * n.cross(e1);
     const double eps = pair.mollifier_eps, x = n.squaredNorm() / eps;
     const auto b = core::contact::barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat);
-    const double distance = 2 * p.factor * b.first * (-2 * x * (1 - x) / eps);
-    const double cross = p.factor * b.value * (4 * x - 2) / (eps * eps);
+    const double factor = p.factor * pair.weight;
+    const double distance = 2 * factor * b.first * (-2 * x * (1 - x) / eps);
+    const double cross = factor * b.value * (4 * x - 2) / (eps * eps);
     std::array<Vector3, 4> out;
     for (int i = 0; i < 4; ++i) out[i] = distance * pair.closest.weight[i] * pair.closest.difference;
     out[0] -= cross * c1;
@@ -32,7 +33,7 @@ double pair_potential_eps_derivative(const ContactPair& pair, const BarrierParam
     FETTLE_ASSERT(is_mollified(pair), "the potential of this pair does not depend on eps");
     const double x = core::contact::edge_cross_squared(pair.x) / pair.mollifier_eps;
     const double b = core::contact::barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat).value;
-    return p.factor * b * (-2 * x * (1 - x) / pair.mollifier_eps);
+    return p.factor * pair.weight * b * (-2 * x * (1 - x) / pair.mollifier_eps);
 }
 
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {

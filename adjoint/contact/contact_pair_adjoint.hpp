@@ -3,7 +3,7 @@
 ///   eps = mollifier_scale |E1|^2 |E2|^2,   E1 = X1 - X0 in the first body's frame, E2 = X3 - X2 in the second's.
 /// With x = c/eps, m = x (2 - x), m' = dm/dc = 2 (1 - x)/eps:
 ///   dm/deps = -2 x (1 - x)/eps,   dm'/deps = (4 x - 2)/eps^2,
-/// and the forces f_i = factor (m b' 2 w_i r + b m' dc/dx_i) follow by the product rule. All is zero where m = 1.
+/// and the forces f_i = factor weight (m b' 2 w_i r + b m' dc/dx_i) follow by the product rule. All is zero where m = 1.
 #pragma once
 
 #include <array>

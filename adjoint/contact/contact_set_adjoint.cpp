@@ -5,17 +5,35 @@
 
 #include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
 #include "fettle/adjoint/contact/pair_bodies.hpp"
+#include "fettle/core/base/contract.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {
 
+using core::contact::AreaShare;
 using core::contact::ContactPair;
+
+// The shares of one contact after the other; null where nothing is area-weighted.
+class SharesInOrder {
+public:
+    explicit SharesInOrder(const ContactsAtPose& at) : areas_(at.areas) {
+        FETTLE_ASSERT(areas_ == nullptr || static_cast<int>(areas_->shares.size()) == at.contacts.count, "each contact has its shares");
+    }
+    const std::vector<AreaShare>* next() { return areas_ == nullptr ? nullptr : &areas_->shares[next_++]; }
+
+private:
+    const core::contact::ContactAreas* areas_;
+    std::size_t next_ = 0;
+};
+
 }  // namespace
 
 void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vector<std::vector<Vector6>>& lambda,
-                                       std::vector<ModelGradient>& model_bar) {
+                                       std::vector<ModelGradient>& model_bar, std::vector<std::vector<AreaChange>>& areas_bar) {
+    SharesInOrder shares(at);
     for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
         for (const ContactPair& pair : list.contacts) {
+            const std::vector<AreaShare>* of_weight = shares.next();
             const std::array<int, 4> body = bodies_of(list, pair);
             const Four force = pair_forces(pair, at.parameters);
             const bool mollified = is_mollified(pair);
@@ -31,6 +49,7 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
                     const Vector6& motion = lambda[s][body[i]];
                     v[i] = motion.head<3>() + motion.tail<3>().cross(pair.x[i] - at.poses[body[i]].position);
                 }
+                if (of_weight != nullptr) add_weight_gradient(*of_weight, -dot(force, v) / pair.weight, areas_bar[s]);
                 const Four change = pair_hessian_product(pair, at.parameters, v);
                 const double eps_bar = mollified ? dot(force_eps, v) : 0.0;
                 for (int i = 0; i < 4; ++i) {
@@ -43,9 +62,11 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
 }
 
 void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Matrix34>& poses_dot, const ModelTangent& direction,
-                                  PoseGradientTangent& out) {
+                                  const std::vector<AreaChange>& areas_dot, PoseGradientTangent& out) {
+    SharesInOrder shares(at);
     for (const core::contact::BodyPairContacts& list : at.contacts.pairs)
         for (const ContactPair& pair : list.contacts) {
+            const std::vector<AreaShare>* of_weight = shares.next();
             const std::array<int, 4> body = bodies_of(list, pair);
             const Four X = undeformed(at.model, body, pair);
             Four X_dot, v;
@@ -60,7 +81,9 @@ void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Ma
                 const Four force_eps = pair_forces_eps_derivative(pair, at.parameters);
                 for (int i = 0; i < 4; ++i) force_dot[i] += eps_dot * force_eps[i];
             }
+            const double weight_dot = of_weight == nullptr ? 0 : weight_tangent(*of_weight, areas_dot) / pair.weight;
             for (int i = 0; i < 4; ++i) {
+                if (weight_dot != 0) force_dot[i] += weight_dot * force[i];
                 out.value[body[i]] += force[i] * X[i].homogeneous().transpose();
                 out.dot[body[i]] += force_dot[i] * X[i].homogeneous().transpose();
                 out.dot[body[i]].leftCols<3>() += force[i] * X_dot[i].transpose();

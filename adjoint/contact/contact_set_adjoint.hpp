@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "fettle/adjoint/contact/area_weights_adjoint.hpp"
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/contact/contact_set.hpp"
 
@@ -17,21 +18,23 @@ struct ContactsAtPose {
     const core::contact::ContactSet& contacts;
     const std::vector<core::kinematics::Pose>& poses;
     const core::contact::BarrierParameters& parameters;
+    const core::contact::ContactAreas* areas = nullptr;  ///< of the same contacts, if the barrier is area-weighted
 };
 
 /// vertices_bar -= dr/dX for every seed s and body, with the motion lambda[s][body] = (dq, phi):
 ///   v_i = lambda_q + phi x R X_i,   dr/dX_i = R^T ((H v)_i - phi x f_i) + sum_j (df_j/deps . v_j) deps/dX_i.
 /// Contacts are visited once, with all seeds inside.
+/// @param areas_bar  [seed][body]: the areas' part is subtracted; of no matter where nothing is area-weighted
 void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vector<std::vector<Vector6>>& lambda,
-                                       std::vector<ModelGradient>& model_bar);
+                                       std::vector<ModelGradient>& model_bar, std::vector<std::vector<AreaChange>>& areas_bar);
 
 /// dE/dP (3x4 per body) of the barrier, sum f_i [X_i; 1]^T, and its change.
 struct PoseGradientTangent {
     std::vector<Matrix34> value, dot;  ///< [body]
 };
 
-/// Along poses_dot (3x4 per body, any matrices) and vertices_dot (`direction`); added to `out`.
+/// Along poses_dot (3x4 per body, any matrices), vertices_dot (`direction`) and the areas' change; added to `out`.
 void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Matrix34>& poses_dot, const ModelTangent& direction,
-                                  PoseGradientTangent& out);
+                                  const std::vector<AreaChange>& areas_dot, PoseGradientTangent& out);
 
 }  // namespace fettle::adjoint::contact

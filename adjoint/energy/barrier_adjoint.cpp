@@ -4,22 +4,21 @@
 namespace fettle::adjoint::energy {
 namespace {
 
-Errors check_barrier(const core::model::Model& model) {
-    if (!model.area_weighted) return {};
-    Errors errors{refusal("contact/area_weighted", "the area-weighted barrier")};
-    errors.back().message += "; switch `area_weighted` off";
-    return errors;
+Errors check_barrier(const core::model::Model&) { return {}; }
+
+contact::ContactsAtPose contacts_at(const StepEnd& at, const core::contact::ContactAreas& areas) {
+    return {*at.problem.model, at.contacts, at.poses, at.problem.barrier, at.problem.model->area_weighted ? &areas : nullptr};
 }
 
-contact::ContactsAtPose contacts_at(const StepEnd& at) { return {*at.problem.model, at.contacts, at.poses, at.problem.barrier}; }
-
-void subtract_reverse_of_barrier(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient&,
+void subtract_reverse_of_barrier(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
                                  std::vector<ModelGradient>& model_bar) {
-    contact::subtract_contact_vertices_adjoint(contacts_at(at), motion, model_bar);
+    const core::contact::ContactAreas areas = contact::areas_of_contacts(*at.problem.model, at.poses);
+    contact::subtract_contact_vertices_adjoint(contacts_at(at, areas), motion, model_bar, step_bar.areas_bar);
 }
 
 void add_tangent_of_barrier(const StepEnd& at, const StepTangent& step, const ModelTangent& direction, contact::PoseGradientTangent& out) {
-    contact::add_contact_gradient_tangent(contacts_at(at), step.poses_dot, direction, out);
+    const core::contact::ContactAreas areas = contact::areas_of_contacts(*at.problem.model, at.poses);
+    contact::add_contact_gradient_tangent(contacts_at(at, areas), step.poses_dot, direction, step.areas_dot, out);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work. The area-weighted one is refused.
+/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"

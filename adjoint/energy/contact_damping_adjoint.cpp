@@ -6,23 +6,25 @@
 namespace fettle::adjoint::energy {
 namespace {
 
-contact::DampedContacts damped_contacts_at(const StepEnd& at) {
-    return {*at.problem.model, at.contacts, at.poses, at.problem.contact_damping};
+contact::DampedContacts damped_contacts_at(const StepEnd& at, const core::contact::ContactAreas& areas) {
+    return {*at.problem.model, at.contacts, at.poses, at.problem.contact_damping, at.problem.model->area_weighted ? &areas : nullptr};
 }
 
 Errors check_contact_damping(const core::model::Model&) { return {}; }
 
-// Implicit Euler's P_slip is the start, where the rates are measured from.
+// Rates are measured from the start with every integrator.
 void subtract_reverse_of_contact_damping(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
                                          std::vector<ModelGradient>& model_bar) {
     if (!(at.problem.contact_damping.factor > 0)) return;
-    contact::subtract_contact_damping_adjoint(damped_contacts_at(at), motion, step_bar.slip_reference_bar, model_bar);
+    const core::contact::ContactAreas areas = contact::areas_of_contacts(*at.problem.model, at.poses);
+    contact::subtract_contact_damping_adjoint(damped_contacts_at(at, areas), motion, {step_bar.start_bar, step_bar.areas_bar, model_bar});
 }
 
 void add_tangent_of_contact_damping(const StepEnd& at, const StepTangent& step, const ModelTangent& direction,
                                     contact::PoseGradientTangent& out) {
     if (!(at.problem.contact_damping.factor > 0)) return;
-    contact::add_contact_damping_tangent(damped_contacts_at(at), step.poses_dot, step.slip_reference_dot, direction, out);
+    const core::contact::ContactAreas areas = contact::areas_of_contacts(*at.problem.model, at.poses);
+    contact::add_contact_damping_tangent(damped_contacts_at(at, areas), {step.poses_dot, step.start_dot, step.areas_dot}, direction, out);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ inline Matrix34 inertia_gradient_tangent(const Matrix34& pose_minus_hat, const M
     return pose_minus_hat_dot * moments + pose_minus_hat * moments_dot;
 }
 
-/// Refuses a body that moves freely whose moments are not density * solid_moments(vertices).
+/// In the moments themselves; how they follow from vertices and density is adjoint/model/body_mass_adjoint.hpp.
 extern const TermAdjoint inertia_term_adjoint;
 
 }  // namespace fettle::adjoint::energy

@@ -3,7 +3,8 @@
 /// is
 ///   r(v) = g'(m) (dm . v)
 /// with g' linear in the coefficient and, of a force, in the curve's values, and a function of m - reference or m - m_slip, so that
-/// dg'/d(reference) = -g''; m_slip is m at the step's start (implicit Euler, quasi-static). The frames' placement moves m and dm . v.
+/// dg'/d(reference) = -g''; m_slip is m(P0), of BDF2 (4 m(P0) - m(P_-1))/3, of Newmark m(P0) + G . (P_slip - P0), G = (dm/dP)(P0). The
+/// frames' placement moves m, m_slip and dm . v.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"

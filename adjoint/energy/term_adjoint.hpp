@@ -24,8 +24,10 @@ struct StepEnd : core::energy::DerivativesAt {
 struct StepGradient {
     std::vector<std::vector<Matrix34>> pose_hat_bar;
     std::vector<std::vector<Matrix34>> slip_reference_bar;
+    std::vector<std::vector<Matrix34>> start_bar, before_bar;  ///< of P0 and P_-1 themselves
     std::vector<std::vector<Matrix4>> moments_bar;
-    std::vector<std::vector<Matrix34>> lag_poses_bar{};  ///< of where friction was taken from
+    std::vector<std::vector<contact::AreaChange>> areas_bar;  ///< where the barrier is area-weighted
+    std::vector<std::vector<Matrix34>> lag_poses_bar{};       ///< of where friction was taken from
 };
 
 /// Changes of the end poses and of the same constants, by body.
@@ -33,7 +35,9 @@ struct StepTangent {
     const std::vector<Matrix34>& poses_dot;
     const std::vector<Matrix34>& pose_hat_dot;
     const std::vector<Matrix34>& slip_reference_dot;
+    const std::vector<Matrix34>&start_dot, &before_dot;  ///< of P0 and P_-1; the latter of BDF2 after its first step
     const std::vector<Matrix4>& moments_dot;
+    const std::vector<contact::AreaChange>& areas_dot;
     const std::vector<Matrix34>& lag_poses_dot;
 };
 

@@ -9,6 +9,8 @@
 namespace fettle::adjoint::geometry {
 namespace {
 
+using core::geometry::Edge;
+using core::geometry::Opening;
 using core::geometry::Triangle;
 
 /// measure (6 V, or area) times corner polynomials: what solids and surfaces share. Factors of the second, first and zeroth moment.
@@ -93,6 +95,42 @@ Matrix4 tangent(const Matrix3X& vertices, const std::vector<Triangle>& triangles
     return moments_dot;
 }
 
+// The solid as its caps close it: the openings' centres are vertices behind the mesh's own.
+struct CappedMesh {
+    std::vector<Triangle> triangles;
+    Eigen::Index own = 0;  // vertices
+    const std::vector<Opening>& openings;
+
+    CappedMesh(Eigen::Index vertices, const std::vector<Triangle>& surface, const std::vector<Opening>& found)
+        : triangles(surface), own(vertices), openings(found) {
+        for (std::size_t k = 0; k < openings.size(); ++k)
+            for (const Edge& edge : openings[k].edges) triangles.push_back({edge[1], edge[0], static_cast<int>(own) + static_cast<int>(k)});
+    }
+
+    // Of coordinates, or of their changes.
+    Matrix3X with_centres(const Matrix3X& vertices) const {
+        Matrix3X out(3, own + static_cast<Eigen::Index>(openings.size()));
+        out.leftCols(own) = vertices;
+        for (std::size_t k = 0; k < openings.size(); ++k) {
+            Vector3 sum = Vector3::Zero();
+            for (const Edge& edge : openings[k].edges) sum += vertices.col(edge[0]) + vertices.col(edge[1]);
+            out.col(own + static_cast<Eigen::Index>(k)) = sum / (2 * static_cast<double>(openings[k].edges.size()));
+        }
+        return out;
+    }
+
+    void add_without_centres(const Matrix3X& bar, Matrix3X& vertices_bar) const {
+        vertices_bar += bar.leftCols(own);
+        for (std::size_t k = 0; k < openings.size(); ++k) {
+            const Vector3 share = bar.col(own + static_cast<Eigen::Index>(k)) / (2 * static_cast<double>(openings[k].edges.size()));
+            for (const Edge& edge : openings[k].edges) {
+                vertices_bar.col(edge[0]) += share;
+                vertices_bar.col(edge[1]) += share;
+            }
+        }
+    }
+};
+
 }  // namespace
 
 void solid_moments_adjoint(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const Matrix4& moments_bar,
@@ -111,6 +149,71 @@ void surface_moments_adjoint(const Matrix3X& vertices, const std::vector<Triangl
 
 Matrix4 surface_moments_tangent(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const Matrix3X& vertices_dot) {
     return tangent(vertices, triangles, vertices_dot, surface_factors, surface_measure);
+}
+
+void capped_solid_moments_adjoint(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& openings,
+                                  const Matrix4& moments_bar, Matrix3X& vertices_bar) {
+    if (openings.empty()) return solid_moments_adjoint(vertices, triangles, moments_bar, vertices_bar);
+    const CappedMesh capped(vertices.cols(), triangles, openings);
+    const Matrix3X all = capped.with_centres(vertices);
+    Matrix3X bar = Matrix3X::Zero(3, all.cols());
+    solid_moments_adjoint(all, capped.triangles, moments_bar, bar);
+    capped.add_without_centres(bar, vertices_bar);
+}
+
+Matrix4 capped_solid_moments_tangent(const Matrix3X& vertices, const std::vector<Triangle>& triangles, const std::vector<Opening>& openings,
+                                     const Matrix3X& vertices_dot) {
+    if (openings.empty()) return solid_moments_tangent(vertices, triangles, vertices_dot);
+    const CappedMesh capped(vertices.cols(), triangles, openings);
+    return solid_moments_tangent(capped.with_centres(vertices), capped.triangles, capped.with_centres(vertices_dot));
+}
+
+void line_moments_adjoint(const Matrix3X& vertices, const std::vector<Edge>& edges, const Matrix4& moments_bar, Matrix3X& vertices_bar) {
+    const Matrix4 symmetric = (moments_bar + moments_bar.transpose()) / 2;
+    const Matrix3 second_bar = symmetric.topLeftCorner<3, 3>() / 6;
+    const Vector3 first_bar = symmetric.topRightCorner<3, 1>();
+    for (const Edge& edge : edges) {
+        const Vector3 a = vertices.col(edge[0]), b = vertices.col(edge[1]), sum = a + b;
+        const double length = (b - a).norm();
+        if (length == 0) continue;
+        const Vector3 along = (b - a) / length, sum_bar = second_bar * sum;
+        const double density = a.dot(second_bar * a) + b.dot(second_bar * b) + sum.dot(sum_bar) + first_bar.dot(sum) + symmetric(3, 3);
+        vertices_bar.col(edge[0]) += length * (2 * (second_bar * a + sum_bar) + first_bar) - density * along;
+        vertices_bar.col(edge[1]) += length * (2 * (second_bar * b + sum_bar) + first_bar) + density * along;
+    }
+}
+
+Matrix4 line_moments_tangent(const Matrix3X& vertices, const std::vector<Edge>& edges, const Matrix3X& vertices_dot) {
+    Matrix4 out = Matrix4::Zero();
+    for (const Edge& edge : edges) {
+        const Vector3 a = vertices.col(edge[0]), b = vertices.col(edge[1]), sum = a + b;
+        const Vector3 a_dot = vertices_dot.col(edge[0]), b_dot = vertices_dot.col(edge[1]), sum_dot = a_dot + b_dot;
+        const double length = (b - a).norm();
+        if (length == 0) continue;
+        const double length_dot = (b - a).dot(b_dot - a_dot) / length;
+        const Matrix3 second = a * a.transpose() + b * b.transpose() + sum * sum.transpose();
+        const Matrix3 half_dot = a_dot * a.transpose() + b_dot * b.transpose() + sum_dot * sum.transpose();
+        const Vector3 first_dot = 0.5 * (length_dot * sum + length * sum_dot);
+        out.topLeftCorner<3, 3>() += (length_dot * second + length * (half_dot + half_dot.transpose())) / 6;
+        out.topRightCorner<3, 1>() += first_dot;
+        out.bottomLeftCorner<1, 3>() += first_dot.transpose();
+        out(3, 3) += length_dot;
+    }
+    return out;
+}
+
+void point_moments_adjoint(const Matrix3X& vertices, const Matrix4& moments_bar, Matrix3X& vertices_bar) {
+    const Matrix4 symmetric = moments_bar + moments_bar.transpose();
+    vertices_bar += symmetric.topLeftCorner<3, 3>() * vertices;
+    vertices_bar.colwise() += Vector3(symmetric.topRightCorner<3, 1>());
+}
+
+Matrix4 point_moments_tangent(const Matrix3X& vertices, const Matrix3X& vertices_dot) {
+    const Matrix3 half = vertices_dot * vertices.transpose();
+    const Vector3 first = vertices_dot.rowwise().sum();
+    Matrix4 out;
+    out << half + half.transpose(), first, first.transpose(), 0;
+    return out;
 }
 
 Matrix4 shifted_moments_adjoint(const Matrix4& shifted_bar, const Vector3& shift) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::geometry {
 
@@ -35,6 +35,22 @@ void surface_moments_adjoint(const Matrix3X& vertices, const std::vector<core::g
 /// Derivative of surface_moments along vertices_dot (3 x n). Symmetric. Zero-area triangles as above.
 Matrix4 surface_moments_tangent(const Matrix3X& vertices, const std::vector<core::geometry::Triangle>& triangles,
                                 const Matrix3X& vertices_dot);
+
+/// The same of capped_solid_moments: each opening's fan of tetrahedra (0, e1, e0, centre), whose centre moves with the opening's edges.
+/// @param openings  openings(vertices, triangles)
+void capped_solid_moments_adjoint(const Matrix3X& vertices, const std::vector<core::geometry::Triangle>& triangles,
+                                  const std::vector<core::geometry::Opening>& openings, const Matrix4& moments_bar, Matrix3X& vertices_bar);
+Matrix4 capped_solid_moments_tangent(const Matrix3X& vertices, const std::vector<core::geometry::Triangle>& triangles,
+                                     const std::vector<core::geometry::Opening>& openings, const Matrix3X& vertices_dot);
+
+/// Of line_moments: per edge L = |b - a| f, f = (a'Aa + b'Ab + S'AS)/6 + g.S + w, S = a + b. An edge of exactly zero length contributes 0.
+void line_moments_adjoint(const Matrix3X& vertices, const std::vector<core::geometry::Edge>& edges, const Matrix4& moments_bar,
+                          Matrix3X& vertices_bar);
+Matrix4 line_moments_tangent(const Matrix3X& vertices, const std::vector<core::geometry::Edge>& edges, const Matrix3X& vertices_dot);
+
+/// Of point_moments: per vertex x'Ax + 2 g.x + w.
+void point_moments_adjoint(const Matrix3X& vertices, const Matrix4& moments_bar, Matrix3X& vertices_bar);
+Matrix4 point_moments_tangent(const Matrix3X& vertices, const Matrix3X& vertices_dot);
 
 /// Reverse map of shifted_moments in its moments (the shift is a constant): M' = T M T^T, so M_bar = T^T M'_bar T. The forward map is
 /// shifted_moments itself, as it is linear.

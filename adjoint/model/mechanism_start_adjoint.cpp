@@ -2,10 +2,9 @@
 #include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
 
 #include "fettle/adjoint/constraint/assembly_adjoint.hpp"
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/constraint/saddle_solver.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
 #include "fettle/core/model/mechanism_start.hpp"
 
@@ -207,14 +206,8 @@ void reverse_assembly(const Model& model, const AssemblyProblem& problem, Motion
 }
 
 void add_moments(const Model& model, const std::vector<Matrix4>& moments_bar, ModelGradient& gradient) {
-    for (std::size_t i = 0; i < moments_bar.size(); ++i) {
-        if (moments_bar[i].isZero(0)) continue;
-        const Body& body = model.bodies[i];
-        const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-        gradient.bodies[i].density_bar += moments_bar[i].cwiseProduct(solid).sum();
-        geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar[i],
-                                        gradient.bodies[i].vertices_bar);
-    }
+    for (std::size_t i = 0; i < moments_bar.size(); ++i)
+        mass_moments_adjoint(model.bodies[i], model.dhat, moments_bar[i], gradient.bodies[i]);
 }
 
 }  // namespace

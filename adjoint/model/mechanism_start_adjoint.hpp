@@ -21,7 +21,7 @@ struct WrittenStartGradient {
 };
 
 /// @param gradient  whole: of the model's start too. What the start hangs on of frames, rows, densities and vertices is added to it.
-/// Contract: masses of bodies that may move are those of solids of their density.
+/// Contract: masses of bodies that may move are those of their meshes and densities (body_mass_adjoint.hpp: check_masses).
 WrittenStartGradient written_start_adjoint(const core::model::Model& model, ModelGradient& gradient);
 
 }  // namespace fettle::adjoint::model

@@ -69,4 +69,33 @@ void amount_adjoint(const Mesh& mesh, MassKind kind, double bar, Matrix3X& verti
     }
 }
 
+void unit_moments_adjoint(const Mesh& mesh, MassKind kind, const Matrix4& moments_bar, Matrix3X& vertices_bar) {
+    switch (kind) {
+        case MassKind::volume:
+            return geometry::capped_solid_moments_adjoint(
+                mesh.vertices, mesh.triangles, core::geometry::openings(mesh.vertices, mesh.triangles), moments_bar, vertices_bar);
+        case MassKind::area:
+            return geometry::surface_moments_adjoint(mesh.vertices, mesh.triangles, moments_bar, vertices_bar);
+        case MassKind::length:
+            return geometry::line_moments_adjoint(mesh.vertices, mesh.edges, moments_bar, vertices_bar);
+        case MassKind::vertex:
+            return geometry::point_moments_adjoint(mesh.vertices, moments_bar, vertices_bar);
+    }
+}
+
+Matrix4 unit_moments_tangent(const Mesh& mesh, MassKind kind, const Matrix3X& vertices_dot) {
+    switch (kind) {
+        case MassKind::volume:
+            return geometry::capped_solid_moments_tangent(mesh.vertices, mesh.triangles,
+                                                          core::geometry::openings(mesh.vertices, mesh.triangles), vertices_dot);
+        case MassKind::area:
+            return geometry::surface_moments_tangent(mesh.vertices, mesh.triangles, vertices_dot);
+        case MassKind::length:
+            return geometry::line_moments_tangent(mesh.vertices, mesh.edges, vertices_dot);
+        case MassKind::vertex:
+            break;
+    }
+    return geometry::point_moments_tangent(mesh.vertices, vertices_dot);
+}
+
 }  // namespace fettle::adjoint::scene

@@ -18,4 +18,9 @@ namespace fettle::adjoint::scene {
 /// @param vertices_bar  3 x n like the mesh's vertices, added into.
 void amount_adjoint(const core::geometry::Mesh& mesh, core::scene::MassKind kind, double amount_bar, Matrix3X& vertices_bar);
 
+/// The same of all of unit_moments(mesh, kind): vertices_bar += (dM/dX)^T moments_bar, and M's change along vertices_dot
+/// (geometry/mass_moments_adjoint.hpp).
+void unit_moments_adjoint(const core::geometry::Mesh& mesh, core::scene::MassKind kind, const Matrix4& moments_bar, Matrix3X& vertices_bar);
+Matrix4 unit_moments_tangent(const core::geometry::Mesh& mesh, core::scene::MassKind kind, const Matrix3X& vertices_dot);
+
 }  // namespace fettle::adjoint::scene

@@ -7,10 +7,10 @@
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {
@@ -33,7 +33,7 @@ public:
           seeds_(seeds),
           solver_(model),
           dofs_(solver_.dofs()),
-          angles_(angles_along(model, trajectory)) {
+          history_(sweep_history(model, trajectory)) {
         const std::size_t bodies = model.bodies.size();
         const int steps = static_cast<int>(trajectory.steps.size());
         for (const TrajectoryGradient& seed : seeds)
@@ -41,9 +41,12 @@ public:
         out_.assign(seeds.size(), zero_model_gradient(model, steps));
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
-        velocity_end_ = velocity_start_ = velocity_before_ = end_;
-        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = step_bar_.lag_poses_bar = end_;
+        velocity_end_ = velocity_start_ = velocity_before_ = acceleration_end_ = acceleration_start_ = end_;
+        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = step_bar_.start_bar = step_bar_.before_bar = step_bar_.lag_poses_bar = end_;
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
+        step_bar_.areas_bar.resize(seeds.size());
+        for (auto& of_seed : step_bar_.areas_bar)
+            for (std::size_t i = 0; model.area_weighted && i < bodies; ++i) of_seed.push_back(contact::zero_areas(model.bodies[i]));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
         lambda_ = motion_ = y_bar_;
         mu_.resize(seeds.size());
@@ -62,7 +65,7 @@ public:
             // end <- start <- before <- zero
             std::swap(end_, start_);
             std::swap(start_, before_);
-            if (is_bdf2()) rotate_velocities();
+            if (is_bdf2() || is_newmark()) rotate_velocities();
         }
         finish();
         return {};
@@ -77,12 +80,48 @@ private:
     }
 
     bool is_bdf2() const { return model_.integrator == core::scene::Integrator::bdf2; }
+    bool is_newmark() const { return model_.integrator == core::scene::Integrator::newmark; }
 
     void rotate_velocities() {
         for (auto& bodies : velocity_end_)
             for (Matrix34& p : bodies) p.setZero();
         std::swap(velocity_end_, velocity_start_);
         std::swap(velocity_start_, velocity_before_);
+        for (auto& bodies : acceleration_end_)
+            for (Matrix34& p : bodies) p.setZero();
+        std::swap(acceleration_end_, acceleration_start_);
+    }
+
+    energy::NewmarkStep newmark_step(int t, std::size_t i) const {
+        const NewmarkHistory& newmark = history_.newmark;
+        return {model_.bodies[i],
+                model_.timestep,
+                pose_matrix(trajectory_.poses[t][i]),
+                newmark.velocities[t][i],
+                newmark.accelerations[t][i],
+                trajectory_.poses[t + 1][i]};
+    }
+
+    // Newmark's V and A at the step's end.
+    void rates_back(int t) {
+        for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+            const bool is_solved_for = core::energy::has_free_dof(model_.bodies[i]);
+            for (std::size_t s = 0; s < seeds_.size(); ++s) {
+                if (!is_solved_for) {
+                    const Matrix34 bar = velocity_end_[s][i] / model_.timestep;
+                    end_[s][i] += bar;
+                    start_[s][i] -= bar;
+                    continue;
+                }
+                const energy::NewmarkStepChange bar =
+                    energy::newmark_rates_adjoint(newmark_step(t, i), {velocity_end_[s][i], acceleration_end_[s][i]});
+                end_[s][i] += bar.end;
+                start_[s][i] += bar.before;
+                velocity_start_[s][i] += bar.velocity;
+                acceleration_start_[s][i] += bar.acceleration;
+                step_bar_.moments_bar[s][i] += bar.moments;
+            }
+        }
     }
 
     // BDF2's V = (P - P_slip)/slip_time at the step's end.
@@ -109,15 +148,16 @@ private:
 
     // Through the rounds of friction, last to first: each hands back what it owes to where the one before ended.
     Errors step_back(int t) {
-        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], std::move(known_));
+        const StepRounds rounds(model_, trajectory_, t, history_, std::move(known_));
         known_ = rounds.at_start();
-        set_zero(step_bar_.pose_hat_bar);
-        set_zero(step_bar_.slip_reference_bar);
+        for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar, &step_bar_.start_bar, &step_bar_.before_bar})
+            set_zero(*bars);
         for (int round = rounds.count(); round > 0; --round) {
             const bool is_last = round == rounds.count();
             const LinearisedStep step = rounds.linearise(round, solver_);
             if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
             if (is_last && is_bdf2()) velocity_back(step);
+            if (is_last && is_newmark()) rates_back(t);
             if (!round_back(t, step, is_last)) return StepSolver::unsolved(trajectory_, t);
             if (rounds.is_fixed_point()) {
                 if (Errors errors = fixed_point_back(t, step); !errors.empty()) return errors;
@@ -128,15 +168,22 @@ private:
                 add_lag_to_start();
             }
         }
-        const double slip_time = rounds.slip_time();
+        start_back(t, rounds.problem());
+        return {};
+    }
+
+    // What the step's constants follow from.
+    void start_back(int t, const core::energy::StepProblem& problem) {
         for (std::size_t s = 0; s < seeds_.size(); ++s)
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                start_[s][i] += step_bar_.start_bar[s][i];
                 if (is_bdf2())
-                    bdf2_back(t, s, i, slip_time);
+                    bdf2_back(t, s, i, problem.slip_time);
+                else if (is_newmark())
+                    newmark_back(s, i, problem.weight);
                 else
                     pose_hat_back(t, s, i);
             }
-        return {};
     }
 
     // One solve, from end_ to lag_poses_bar and the step's constants.
@@ -149,7 +196,10 @@ private:
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
             if (step.rows.count() > 0) add_transposed(step.rows, mu_[s], h_lambda);
-            for (std::size_t i = 0; i < model_.bodies.size(); ++i) prescribed_back(t, s, i, step, h_lambda[i]);
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                torque_back(t, s, i, step);
+                prescribed_back(t, s, i, step, h_lambda[i]);
+            }
         }
         return true;
     }
@@ -202,6 +252,22 @@ private:
         return solution.is_one;
     }
 
+    // The chart's torque: its part of the residual is - weight torque . theta, constant in the chart.
+    void torque_back(int t, std::size_t s, std::size_t i, const LinearisedStep& step) {
+        const Body& body = model_.bodies[i];
+        const Vector3 bar = step.problem.weight * lambda_[s][i].tail<3>();
+        Vector3& torque_bar = out_[s].bodies[i].torque_bar;
+        if (!energy::has_chart_torque(model_)) {
+            torque_bar += bar;
+            return;
+        }
+        const energy::ChartTorqueChange change =
+            energy::chart_torque_adjoint(body.torque, trajectory_.poses[t][i].rotation, step.problem.pose_hat[i], bar);
+        torque_bar += change.torque;
+        step_bar_.pose_hat_bar[s][i].leftCols<3>() += change.hat;
+        start_[s][i].leftCols<3>() += change.rotation;
+    }
+
     // Prescribed coordinates' increments, and what they are measured from: the start's position and the chart's base.
     void prescribed_back(int t, std::size_t s, std::size_t i, const LinearisedStep& step, const Vector6& h_lambda) {
         const Body& body = model_.bodies[i];
@@ -210,11 +276,14 @@ private:
             if (!is_free(body, k)) increment_bar[k] = y_bar_[s][i][k] - h_lambda[k];
         out_[s].bodies[i].increment_bar[t] += increment_bar;
         start_[s][i].col(3) += increment_bar.head<3>();
-        if (rotates_freely(body)) return;
+        const bool has_torque = !body.torque.isZero(0);
+        if (rotates_freely(body) && !has_torque) return;
         const Vector3& theta = step.points[i].rotation_vector;
         const Vector3 lambda_theta = lambda_[s][i].tail<3>(), phi = motion_[s][i].tail<3>();
         const Matrix3 back = core::kinematics::left_jacobian_inverse(theta).transpose();
-        const Vector3 torque = back * step.derivatives.gradient[i].tail<3>();
+        Vector3 chart_torque = step.derivatives.gradient[i].tail<3>();  // of what depends on poses alone
+        if (has_torque) chart_torque += step.problem.weight * step.problem.torque[i];
+        const Vector3 torque = back * chart_torque;
         const Matrix3 curvature = core::kinematics::chart_curvature(0.5 * cross_matrix(torque), theta);
         const Vector3 end_bar = back * (increment_bar.tail<3>() + curvature * lambda_theta) + 0.5 * phi.cross(torque);
         const Vector3 base_bar = core::kinematics::rotation(theta).transpose() * end_bar;
@@ -251,23 +320,45 @@ private:
             return;
         }
         start_[s][i] += 4.0 / 3 * slip;
-        before_[s][i] -= 1.0 / 3 * slip;
+        before_[s][i] += step_bar_.before_bar[s][i] - 1.0 / 3 * slip;
         velocity_start_[s][i] += 4.0 / 3 * slip_time * hat;
         velocity_before_[s][i] -= 1.0 / 3 * slip_time * hat;
+    }
+
+    // P_slip = P + h/2 V, P_hat = P + h V + weight (A + [0 | gravity]), weight = h^2/4.
+    void newmark_back(std::size_t s, std::size_t i, double weight) {
+        const Matrix34 &hat = step_bar_.pose_hat_bar[s][i], &slip = step_bar_.slip_reference_bar[s][i];
+        start_[s][i] += hat + slip;
+        velocity_start_[s][i] += model_.timestep * (hat + 0.5 * slip);
+        acceleration_start_[s][i] += weight * hat;
+        out_[s].gravity_bar += weight * hat.col(3);
+    }
+
+    // The first A follows from the start.
+    void newmark_start_back(std::size_t s, std::size_t i) {
+        const Body& body = model_.bodies[i];
+        BodyGradient& bar = out_[s].bodies[i];
+        bar.velocity_start_bar += velocity_end_[s][i];
+        if (!core::energy::has_free_dof(body)) return;
+        const energy::StartChange start = energy::start_acceleration_adjoint(body, model_.gravity, acceleration_end_[s][i]);
+        bar.velocity_start_bar += start.velocity;
+        end_[s][i].leftCols<3>() += start.rotation;
+        bar.force_bar += start.force;
+        bar.torque_bar += start.torque;
+        out_[s].gravity_bar += start.gravity;
+        step_bar_.moments_bar[s][i] += start.moments;
     }
 
     // After the first step the swaps have left P_bar[0] in end_.
     void finish() {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
             const Body& body = model_.bodies[i];
-            const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
             for (std::size_t s = 0; s < seeds_.size(); ++s) {
                 BodyGradient& bar = out_[s].bodies[i];
+                if (is_newmark()) newmark_start_back(s, i);
                 bar.pose_start_bar = end_[s][i];
-                if (step_bar_.moments_bar[s][i].isZero(0)) continue;
-                bar.density_bar = step_bar_.moments_bar[s][i].cwiseProduct(solid).sum();
-                geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * step_bar_.moments_bar[s][i],
-                                                bar.vertices_bar);
+                model::mass_moments_adjoint(body, model_.dhat, step_bar_.moments_bar[s][i], bar);
+                if (model_.area_weighted) contact::areas_adjoint(body.mesh, step_bar_.areas_bar[s][i], bar.vertices_bar);
             }
         }
     }
@@ -277,11 +368,12 @@ private:
     const std::vector<TrajectoryGradient>& seeds_;
     StepSolver solver_;
     const core::solver::FreeDofs dofs_;
-    const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
+    const SweepHistory history_;
     std::vector<ModelGradient> out_;
     std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
-    std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2)
-    energy::StepGradient step_bar_;  // P_hat's and P_slip's of the step at hand, the lag's of the round; the moments' of all
+    std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2, Newmark)
+    std::vector<std::vector<Matrix34>> acceleration_end_, acceleration_start_;            // of A (Newmark)
+    energy::StepGradient step_bar_;  // of the step at hand, the lag's of the round; moments' and areas' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
     std::shared_ptr<const contact::LaggedContacts> known_;  // with friction: at the start of the step that was gone through last
     std::vector<VectorX> mu_;                               // [seed]: adjoint variable of the rows

@@ -9,9 +9,9 @@ std::vector<VectorX> row_multipliers(const core::model::Model& model, const core
     std::vector<VectorX> out;
     if (model.mechanism.rows.empty()) return out;
     StepSolver solver(model);
-    const std::vector<std::vector<double>> angles = angles_along(model, trajectory);
+    const SweepHistory history = sweep_history(model, trajectory);
     for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
-        out.push_back(linearise_step(model, trajectory, static_cast<int>(t), angles[t], solver).multipliers);
+        out.push_back(linearise_step(model, trajectory, static_cast<int>(t), history, solver).multipliers);
     return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "fettle/adjoint/energy/friction_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
 
@@ -36,30 +37,16 @@ std::vector<Matrix34> bdf2_velocities_at(const core::model::Model& model, const 
 }
 
 core::energy::History history_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                                 const std::vector<double>& angles) {
+                                 const SweepHistory& sweep) {
+    const std::vector<double>& angles = sweep.angles[static_cast<std::size_t>(t)];
+    if (model.integrator == core::scene::Integrator::newmark)
+        return {trajectory.poses[t], sweep.newmark.velocities[t], {}, {}, sweep.newmark.accelerations[t], angles};
     core::energy::History out{trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}, angles};
     if (model.integrator != core::scene::Integrator::bdf2 || t == 0) return out;
     out.velocities = bdf2_velocities_at(model, trajectory, t);
     out.velocities_before = bdf2_velocities_at(model, trajectory, t - 1);
     for (const core::kinematics::Pose& pose : trajectory.poses[t - 1]) out.poses_before.push_back(pose_matrix(pose));
     return out;
-}
-
-Errors check_integrator(const core::model::Model& model) {
-    using core::scene::Integrator;
-    if (model.integrator == Integrator::implicit_euler || model.integrator == Integrator::quasi_static) return {};
-    const auto refused = [](const std::string& what, const std::string& instead) {
-        Errors errors{energy::refusal("integrator", what)};
-        errors.back().message += "; " + instead;
-        return errors;
-    };
-    if (model.integrator == Integrator::newmark)
-        return refused("a simulation by `newmark`", "`implicit_euler`, `bdf2` and `quasi_static` can");
-    if (model.contact_damping_time > 0) return refused("damping of contacts in a simulation by `bdf2`", "with `implicit_euler` it can");
-    for (const core::model::MeasureTerm& term : model.mechanism.terms)
-        if (term.kind == core::model::LawKind::damper || term.kind == core::model::LawKind::friction)
-            return refused("the damping or friction of '" + term.name + "' in a simulation by `bdf2`", "with `implicit_euler` it can");
-    return {};
 }
 
 Errors check_scripts(const core::model::Model& model) {
@@ -166,6 +153,22 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
     return {};
 }
 
+// Of an area-weighted barrier.
+Errors StepSolver::check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
+    const core::model::Model& model = *step.problem.model;
+    core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
+    if (areas.equal.empty() && step.lag) areas = step.lag->areas;
+    if (areas.equal.empty()) return {};
+    const core::contact::EqualAreas& e = areas.equal.front();
+    Errors errors{energy::refusal("step " + std::to_string(t),
+                                  "the step at t = " + std::to_string(trajectory.time_start + t * trajectory.timestep) + " s: edge " +
+                                      std::to_string(e.edge_a) + " of '" + model.bodies[e.body_a].name + "' and edge " +
+                                      std::to_string(e.edge_b) + " of '" + model.bodies[e.body_b].name +
+                                      "' have the same area, of which the area-weighted barrier takes the lesser; that")};
+    errors.back().message += "; switch `area_weighted` off";
+    return errors;
+}
+
 Errors StepSolver::unsolved(const core::stepper::Trajectory& trajectory, int t) {
     const double time = trajectory.time_start + t * trajectory.timestep;
     return {
@@ -185,6 +188,7 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     indefinite_.reset();
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
+    if (Errors errors = check_areas(trajectory, t, step); !errors.empty()) return errors;
     if (!saddle_) {
         if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
     } else {
@@ -257,10 +261,29 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
     return out;
 }
 
-StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                       const std::vector<double>& angles, std::shared_ptr<const contact::LaggedContacts> known)
-    : problem_(core::energy::step_problem(model, history_at(model, trajectory, t, angles), model.kappa)), known_(std::move(known)) {
-    set_end_time(problem_, t * model.timestep + model.timestep);
+SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+    SweepHistory out{angles_along(model, trajectory), {}};
+    if (model.integrator != core::scene::Integrator::newmark) return out;
+    core::energy::History now = core::energy::start_history(model);
+    now.poses = trajectory.poses[0];
+    for (std::size_t t = 0; t + 1 < trajectory.poses.size(); ++t) {
+        out.newmark.velocities.push_back(now.velocities);
+        out.newmark.accelerations.push_back(now.accelerations);
+        now = advanced(model, now, integration_step(model, now), trajectory.poses[t + 1]);
+    }
+    return out;
+}
+
+core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                                     const SweepHistory& history) {
+    core::energy::StepProblem problem = core::energy::step_problem(model, history_at(model, trajectory, t, history), model.kappa);
+    set_end_time(problem, t * model.timestep + model.timestep);
+    return problem;
+}
+
+StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
+                       std::shared_ptr<const contact::LaggedContacts> known)
+    : problem_(problem_at(model, trajectory, t, history)), known_(std::move(known)) {
     const core::stepper::TrajectoryStep& step = trajectory.steps[t];
     const bool frictional = energy::has_friction(model);
     is_fixed_point_ = frictional && model.integrator == core::scene::Integrator::quasi_static;
@@ -284,9 +307,11 @@ void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::
         ends_.push_back({std::move(points), known_});
         return;
     }
-    core::contact::ContactSet contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
-    ends_.push_back({std::move(points),
-                     std::make_shared<const contact::LaggedContacts>(contact::LaggedContacts{std::move(poses), std::move(contacts)})});
+    const core::contact::Candidates candidates = core::contact::find_candidates(model, poses, 0);
+    contact::LaggedContacts at{std::move(poses), {}, {}};
+    at.contacts = core::contact::find_contacts(model, candidates, at.poses);
+    if (model.area_weighted) at.areas = contact_areas(model, candidates, at.poses);
+    ends_.push_back({std::move(points), std::make_shared<const contact::LaggedContacts>(std::move(at))});
 }
 
 LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
@@ -308,8 +333,8 @@ LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
 }
 
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                              const std::vector<double>& angles, StepSolver& solver) {
-    const StepRounds rounds(model, trajectory, t, angles);
+                              const SweepHistory& history, StepSolver& solver) {
+    const StepRounds rounds(model, trajectory, t, history);
     return rounds.linearise(rounds.count(), solver);
 }
 
@@ -351,8 +376,8 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
     FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "a trajectory has a pose before and after each step");
     FETTLE_ASSERT(trajectory.poses[0].size() == model.bodies.size(), "the trajectory is of another model");
     FETTLE_ASSERT(trajectory.timestep == model.timestep, "the trajectory was simulated with another time step");
-    Errors errors = check_integrator(model);
-    for (const Errors& more : {energy::check_terms(model), check_scripts(model), check_friction_rounds(model, trajectory)})
+    Errors errors = energy::check_terms(model);
+    for (const Errors& more : {model::check_masses(model), check_scripts(model), check_friction_rounds(model, trajectory)})
         errors.insert(errors.end(), more.begin(), more.end());
     for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {

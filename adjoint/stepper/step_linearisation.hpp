@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One step, of implicit Euler, BDF2 or quasi-static, linearised about its solution: what the reverse and the forward sweep share.
-/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, friction's lag, true Hessian), so that a
-/// trajectory needs to store nothing else, but for where the rounds of friction ended.
+/// One step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from the trajectory's
+/// configurations (broad phase, contacts, friction's lag, true Hessian), so that a trajectory needs to store nothing else, but for where
+/// the rounds of friction ended.
 #pragma once
 
 #include <Eigen/SparseLU>
@@ -39,7 +39,8 @@ public:
     const core::solver::FreeDofs& dofs() const { return dofs_; }
 
     /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
-    /// was not solved for gradients, or with another kappa; the matrix is singular.
+    /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
+    /// contact whose areas are the same.
     Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
 
     struct Solution {
@@ -66,6 +67,7 @@ public:
 
 private:
     Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
+    static Errors check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     core::solver::FreeDofs dofs_;
@@ -77,13 +79,28 @@ private:
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.
 std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
+/// Newmark's velocities and accelerations, which a trajectory does not store; of other integrators nothing.
+struct NewmarkHistory {
+    std::vector<std::vector<Matrix34>> velocities, accelerations;  ///< [t][body], t = 0 .. steps - 1
+};
+
+/// What of a step's start follows from all the steps before it.
+struct SweepHistory {
+    std::vector<std::vector<double>> angles;  ///< angles_along
+    NewmarkHistory newmark;
+};
+SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+
+/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1].
+core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                                     const SweepHistory& history);
+
 /// The rounds of friction of step t, which leads from trajectory.poses[t] to poses[t + 1]: each a solve of its own, with the normal forces
 /// and tangents of where the one before ended, the first with those of the step's start. Without friction there is one.
 class StepRounds {
 public:
-    /// @param angles  at the step's start.
     /// @param known   contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
-    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const std::vector<double>& angles,
+    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
                std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
     int count() const { return static_cast<int>(ends_.size()) - 1; }
@@ -91,7 +108,8 @@ public:
     /// Quasi-static steps with friction: one round, whose lag is that of its own end (solver/newton.hpp).
     bool is_fixed_point() const { return is_fixed_point_; }
 
-    double slip_time() const { return problem_.slip_time; }
+    /// What all of them minimise, without friction.
+    const core::energy::StepProblem& problem() const { return problem_; }
 
     /// Contacts where friction was taken from for the first round (null without friction), and at the step's end.
     const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
@@ -113,15 +131,14 @@ private:
     bool is_fixed_point_ = false;
 };
 
-/// The last round of step t. @param angles  at its start.
+/// The last round of that step.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                              const std::vector<double>& angles, StepSolver& solver);
+                              const SweepHistory& history, StepSolver& solver);
 
-/// What the sweeps cannot differentiate, by name: newmark; with bdf2 damping of contacts, dampers and friction of joints; what the terms
-/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier), scripts of poses,
-/// with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not hold where its rounds
-/// ended (inconsistent); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the
-/// trajectory belongs to the model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
+/// density, scripts of poses, with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not
+/// hold where its rounds ended, or in which they have not settled (inconsistent); a step that turns a body by a full revolution or more,
+/// where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

@@ -7,10 +7,10 @@
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {
@@ -48,17 +48,18 @@ public:
           direction_(direction),
           solver_(model),
           dofs_(solver_.dofs()),
-          angles_(angles_along(model, trajectory)) {
+          history_(sweep_history(model, trajectory)) {
         FETTLE_ASSERT(direction.bodies.size() == model.bodies.size(), "a direction has an entry for each body");
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const Body& body = model.bodies[i];
             const BodyTangent& dot = direction.bodies[i];
-            moments_dot_.push_back(dot.density_dot * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles) +
-                                   body.density *
-                                       geometry::solid_moments_tangent(body.mesh.vertices, body.mesh.triangles, dot.vertices_dot));
+            moments_dot_.push_back(model::mass_moments_tangent(body, model.dhat, dot));
             poses_dot_.push_back(matrix_of(dot.pose_start_dot, trajectory.poses[0][i].rotation));
             velocities_dot_.push_back(dot.velocity_start_dot);
+            if (model.area_weighted) areas_dot_.push_back(contact::areas_tangent(body.mesh, dot.vertices_dot));
+            if (is_newmark()) accelerations_dot_.push_back(start_acceleration_dot(i));
         }
+        poses_before_dot_ = poses_dot_;  // of no matter in the first step
         out_.push_back(tangents(0));
     }
 
@@ -114,9 +115,35 @@ private:
         return change;
     }
 
+    bool is_newmark() const { return model_.integrator == core::scene::Integrator::newmark; }
+
+    // Newmark's first A.
+    Matrix34 start_acceleration_dot(std::size_t i) const {
+        const Body& body = model_.bodies[i];
+        if (!core::energy::has_free_dof(body)) return Matrix34::Zero();
+        const BodyTangent& dot = direction_.bodies[i];
+        energy::StartChange change;
+        change.velocity = dot.velocity_start_dot;
+        change.rotation = poses_dot_[i].leftCols<3>();
+        change.gravity = direction_.gravity_dot;
+        change.force = dot.force_dot;
+        change.torque = dot.torque_dot;
+        change.moments = moments_dot_[i];
+        return start_acceleration_tangent(body, model_.gravity, change);
+    }
+
+    // Of the constant that acts on theta as the body's torque.
+    Vector3 torque_change(int t, std::size_t i, const LinearisedStep& step, const Matrix34& pose_hat_dot) const {
+        const BodyTangent& dot = direction_.bodies[i];
+        if (!energy::has_chart_torque(model_)) return dot.torque_dot;
+        return energy::chart_torque_tangent(model_.bodies[i].torque, trajectory_.poses[t][i].rotation, step.problem.pose_hat[i],
+                                            {dot.torque_dot, poses_dot_[i].leftCols<3>(), pose_hat_dot.leftCols<3>()});
+    }
+
     bool is_bdf2(int t) const { return model_.integrator == core::scene::Integrator::bdf2 && t > 0; }
 
     Matrix34 slip_change(int t, std::size_t i) const {
+        if (is_newmark()) return poses_dot_[i] + 0.5 * model_.timestep * velocities_dot_[i];
         return is_bdf2(t) ? Matrix34((4 * poses_dot_[i] - poses_before_dot_[i]) / 3) : poses_dot_[i];
     }
 
@@ -126,6 +153,11 @@ private:
         if (is_bdf2(t)) {
             Matrix34 change = slip_change(t, i) + 2 * h / 9 * (4 * velocities_dot_[i] - velocities_before_dot_[i]);
             change.col(3) += 4 * h * h / 9 * direction_.gravity_dot;
+            return change;
+        }
+        if (is_newmark()) {
+            Matrix34 change = poses_dot_[i] + h * velocities_dot_[i] + 0.25 * h * h * accelerations_dot_[i];
+            change.col(3) += 0.25 * h * h * direction_.gravity_dot;
             return change;
         }
         Matrix34 change = poses_dot_[i] + h * velocities_dot_[i];
@@ -140,7 +172,7 @@ private:
     };
 
     Errors step(int t) {
-        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], std::move(known_));
+        const StepRounds rounds(model_, trajectory_, t, history_, std::move(known_));
         known_ = rounds.at_end();
         StepChange change;
         for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
@@ -172,14 +204,17 @@ private:
             change.r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
             end_dot[i] = known_change(t, i, change.r[i]);
         }
-        contact::PoseGradientTangent energy =
-            adjoint::energy::terms_tangent(step.end(), {end_dot, change.pose_hat_dot, change.slip_dot, moments_dot_, lag_dot}, direction_);
+        contact::PoseGradientTangent energy = adjoint::energy::terms_tangent(
+            step.end(), {end_dot, change.pose_hat_dot, change.slip_dot, poses_dot_, poses_before_dot_, moments_dot_, areas_dot_, lag_dot},
+            direction_);
         VectorX row_dot;
         if (step.rows.count() > 0)
             row_dot = constraint::add_rows_tangent({step.problem, step.poses, step.multipliers}, end_dot, direction_, energy);
         std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, change.r[i], k, energy.value[i], energy.dot[i]);
+        for (std::size_t i = 0; i < n; ++i)
+            residual_dot[i].tail<3>() -= step.problem.weight * torque_change(t, i, step, change.pose_hat_dot[i]);
         const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
         const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
         core::solver::scatter(dofs_, solution.y.col(0), y_dot);
@@ -204,12 +239,29 @@ private:
         return StepSolver::unsettled(trajectory_, t);
     }
 
+    // Newmark's V and A at the step's end.
+    void advance_rates(int t, std::size_t i, const Matrix34& end_dot) {
+        if (!core::energy::has_free_dof(model_.bodies[i])) {
+            velocities_dot_[i] = (end_dot - poses_dot_[i]) / model_.timestep;
+            return;
+        }
+        const NewmarkHistory& newmark = history_.newmark;
+        const energy::NewmarkRates rates =
+            energy::newmark_rates_tangent({model_.bodies[i], model_.timestep, pose_matrix(trajectory_.poses[t][i]),
+                                           newmark.velocities[t][i], newmark.accelerations[t][i], trajectory_.poses[t + 1][i]},
+                                          {poses_dot_[i], velocities_dot_[i], accelerations_dot_[i], end_dot, moments_dot_[i]});
+        velocities_dot_[i] = rates.velocity;
+        accelerations_dot_[i] = rates.acceleration;
+    }
+
     void advance(int t, const std::vector<Matrix34>& end_dot) {
         const std::vector<Matrix34> velocities = velocities_dot_, poses = poses_dot_;
         for (std::size_t i = 0; i < end_dot.size(); ++i) {
             const Matrix3& rotation = trajectory_.poses[t + 1][i].rotation;
             const Matrix34 next = matrix_of(tangent_of(end_dot[i], rotation), rotation);  // rounding must not leave the tangent space
-            if (is_bdf2(t) && core::energy::has_free_dof(model_.bodies[i]))
+            if (is_newmark())
+                advance_rates(t, i, next);
+            else if (is_bdf2(t) && core::energy::has_free_dof(model_.bodies[i]))
                 velocities_dot_[i] = (next - slip_change(t, i)) / (2 * model_.timestep / 3);
             else
                 velocities_dot_[i] = (next - poses_dot_[i]) / model_.timestep;
@@ -225,10 +277,12 @@ private:
     const ModelTangent& direction_;
     StepSolver solver_;
     const core::solver::FreeDofs dofs_;
-    const std::vector<std::vector<double>> angles_;  // of the mechanism's measures at the start of each step
+    const SweepHistory history_;
     std::vector<Matrix4> moments_dot_;
+    std::vector<contact::AreaChange> areas_dot_;
     std::vector<Matrix34> poses_dot_, velocities_dot_;                // at the current step's start
     std::vector<Matrix34> poses_before_dot_, velocities_before_dot_;  // at the start of the one before
+    std::vector<Matrix34> accelerations_dot_;                         // Newmark
     std::vector<std::vector<Vector6>> out_;
     std::vector<VectorX> multipliers_;
     VectorX multiplier_dot_;                                // of the round at hand

@@ -56,6 +56,9 @@ bool are_finite(const std::vector<ContactPair>& pairs) {
 
 class Counter {
 public:
+    // What `emit` leaves of its contacts' weights; null: nothing.
+    WeightParts *forward_parts = nullptr, *backward_parts = nullptr;
+
     void count(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
         if (!are_finite(near.on_second) || !are_finite(near.on_first) || !are_finite(near.edges)) {  // none may be lost
             emit_as_they_are(near.on_second, forward);
@@ -212,12 +215,16 @@ private:
             double weight = 0;
             std::size_t last = first;
             for (; last < entries_.size() && entries_[last].has_features_of(entry); ++last) weight += entries_[last].weight;
-            first = last;
+            const std::size_t begin = std::exchange(first, last);
             if (weight == 0) continue;
             const Kind kind = static_cast<Kind>(entry.kind_vertex >> 32);
             std::vector<ContactPair>& out = kind == Kind::of_second ? backward : forward;
             out.push_back(contact_of(entry, kind, near));
             out.back().weight = weight;
+            if (WeightParts* parts = kind == Kind::of_second ? backward_parts : forward_parts) {
+                parts->emplace_back();
+                for (std::size_t k = begin; k < last; ++k) parts->back().push_back(part_of(entries_[k], kind, near));
+            }
         }
     }
 
@@ -231,16 +238,38 @@ private:
         return entry.swap ? swapped(out) : out;
     }
 
+    static WeightPart part_of(const Entry& entry, Kind kind, const NearPairs& near) {
+        const auto index = static_cast<std::size_t>(entry.pair);
+        const int count = entry.weight < 0 ? -1 : 1;
+        if (kind == Kind::of_edges || entry.end >= 0) return {PairType::edge_edge, false, near.edges[index].vertex, count};
+        const bool of_first = kind == Kind::of_first && !entry.swap;
+        return {PairType::point_triangle, !of_first, (of_first ? near.on_second : near.on_first)[index].vertex, count};
+    }
+
     std::vector<Place> order_;
     std::vector<Entry> entries_;
     std::vector<Feature> elements_, features_;
 };
 
+// Of contacts that nothing was merged into.
+void add_missing_parts(const std::vector<ContactPair>& contacts, bool of_second, WeightParts& parts) {
+    while (parts.size() < contacts.size()) {
+        const ContactPair& pair = contacts[parts.size()];
+        parts.push_back({{pair.type, of_second, pair.vertex, pair.weight < 0 ? -1 : 1}});
+    }
+}
+
 }  // namespace
 
-void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
+void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward,
+                    WeightParts* forward_parts, WeightParts* backward_parts) {
     static thread_local Counter counter;
+    counter.forward_parts = forward_parts;
+    counter.backward_parts = backward_parts;
     counter.count(sides, near, forward, backward);
+    if (forward_parts == nullptr) return;
+    add_missing_parts(forward, false, *forward_parts);
+    add_missing_parts(backward, true, *backward_parts);
 }
 
 }  // namespace fettle::core::contact

@@ -45,10 +45,22 @@ struct NearPairs {
     }
 };
 
+/// A pair that was near and whose weight is in a contact's, `count` times.
+struct WeightPart {
+    PairType type = PairType::point_triangle;
+    bool of_second = false;       ///< point_triangle: the vertex is on the second body
+    std::array<int, 4> vertex{};  ///< as ContactPair::vertex; point_triangle: only the first
+    int count = 1;                ///< 1 or -1
+};
+/// [contact]: its weight is the sum of these.
+using WeightParts = std::vector<std::vector<WeightPart>>;
+
 /// The order of what comes out depends on the primitives alone.
 /// @param near      used up
 /// @param forward   appended: contacts whose first primitive is on the first body; two vertices are here, and pairs of edges
 /// @param backward  appended: contacts whose first primitive is a vertex of the second
-void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward);
+/// @param forward_parts, backward_parts  both or none: what their weights are made of, appended contact by contact
+void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward,
+                    WeightParts* forward_parts = nullptr, WeightParts* backward_parts = nullptr);
 
 }  // namespace fettle::core::contact

@@ -12,6 +12,25 @@ std::vector<double> measures_at(const measure::MeasureSet& set, const std::vecto
     return out;
 }
 
+// How fast measures change along V0.
+std::vector<double> rates_at(const measure::MeasureSet& set, const History& history) {
+    const std::vector<measure::PlacedFrame> frames = placed(set.frames, history.poses);
+    std::vector<double> out(set.measures.size(), 0);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const measure::Measure& m = set.measures[i];
+        const measure::PoseGradients g = pose_gradients(m, vector_function(m, frames), frames);
+        for (const auto& [frame, gradient] : {std::pair(m.a, g.a), std::pair(m.b, g.b)}) {
+            const int body = set.frames[static_cast<std::size_t>(frame)].body;
+            if (body == measure::world) continue;
+            const auto k = static_cast<std::size_t>(body);
+            const Matrix34& velocity = history.velocities[k];
+            out[i] +=
+                gradient.force.dot(velocity.col(3)) + (gradient.arm * history.poses[k].rotation).cwiseProduct(velocity.leftCols<3>()).sum();
+        }
+    }
+    return out;
+}
+
 bool looks_back(const model::Mechanism& mechanism) {
     for (const model::MeasureTerm& term : mechanism.terms)
         if (term.kind == model::LawKind::damper || term.kind == model::LawKind::friction) return true;
@@ -32,6 +51,10 @@ MechanismStep mechanism_step(const model::Model& model, const History& history) 
             for (const Matrix34& p : history.poses_before) before.push_back({p.leftCols<3>(), p.col(3)});
             const std::vector<double> earlier = measures_at(set, before, step.angles);
             for (std::size_t i = 0; i < earlier.size(); ++i) step.measures[i] = (4 * step.measures[i] - earlier[i]) / 3;
+        }
+        if (model.integrator == scene::Integrator::newmark) {
+            const std::vector<double> rates = rates_at(set, history);
+            for (std::size_t i = 0; i < rates.size(); ++i) step.measures[i] += 0.5 * model.timestep * rates[i];
         }
     }
     set_end_time(model.mechanism, 0, step);

@@ -17,7 +17,7 @@ struct MechanismStep {
     VectorX row_targets;           ///< per row, then
 };
 
-/// m_slip is m at the start; of BDF2 (4 m(P0) - m(P_-1))/3.
+/// m_slip is m at the start; of BDF2 (4 m(P0) - m(P_-1))/3, of Newmark m(P0) + h/2 (dm/dP)(P0) V0.
 MechanismStep mechanism_step(const model::Model& model, const History& history);
 
 void set_end_time(const model::Mechanism& mechanism, double time, MechanismStep& step);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/quantities/energy.hpp"
 
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/energy/measure_law.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::design::quantities {
 
@@ -124,17 +123,9 @@ public:
         }
     }
 
-    // Moments = density times the solid's.
     void finish() {
-        for (size_t i = 0; i < moments_bar_.size(); ++i) {
-            if (moments_bar_[i].isZero(0)) continue;
-            const Body& body = s_.model.bodies[i];
-            adjoint::BodyGradient& bar = seeds_.model_bar.bodies[i];
-            const Matrix4 solid = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-            bar.density_bar += moments_bar_[i].cwiseProduct(solid).sum();
-            adjoint::geometry::solid_moments_adjoint(body.mesh.vertices, body.mesh.triangles, body.density * moments_bar_[i],
-                                                     bar.vertices_bar);
-        }
+        for (size_t i = 0; i < moments_bar_.size(); ++i)
+            adjoint::model::mass_moments_adjoint(s_.model.bodies[i], s_.model.dhat, moments_bar_[i], seeds_.model_bar.bodies[i]);
     }
 
 private:
@@ -184,11 +175,10 @@ Errors Energy::check(const core::model::Model& model, int steps) const {
     if (kind_ == EnergyKind::kinetic && model.integrator == core::scene::Integrator::quasi_static)
         errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation knows no velocities, so no kinetic energy"});
     for (const Body& body : model.bodies) {
-        const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-        if (kind_ == EnergyKind::spring || !has_mass(body) || (body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
+        if (kind_ == EnergyKind::spring || !has_mass(body) || adjoint::model::mass_kind_of(body, model.dhat)) continue;
         errors.push_back(
             {ErrorCode::unsupported, "",
-             "the mass of body \"" + body.name + "\" is not that of a solid of its density: its energy cannot be differentiated"});
+             "the mass of body \"" + body.name + "\" is not that of its mesh and density: its energy cannot be differentiated"});
     }
     return errors;
 }

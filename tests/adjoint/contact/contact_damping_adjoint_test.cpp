@@ -119,14 +119,16 @@ void check_step(const Step& step) {
     const DampedContacts at{step.model, contacts, step.end, damping};
     std::vector<ModelGradient> bar(3, zero_model_gradient(step.model, 0));
     std::vector<std::vector<Matrix34>> start_bar(3, std::vector<Matrix34>(2, Matrix34::Zero()));
-    subtract_contact_damping_adjoint(at, lambda, start_bar, bar);
+    std::vector<std::vector<AreaChange>> no_areas(3);
+    subtract_contact_damping_adjoint(at, lambda, {start_bar, no_areas, bar});
     const VectorX zero = VectorX::Zero(count(step)), d = VectorX::NullaryExpr(count(step), number);
     ModelTangent direction = zero_model_tangent(step.model, 0);
     direction.bodies[0].vertices_dot = d.head(24).reshaped(3, 8);
     direction.bodies[1].vertices_dot = d.segment(24, 24).reshaped(3, 8);
     const std::vector<Matrix34> start_dot{d.segment<12>(48).reshaped(3, 4), d.segment<12>(60).reshaped(3, 4)};
     PoseGradientTangent tangent{{2, Matrix34::Zero()}, {2, Matrix34::Zero()}};
-    add_contact_damping_tangent(at, {2, Matrix34::Zero()}, start_dot, direction, tangent);
+    const std::vector<Matrix34> still(2, Matrix34::Zero());
+    add_contact_damping_tangent(at, {still, start_dot, {}}, direction, tangent);
     for (int s = 0; s < 3; ++s) {
         VectorX gradient(count(step));
         gradient << bar[s].bodies[0].vertices_bar.reshaped(), bar[s].bodies[1].vertices_bar.reshaped(), start_bar[s][0].reshaped(),

@@ -126,7 +126,8 @@ void check_scene(const Scene& scene) {
             motion << 0.05 * Vector3::NullaryExpr([&] { return uniform(random); }), Vector3::NullaryExpr([&] { return uniform(random); });
     std::vector<adjoint::ModelGradient> bar(3, adjoint::zero_model_gradient(scene.model, 0));
     const adjoint::contact::ContactsAtPose at{scene.model, contacts, scene.poses, scene.parameters};
-    subtract_contact_vertices_adjoint(at, lambda, bar);
+    std::vector<std::vector<adjoint::contact::AreaChange>> no_areas(3);
+    subtract_contact_vertices_adjoint(at, lambda, bar, no_areas);
     for (int s = 0; s < 3; ++s) {
         const VectorX gradient = -flat(scene.model, bar[s]);
         REQUIRE(gradient.norm() > 0);
@@ -145,7 +146,7 @@ void check_scene(const Scene& scene) {
     direction.bodies[0].vertices_dot = d.head(24).reshaped(3, 8);
     direction.bodies[1].vertices_dot = d.tail(24).reshaped(3, 8);
     adjoint::contact::PoseGradientTangent tangent{{2, Matrix34::Zero()}, {2, Matrix34::Zero()}};
-    add_contact_gradient_tangent(at, {2, Matrix34::Zero()}, direction, tangent);
+    add_contact_gradient_tangent(at, {2, Matrix34::Zero()}, direction, {}, tangent);
     for (int s = 0; s < 3; ++s) {
         double forward = 0;
         for (int i = 0; i < 2; ++i) {

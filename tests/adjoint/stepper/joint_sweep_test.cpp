@@ -30,9 +30,10 @@ core::scene::Curve values(core::scene::CurveKind kind, std::vector<double> times
 SweepScene sweep(const std::string& name, const core::scene::Scene& scene, int steps) { return {name, built(scene), steps}; }
 
 // Two links, a hinge with everything that acts on one, a ball joint, a spring across, a load, a torque.
-SweepScene arm() {
+SweepScene arm(Integrator integrator = Integrator::implicit_euler) {
     core::scene::Scene scene = scene_of({bar("upper", 0.3), bar("lower", 0.25, Vector3(0.3, 0, 0), Vector3(0, 0.3, 0.4))}, 0.01);
     scene.gravity = Vector3(0, 0.4, -9.81);
+    scene.integrator = integrator;
     scene.bodies[1].angular_velocity = Vector3(1, 2, 3);
     core::scene::Joint hinge = joint("hinge", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis});
     hinge.forces = {3, 0.2, 0, 0.05, 0.03, std::array<double, 2>{-1.0, 0.004}};  // the stop acts from the start
@@ -52,7 +53,30 @@ SweepScene arm() {
         motor("torque", "hinge", values(core::scene::CurveKind::control_points, {0, 0.2}, {0.1, -0.4, 0.7, 0.2, -0.3}));
     torque.kind = core::scene::MotorKind::effort;
     scene.mechanism.motors = {torque};
-    return sweep("arm", scene, 12);
+    return sweep(integrator == Integrator::bdf2 ? "arm, BDF2" : "arm", scene, 12);
+}
+
+// Two bars that springs with all that they can have act between, and on one of them from the world; no rows.
+SweepScene loose_bars(Integrator integrator) {
+    core::scene::Scene scene = scene_of({bar("one", 0.3), bar("two", 0.2, Vector3(0.1, 0.3, 0.2), Vector3(0.4, 0.2, -0.3))}, 0.01);
+    scene.integrator = integrator;
+    scene.gravity = Vector3(0.2, 0.1, -0.5);
+    scene.dhat = 0.05;
+    scene.friction.eps_v = 0.5;
+    scene.bodies[0].angular_velocity = Vector3(2, -1, 3);
+    scene.bodies[1].linear_velocity = Vector3(0.2, 0.3, -0.1);
+    core::scene::Spring between, from_world;
+    between.name = "between";
+    between.a = {"one", Vector3(0.3, 0, 0), z_axis};
+    between.b = {"two", Vector3(0.2, 0, 0), z_axis};
+    between.forces = {7, 0.2, 0, 0.3, 0.2, std::array<double, 2>{0.0, 0.42}};
+    from_world.name = "from world";
+    from_world.a = {"", Vector3(0, 0, 0.5), z_axis};
+    from_world.b = {"one", Vector3(0.1, 0, 0), z_axis};
+    from_world.forces = {4, 0.8, 0, 0.1, 0, std::nullopt};
+    scene.mechanism.springs = {between, from_world};
+    scene.mechanism.loads = {{"load", "", "two", Vector3(0.1, 0.02, 0), Vector3(0.1, 0.2, 0.3)}};
+    return sweep(integrator == Integrator::bdf2 ? "loose bars, BDF2" : "loose bars, Newmark", scene, 12);
 }
 
 // A spatial four-bar: hinge, two balls, hinge; its crank driven by a curve.
@@ -100,7 +124,7 @@ SweepScene slider_crank() {
 }
 
 // Gears, rack, screw, prismatic and planar joints; one of the wheels is on a body that is driven about the world.
-SweepScene wheels() {
+SweepScene wheels(Integrator integrator = Integrator::implicit_euler) {
     core::scene::Scene scene =
         scene_of({bar("carrier", 0.4), bar("first", 0.1, Vector3(0.05, 0, 0.05)), bar("second", 0.1, Vector3(0.3, 0, 0.05)),
                   bar("rack", 0.1, Vector3(0, 0.2, 0)), bar("nut", 0.1, Vector3(0, 0, 0.3)), bar("puck", 0.1, Vector3(0.1, 0.1, 0.3))},
@@ -110,6 +134,7 @@ SweepScene wheels() {
     scene.bodies[0].prescribed[5]->rate = 3;
     scene.bodies[0].prescribed[0]->rate = 0.2;
     scene.gravity = Vector3(1, 0, -9.81);
+    scene.integrator = integrator;
     scene.mechanism.joints = {
         joint("one", JointKind::revolute, {"carrier", Vector3(0.05, 0, 0.05), z_axis}, {"first", Vector3::Zero(), z_axis}),
         joint("two", JointKind::revolute, {"carrier", Vector3(0.3, 0, 0.05), z_axis}, {"second", Vector3::Zero(), z_axis}),
@@ -125,7 +150,7 @@ SweepScene wheels() {
         scene.mechanism.joints.push_back(coupling);
     }
     scene.mechanism.joints[1].forces.damping = 0.01;
-    return sweep("wheels", scene, 10);
+    return sweep(integrator == Integrator::bdf2 ? "wheels, BDF2" : "wheels", scene, 10);
 }
 
 // A hinged bar falls on a block that lies on the plate.
@@ -145,10 +170,14 @@ SweepScene hinged_contact() {
 
 std::vector<SweepScene> joint_scenes() {
     return {arm(),
+            arm(Integrator::bdf2),
+            loose_bars(Integrator::bdf2),
+            loose_bars(Integrator::newmark),
             spatial_four_bar(),
             spatial_four_bar(Integrator::bdf2),
             slider_crank(),
             wheels(),
+            wheels(Integrator::bdf2),
             hinged_contact(),
             rubbed(hinged_contact())};
 }
@@ -258,7 +287,7 @@ TEST_CASE("what joints and motors carry: backwards, forwards and differences agr
         const core::stepper::Trajectory trajectory = trajectory_of(scene);
         std::mt19937_64 random(31);
         TrajectoryGradient seed = random_seed(scene, random);
-        seed.multiplier_bar = multiplier_weights(row_multipliers(scene.model, trajectory), random);
+        if (!scene.model.mechanism.rows.empty()) seed.multiplier_bar = multiplier_weights(row_multipliers(scene.model, trajectory), random);
         const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
         REQUIRE(gradients);
         const auto check = [&](const ModelTangent& direction, const auto& at_model, const std::string& what) {

@@ -2,7 +2,9 @@
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 
 #include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/contact/contact_set.hpp"
+#include "fettle/core/model/body_mass.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::tests::adjoint {
@@ -126,9 +128,9 @@ SweepScene rubbed(SweepScene scene) {
 }
 
 std::vector<ParameterKind> kinds_of(const SweepScene& scene) {
-    std::vector<ParameterKind> kinds{ParameterKind::vertices,  ParameterKind::pose_start, ParameterKind::velocity_start,
-                                     ParameterKind::density,   ParameterKind::gravity,    ParameterKind::force,
-                                     ParameterKind::increments};
+    std::vector<ParameterKind> kinds{ParameterKind::vertices, ParameterKind::pose_start, ParameterKind::velocity_start,
+                                     ParameterKind::density,  ParameterKind::gravity,    ParameterKind::force,
+                                     ParameterKind::torque,   ParameterKind::increments};
     if (scene.model.friction.mu.maxCoeff() > 0) kinds.push_back(ParameterKind::friction);
     return kinds;
 }
@@ -164,6 +166,8 @@ const char* to_string(ParameterKind kind) {
             return "gravity";
         case ParameterKind::force:
             return "force";
+        case ParameterKind::torque:
+            return "torque";
         case ParameterKind::increments:
             return "increments";
         case ParameterKind::friction:
@@ -193,8 +197,9 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
             velocity << vector(1), vector(10);
             dot.velocity_start_dot = velocity_matrix(velocity, body.pose_start.rotation);
         }
-        if (kind == ParameterKind::density) dot.density_dot = 1000 * uniform(random);
+        if (kind == ParameterKind::density) dot.density_dot = body.density * uniform(random);
         if (kind == ParameterKind::force) dot.force_dot = vector(1);
+        if (kind == ParameterKind::torque) dot.torque_dot = vector(size);
         if (kind != ParameterKind::increments) continue;
         for (Vector6& increment : dot.increment_dot)
             for (int k = 0; k < 6; ++k)
@@ -221,10 +226,14 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
         body.mesh.vertices += s * dot.vertices_dot;
         body.density += s * dot.density_dot;
         body.force += s * dot.force_dot;
+        body.torque += s * dot.torque_dot;
         body.velocity_start += s * dot.velocity_start_dot;
         body.pose_start.position += s * dot.pose_start_dot.head<3>();
         body.pose_start.rotation = core::kinematics::rotation(s * dot.pose_start_dot.tail<3>()) * body.pose_start.rotation;
         support::refresh(body);
+        if (const auto kind = fettle::adjoint::model::mass_kind_of(scene.model.bodies[i], model.dhat);
+            kind && scene.model.bodies[i].moments(3, 3) != 0)
+            body.moments = core::model::mass_moments(body, *kind, model.dhat);
         for (int k = 0; k < 6; ++k) {
             if (is_free(body, k)) continue;
             core::scene::MotionCurve curve;
@@ -247,7 +256,8 @@ double pairing(const SweepScene& scene, const ModelGradient& gradient, const Mod
     for (std::size_t i = 0; i < direction.bodies.size(); ++i) {
         const fettle::adjoint::BodyGradient& bar = gradient.bodies[i];
         const fettle::adjoint::BodyTangent& dot = direction.bodies[i];
-        sum += bar.vertices_bar.cwiseProduct(dot.vertices_dot).sum() + bar.density_bar * dot.density_dot + bar.force_bar.dot(dot.force_dot);
+        sum += bar.vertices_bar.cwiseProduct(dot.vertices_dot).sum() + bar.density_bar * dot.density_dot +
+               bar.force_bar.dot(dot.force_dot) + bar.torque_bar.dot(dot.torque_dot);
         sum += bar.pose_start_bar.cwiseProduct(velocity_matrix(dot.pose_start_dot, scene.model.bodies[i].pose_start.rotation)).sum();
         sum += bar.velocity_start_bar.cwiseProduct(dot.velocity_start_dot).sum();
         for (int t = 0; t < scene.steps; ++t) sum += bar.increment_bar[t].dot(dot.increment_dot[t]);

@@ -43,7 +43,7 @@ struct ContactCount {
 };
 ContactCount count_contacts(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, increments, friction };
+enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, torque, increments, friction };
 /// Friction's coefficients where there is friction, all others always.
 std::vector<ParameterKind> kinds_of(const SweepScene& scene);
 const char* to_string(ParameterKind kind);
@@ -55,7 +55,7 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
 /// The gradient's own direction in the vertices, largest entry 0.05 m.
 ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradient& gradient);
 
-/// model + s * direction, poses moved on the manifold.
+/// model + s * direction, poses moved on the manifold. Masses stay of their kind: solids, shells, wires, points.
 core::model::Model moved(const SweepScene& scene, const ModelTangent& direction, double s);
 
 /// <gradient, direction>.

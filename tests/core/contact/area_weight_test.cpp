@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The area-weighted barrier: a block stands on a plate with the same gap however finely its mesh is cut; without weights it does not.
+// The area-weighted barrier: a block stands on a plate with the same gap however finely its mesh is cut; without weights it does not. And
+// the shares of contacts' weights add up to the weights, merged contacts and corners that count -1 included.
 #include <catch2/catch.hpp>
 #include <map>
+#include <random>
 
+#include "fettle/core/contact/contact_areas.hpp"
+#include "fettle/core/contact/contact_set.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
@@ -62,6 +66,70 @@ TEST_CASE("with area weights the gap does not depend on the mesh", "[area_weight
     CHECK(coarse > 0.2 * dhat);
     CHECK(std::abs(coarse - fine) < 0.1 * dhat);
     CHECK(std::abs(resting_gap(1, false, kappa) - resting_gap(3, false, kappa)) > 0.2 * dhat);
+}
+
+namespace {
+
+// One box on another, and a third beside both; of different sizes.
+model::Model boxes(const Vector3& turn, double damping_time) {
+    model::Model model;
+    model.dhat = 4e-3;
+    model.kappa = 1e4;
+    model.area_weighted = true;
+    model.contact_damping_time = damping_time;
+    model.bodies = {
+        make_body("lower", box_mesh({-0.05, -0.06, -0.05}, {0.05, 0.05, 0}), {}, scene::BodyType::static_body),
+        make_body("upper", box_mesh({-0.03, -0.02, 0.0015}, {0.04, 0.03, 0.05}), make_pose(turn, {0.02, 0.01, 0.001})),
+        make_body("side", box_mesh({-0.02, -0.03, -0.02}, {0.02, 0.03, 0.07}), make_pose({0.01, 0, 0}, {0.0725, 0.005, -0.01}))};
+    return model;
+}
+
+}  // namespace
+
+TEST_CASE("shares of areas add up to the contacts' weights", "[area_weight]") {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int contacts = 0, several = 0, edges = 0, negative = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        const model::Model model = boxes(Vector3(0.02 * unit(random), 0.02 * unit(random), unit(random)), trial % 2 == 0 ? 0 : 0.01);
+        std::vector<kinematics::Pose> poses;
+        for (const model::Body& body : model.bodies) poses.push_back(body.pose_start);
+        const Candidates candidates = find_candidates(model, poses, 0);
+        const ContactSet set = find_contacts(model, candidates, poses);
+        const ContactAreas areas = contact_areas(model, candidates, poses);
+        REQUIRE(static_cast<int>(areas.shares.size()) == set.count);
+        std::size_t place = 0;
+        for (const BodyPairContacts& list : set.pairs)
+            for (const ContactPair& pair : list.contacts) {
+                double sum = 0;
+                for (const AreaShare& share : areas.shares[place]) {
+                    const model::Body& body = model.bodies[static_cast<std::size_t>(share.body)];
+                    sum += share.factor * (share.is_edge ? body.edge_area : body.vertex_area)[static_cast<std::size_t>(share.element)];
+                    edges += share.is_edge ? 1 : 0;
+                    negative += share.factor < 0 ? 1 : 0;
+                }
+                CHECK(sum == Approx(pair.weight).epsilon(1e-12));
+                several += areas.shares[place].size() > 1 ? 1 : 0;
+                ++contacts;
+                ++place;
+            }
+    }
+    CHECK(contacts > 100);
+    CHECK(several > 10);
+    CHECK(edges > 20);
+    CHECK(negative > 5);
+}
+
+TEST_CASE("edges of the same area are told", "[area_weight]") {
+    model::Model model = boxes(Vector3(0, 0, 0.4), 0);
+    model.bodies[1].mesh = model.bodies[0].mesh;
+    refresh(model.bodies[1]);
+    model.bodies[1].pose_start = make_pose({0, 0, 0.4}, {0, 0, 0.052});
+    model.bodies.pop_back();
+    std::vector<kinematics::Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
+    const Candidates candidates = find_candidates(model, poses, 0);
+    REQUIRE(find_contacts(model, candidates, poses).count > 0);
+    CHECK_FALSE(contact_areas(model, candidates, poses).equal.empty());
 }
 
 }  // namespace fettle::core::contact::area_weight_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Laws of measures, and the term that they make, against central differences.
+// Laws of measures, and the term that they make, against central differences; a damped oscillation against its exponential.
 #include "fettle/core/energy/measure_terms.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -113,6 +113,44 @@ TEST_CASE("the term's gradient and Hessian agree with differences, its projected
         CHECK(check_jacobian(gradient, y, whole(y, contact::HessianKind::exact)).relative_error < 1e-7);
         const MatrixX projected = whole(y, contact::HessianKind::projected);
         CHECK(projected.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() > -1e-12 * projected.norm());
+    }
+}
+
+namespace {
+
+// A mass on a spring and a damper along x, 0.1 m beyond the spring's rest and so fast towards it that nothing pulls at first (Newmark's
+// first acceleration knows of no springs); where it is after 1 s.
+double place_after(scene::Integrator integrator, double h) {
+    scene::Scene scene = scene_of({bar("mass", 0.2, Vector3(1.1, 0, 0))}, h);
+    scene.integrator = integrator;
+    scene.bodies[0].linear_velocity = Vector3(-2.0 / 3, 0, 0);
+    for (const int dof : {1, 2, 3, 4, 5}) scene.bodies[0].prescribed[dof] = scene::MotionCurve{};
+    scene::Spring spring;
+    spring.name = "spring";
+    spring.a = {"", Vector3::Zero(), Vector3::UnitZ()};
+    spring.b = {"mass", Vector3::Zero(), Vector3::UnitZ()};
+    spring.forces.stiffness = 0.08 * 20;
+    spring.forces.damping = 0.08 * 3;
+    spring.forces.rest = 1;
+    scene.mechanism.springs = {spring};
+    const model::Model model = built(scene);
+    REQUIRE(model.bodies[0].moments(3, 3) == Approx(0.08));
+    const auto motion = run(model, static_cast<int>(std::lround(1 / h)), true);
+    const model::Body& body = model.bodies[0];
+    return motion.trajectory.poses.back()[0].position.x() - body.pose_start.position.x() + 0.1;
+}
+
+}  // namespace
+
+TEST_CASE("a damped oscillation tends to its exponential with each integrator's order", "[measure_terms]") {
+    // x'' + 3 x' + 20 x = 0, x(0) = 0.1, x'(0) = -2/3.
+    const double w = std::sqrt(20 - 2.25), exact = std::exp(-1.5) * (0.1 * std::cos(w) + (0.15 - 2.0 / 3) / w * std::sin(w));
+    for (const scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2, scene::Integrator::newmark}) {
+        const double coarse = std::abs(place_after(integrator, 0.01) - exact), fine = std::abs(place_after(integrator, 0.005) - exact);
+        const double order = std::log2(coarse / fine);
+        CAPTURE(static_cast<int>(integrator), coarse, fine, order);
+        CHECK(order > (integrator == scene::Integrator::implicit_euler ? 0.9 : 1.8));
+        CHECK(fine < (integrator == scene::Integrator::implicit_euler ? 2e-3 : 1e-4));
     }
 }
 
