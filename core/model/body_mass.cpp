@@ -30,6 +30,7 @@ BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind) {
 
 Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure) {
     if (body.reference_point) return *body.reference_point;
+    if (body.inertial) return body.inertial->centre;
     if (const auto centre = measure.centre()) return *centre;
     return 0.5 * (body.mesh.vertices.rowwise().minCoeff() + body.mesh.vertices.rowwise().maxCoeff());
 }

@@ -21,8 +21,8 @@ struct BodyMeasure {
 
 BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind);
 
-/// c: what the scene names, else the centre of mass, else (a mesh without mass of its kind, such as an open one per volume) the middle of
-/// its box. [m], in the file's frame.
+/// c: what the scene names, else the centre of mass (the given one, where it is), else (a mesh without mass of its kind, such as an open
+/// one per volume) the middle of its box. [m], in the file's frame.
 Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure);
 
 /// M of a body whose mesh is relative to the reference point and whose radius is known. A straight wire does not resist being turned about

@@ -40,6 +40,7 @@ Body build_body(const scene::Body& from, const Vector3& reference_point) {
     body.type = from.type;
     body.reference_point = reference_point;
     body.density = from.density;
+    if (from.inertial) body.given_mass = from.inertial->mass;
     body.mesh = from.mesh;
     body.mesh.vertices.colwise() -= reference_point;
     body.pose_start = pose_about(from.pose, reference_point);
@@ -78,6 +79,10 @@ void add_masses(const scene::Scene& scene, Model& model) {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         if (scene.bodies[i].type != BodyType::dynamic_body) continue;
         Body& body = model.bodies[i];
+        if (scene.bodies[i].inertial) {
+            body.moments = scene::moments_about(*scene.bodies[i].inertial, body.reference_point);
+            continue;
+        }
         const scene::MassKind kind = scene.bodies[i].mass_kind;
         const auto [entry, fresh] = unit_moments.try_emplace({body.hierarchy.get(), kind});
         if (fresh) entry->second = scene::unit_moments(body.mesh, kind);

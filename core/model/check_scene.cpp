@@ -49,7 +49,9 @@ Errors check_usable(const scene::Body& body, const std::string& where) {
     return {};
 }
 
-bool must_be_closed(const scene::Body& body) { return body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume; }
+bool must_be_closed(const scene::Body& body) {
+    return body.type == BodyType::dynamic_body && body.mass_kind == MassKind::volume && !body.inertial;
+}
 
 Error at_body(const Error& error, const scene::Body& body, const std::string& where) {
     return {error.code, where, "body `" + body.name + "`: " + (error.where.empty() ? "" : error.where + ": ") + error.message};
@@ -65,6 +67,11 @@ Errors check_strictly(const scene::Body& body, const std::string& where) {
 
 /// @param closed  Of a volume: is the mesh as closed as its policy wants?
 Errors check_mass(const scene::Body& body, const BodyMeasure& measure, bool closed, const std::string& where) {
+    if (body.inertial) {
+        const std::string fault = scene::fault_of(*body.inertial);
+        if (fault.empty()) return {};
+        return {{ErrorCode::out_of_range, where + "/inertial", "body `" + body.name + "`: " + fault}};
+    }
     if (body.type != BodyType::dynamic_body) return {};
     const std::string name = "body `" + body.name + "`: ", unit = scene::density_unit(body.mass_kind);
     if (!std::isfinite(body.density)) return {{ErrorCode::not_finite, where + "/density", name + "the density is not finite"}};

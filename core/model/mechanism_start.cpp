@@ -122,9 +122,10 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
         const Vector6 change = agreed[i] - velocities[i];
         const double speed = change.head<3>().norm() + change.tail<3>().norm() * body.radius;
         if (body.type != scene::BodyType::dynamic_body || speed == 0) continue;
+        const bool is_written = !body.velocity_start.isZero(0);  // else nobody gave one
         model.mechanism.written.is_velocity_changed[i] = true;
         body.velocity_start << cross_matrix(agreed[i].tail<3>()) * body.pose_start.rotation, agreed[i].head<3>();
-        if (speed > 1e-9 * model.diagonal) moved += (moved.empty() ? "`" : ", `") + body.name + "`";
+        if (is_written && speed > 1e-9 * model.diagonal) moved += (moved.empty() ? "`" : ", `") + body.name + "`";
     }
     if (!moved.empty())
         model.warnings.push_back("start velocities of " + moved +

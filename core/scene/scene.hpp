@@ -11,6 +11,7 @@
 
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/scene/inertial.hpp"
 #include "fettle/core/scene/mechanism.hpp"
 
 namespace fettle::core::scene {
@@ -107,6 +108,7 @@ struct Body {
     double density = 1000;      ///< per what `mass_kind` says
     bool density_given = true;  ///< false: the file names none, and `density` stands for nothing (a static or kinematic body)
     MassKind mass_kind = MassKind::volume;
+    std::optional<Inertial> inertial;            ///< given, in place of density times what the mesh has
     std::string material;                        ///< for friction; empty: none named
     std::optional<double> mu;                    ///< its own friction coefficient
     kinematics::Pose pose;                       ///< of the file's frame at the start: world = rotation * x + position

@@ -29,6 +29,7 @@ const std::vector<std::string_view> body_keys{"name",
                                               "scale",
                                               "density",
                                               "mass_per",
+                                              "inertial",
                                               "material",
                                               "mu",
                                               "type",
@@ -212,20 +213,43 @@ void SceneBodies::read_inline(const files::JsonNode& node, Body& body) {
 }
 
 void SceneBodies::read_mass(const files::JsonNode& node, Body& body) {
+    body.mu = node["mu"].number(files::not_negative);
+    body.material = read_material_name(node["material"], densities_).value_or("");
+    if (node["inertial"].exists()) return read_inertial(node, body);
     const std::string per = node["mass_per"].choice({"volume", "area", "length", "vertex"}).value_or("volume");
     body.mass_kind = per == "area"     ? MassKind::area
                      : per == "length" ? MassKind::length
                      : per == "vertex" ? MassKind::vertex
                                        : MassKind::volume;
     std::optional<double> density = node["density"].number(files::positive);
-    body.mu = node["mu"].number(files::not_negative);
-    body.material = read_material_name(node["material"], densities_).value_or("");
     const auto known = densities_.find(body.material);
     const bool given = node["density"].exists();
     if (!given && known != densities_.end() && body.mass_kind == MassKind::volume) density = known->second;
     if (body.type == BodyType::dynamic_body && !given && !density) node.require("density");
     body.density = density.value_or(body.density);
     body.density_given = density.has_value();
+}
+
+// Given mass and inertia, about the centre of mass, along the mesh's axes.
+void SceneBodies::read_inertial(const files::JsonNode& node, Body& body) {
+    body.density_given = false;
+    for (const char* key : {"density", "mass_per", "split_components"})
+        if (node[key].exists()) node[key].fail(ErrorCode::inconsistent, "a body with an `inertial` of its own has its mass from there");
+    const files::JsonNode own = node["inertial"];
+    own.allow_keys({"mass", "centre", "inertia"});
+    if (!own.is_object()) return;
+    Inertial inertial;
+    const std::size_t faults = document_.errors().size();
+    inertial.mass = own.require("mass").quantity(base::Dimension::mass, 1, files::positive).value_or(1);
+    inertial.centre = own.require("centre").length3(unit_).value_or(inertial.centre);
+    const std::vector<files::JsonNode> rows = own.require("inertia").elements();
+    if (rows.size() != 3 && own["inertia"].is_array())
+        own["inertia"].fail(ErrorCode::wrong_type, "an inertia has three rows of three numbers [kg m^2]");
+    for (std::size_t k = 0; k < rows.size() && k < 3; ++k)
+        inertial.inertia.row(static_cast<Eigen::Index>(k)) = rows[k].vector3().value_or(Vector3::Zero()).transpose();
+    if (document_.errors().size() > faults) return;
+    if (const std::string fault = fault_of(inertial); !fault.empty()) own.fail(ErrorCode::out_of_range, fault);
+    body.inertial = inertial;
 }
 
 void SceneBodies::read_group(const files::JsonNode& node, Body& body) {

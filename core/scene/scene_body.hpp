@@ -44,6 +44,7 @@ private:
     void make_shape(const files::JsonNode& node, Body& body);
     void read_inline(const files::JsonNode& node, Body& body);
     void read_mass(const files::JsonNode& node, Body& body);
+    void read_inertial(const files::JsonNode& node, Body& body);
     void read_group(const files::JsonNode& node, Body& body);
     std::vector<Body> components(const files::JsonNode& node, Body body);
     void report(const base::Errors& errors, const files::JsonNode& node);

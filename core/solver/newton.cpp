@@ -271,7 +271,7 @@ private:
         if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
         if (was_the_last(direction, fraction) || leaves_nothing(direction, fraction)) return stop(NewtonStatus::converged);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
-        if (!has_arrived(direction) && drive_.is_stalled()) {
+        if (!has_arrived(direction) && (drive_.is_stalled() || closes_altogether(direction))) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
             if (is_slow(direction) && is_accurate_enough(direction.residual)) return stop(NewtonStatus::converged);
         }
@@ -395,6 +395,11 @@ private:
     }
 
     bool is_accurate_enough(double residual) const { return !options_.to_rounding || residual <= usable_residual; }
+
+    // What remains to be driven is all the gap there is: to go on would only leave less of it than can be proven.
+    bool closes_altogether(const Direction& direction) const {
+        return is_near_enough(direction) && at_.contacts.minimum_distance - model_.dmin <= direction.remaining_norm;
+    }
 
     // Prescribed coordinates are met to this where contact leaves no more (a gap that closes altogether).
     bool is_near_enough(const Direction& direction) const { return direction.remaining_norm <= prescribed_tolerance * model_.diagonal; }

@@ -128,6 +128,13 @@ long peak_memory_bytes() {
     return usage.ru_maxrss * 1024L;
 }
 
+std::string csv_word(const std::string& name) {
+    if (name.find_first_of(",\"\n") == std::string::npos) return name;
+    std::string text = "\"";
+    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return text + "\"";
+}
+
 std::string formatted(const char* format, ...) {
     va_list arguments, again;
     va_start(arguments, format);

@@ -45,6 +45,9 @@ std::string unit_name(double length_unit);
 /// Largest resident memory of this process so far [bytes].
 long peak_memory_bytes();
 
+/// In quotes where a table's row would be cut by it.
+std::string csv_word(const std::string& name);
+
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 

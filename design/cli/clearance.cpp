@@ -2,7 +2,6 @@
 /// fettle clearance FILE --minimum L: certified distances of pairs of bodies, as assembled or over a motion. What is judged:
 /// clearance_subject.hpp (motions), clearance_pairs.hpp (pairs and what they require); how it is told: clearance_report.hpp.
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
@@ -12,11 +11,11 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/cli/clearance_folder.hpp"
 #include "fettle/design/cli/clearance_ranges.hpp"
 #include "fettle/design/cli/clearance_report.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
-#include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
@@ -122,20 +121,6 @@ std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& s
     return clashes;
 }
 
-bool is_finite(const core::stepper::Trajectory& trajectory) {
-    const auto finite = [](const auto& list, const auto& first, const auto& second) {
-        return std::all_of(list.begin(), list.end(), [&](const auto& x) { return (x.*first).allFinite() && (x.*second).allFinite(); });
-    };
-    using core::kinematics::ChartPoint;
-    using core::kinematics::Pose;
-    for (const auto& poses : trajectory.poses)
-        if (!finite(poses, &Pose::rotation, &Pose::position)) return false;
-    for (const auto& step : trajectory.steps)
-        for (const auto& node : step.nodes)
-            if (!finite(node, &ChartPoint::position, &ChartPoint::rotation_vector)) return false;
-    return true;
-}
-
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
 Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
@@ -155,30 +140,7 @@ Json proof_json(const ClearanceArguments& options, const Subject& subject) {
     return {{"file", options.certificate}, {"trajectory", own ? options.subject.path : certificate_trajectory(options.certificate)}};
 }
 
-// The folder of the report: the answer, and the meshes and path that it speaks of.
-Errors write_out(const ClearanceArguments& options, const CommonOptions& common, const Subject& subject, Json& json, std::string& told,
-                 Console& console) {
-    if (options.out.empty()) return {};
-    if (!is_finite(subject.trajectory))
-        return {{ErrorCode::not_finite, options.out, "the path has numbers that are not finite: nothing is written"}};
-    const std::filesystem::path folder = options.out;
-    std::error_code ignored;
-    std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
-    Errors errors;
-    if (!std::filesystem::equivalent(options.subject.path, folder / "trajectory.json", ignored)) {
-        const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", subject.trajectory.steps.size());
-        if (!kept) return kept.errors();
-        if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-        errors = core::records::write_trajectory(folder / "trajectory.json", subject.trajectory, subject.model, subject.scene_path);
-    }
-    json["out"] = options.out;
-    if (errors.empty()) errors = write_result(options.out, json, common);
-    if (errors.empty() && !options.no_report)
-        leave_report(options.out, common, console, json, told, report::Motion{subject.model, subject.trajectory, subject.scene_path});
-    return errors;
-}
-
-/// What would be found out only after the work: files that cannot be written, an earlier report that cannot be read.
+/// What would be found out only after the work: files that cannot be written.
 Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
@@ -187,21 +149,32 @@ Errors try_files(const ClearanceArguments& options) {
     if (!options.out.empty()) {
         if (Errors errors = try_output_folder(options.out); !errors.empty()) return errors;
     }
-    if (options.baseline.empty()) return {};
-    return core::files::read_file(options.baseline).errors();
+    return {};
+}
+
+ClearanceFolder folder_of(const ClearanceArguments& options) { return {options.out, options.subject.path, options.no_report}; }
+
+int run_ranges(const ClearanceArguments& options, const Lengths& lengths, std::optional<Baseline> baseline, const CommonOptions& common,
+               Console& console) {
+    if (!options.subject.more.empty())
+        return console.input_errors({{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}});
+    RangeQuestion question{options.subject.path, options.pairs,       lengths.tolerance, options.explain,
+                           options.certificate,  std::move(baseline), options.csv,       folder_of(options)};
+    question.pairs.minimum = lengths.minimum;
+    return clearance_over_ranges(std::move(question), common, console);
 }
 
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
     const Result<Lengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
     if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
-    if (options.ranges) {
-        if (!options.subject.more.empty())
-            return console.input_errors({{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}});
-        RangeQuestion question{options.subject.path, options.pairs, lengths->tolerance, options.explain, options.certificate};
-        question.pairs.minimum = lengths->minimum;
-        return clearance_over_ranges(question, common, console);
+    std::optional<Baseline> baseline;
+    if (!options.baseline.empty()) {
+        Result<Baseline> read = Baseline::read(options.baseline);
+        if (!read) return console.input_errors(read.errors());
+        baseline = *std::move(read);
     }
+    if (options.ranges) return run_ranges(options, *lengths, std::move(baseline), common, console);
     Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
     PairOptions pair_options = options.pairs;
@@ -227,11 +200,10 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     results.insert(results.end(), clashes.begin(), clashes.end());
     certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
-    Errors errors;
-    if (!options.baseline.empty()) errors = compare_with_baseline(options.baseline, report);
+    if (baseline) compare_with(*std::move(baseline), report);
     const std::string unit = unit_name(subject->model.length_unit);
-    if (errors.empty() && !options.csv.empty())
-        errors = core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
+    Errors errors;
+    if (!options.csv.empty()) errors = core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
     if (errors.empty() && !options.certificate.empty()) errors = write_proof(options.certificate, certificate, *subject);
     if (!errors.empty()) return console.input_errors(errors);
     Json json = report_json(report, *subject);
@@ -242,7 +214,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
                 "; check it with fettle validate " + options.certificate +
                 (subject->source == SubjectSource::trajectory ? " --trajectory " + options.subject.path : "") + "\n";
     }
-    errors = write_out(options, common, *subject, json, text, console);
+    errors = write_folder(folder_of(options), {subject->model, subject->trajectory, subject->scene_path}, common, console, json, text);
     if (!errors.empty()) return console.input_errors(errors);
     console.result(json, text);
     return exit_code(report.status);
@@ -275,21 +247,20 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
         .value_if_bare("3")
         .at_least(0);
-    Option csv = app.option("--csv", options.csv, "Write the margin curves: certified bounds for each pair and stretch of the path");
+    app.option("--csv", options.csv,
+               "Write the margin curves: certified bounds for each pair and stretch of the path (with --ranges: a row for each pair, with "
+               "the joints' positions where it is worst)");
     app.option("--certificate", options.certificate,
                "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
-    Option out = app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
+    app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
     app.flag("--no-report", options.no_report, "With --out: no report.html");
-    Option baseline = app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
+    app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
     app.flag("--ranges", options.ranges, "Over all positions of the joints within their limits, in every combination")
         .excludes(motion)
         .excludes(kinematic)
         .excludes(poses)
         .excludes(steps)
-        .excludes(time)
-        .excludes(csv)
-        .excludes(baseline)
-        .excludes(out);
+        .excludes(time);
 }
 
 }  // namespace

@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
@@ -35,6 +36,7 @@ constexpr double coarse_share = 0.01;  // of the bodies' size, with more than tw
 struct RangeRow {
     PairSpec spec;
     RangeClearance least;  // of the pair of bodies that is worst; bounds and status of the whole row
+    Change change;         // against the baseline
 };
 
 struct RangeReport {
@@ -42,6 +44,7 @@ struct RangeReport {
     PairStatus status = PairStatus::clear;
     std::vector<std::string> ignored, left_out, uncovered, notes;
     std::string message;
+    std::optional<Baseline> baseline;
     double tolerance = 0;
 };
 
@@ -85,7 +88,7 @@ RangeReport make_range_report(const Model& model, const JointRanges& ranges, con
     auto next = results.begin();
     for (const PairSpec& spec : selection.pairs) {
         const auto last = next + static_cast<std::ptrdiff_t>(spec.body_pairs.size());
-        report.rows.push_back({spec, worst_of({next, last})});
+        report.rows.push_back({spec, worst_of({next, last}), {}});
         next = last;
     }
     std::stable_sort(report.rows.begin(), report.rows.end(), [](const RangeRow& x, const RangeRow& y) {
@@ -101,6 +104,11 @@ RangeReport make_range_report(const Model& model, const JointRanges& ranges, con
     if (interrupted()) report.message = "interrupted: what was not looked at is undecided";
     if (!report.message.empty() && report.status == PairStatus::clear) report.status = PairStatus::undecided;
     return report;
+}
+
+void compare_with(Baseline baseline, RangeReport& report) {
+    for (RangeRow& row : report.rows) row.change = baseline.compare(row.spec.a.name, row.spec.b.name, row.least.status);
+    report.baseline = std::move(baseline);
 }
 
 // Each joint's own coordinate where the pair is worst: geared ones, too.
@@ -158,6 +166,7 @@ Json row_json(const RangeRow& row, const Model& model, const JointRanges& ranges
     json["coordinates"] = coordinates_json(ranges, least);
     if (row.spec.a.is_group) json["body_a"] = model.bodies[static_cast<size_t>(least.a)].name;
     if (row.spec.b.is_group) json["body_b"] = model.bodies[static_cast<size_t>(least.b)].name;
+    add_change(json, row.change);
     if (!measured) return json;
     json["gap"] = least.upper - least.lower;
     json["point_a"] = vector_json(least.witness.point_a);
@@ -190,7 +199,34 @@ Json ranges_json(const RangeReport& report, const Model& model, const JointRange
     json["uncovered"] = report.uncovered;
     json["notes"] = report.notes;
     if (!report.message.empty()) json["message"] = report.message;
+    if (report.baseline) json["baseline"] = report.baseline->json();
     return json;
+}
+
+// A row per pair, worst first: bounds rounded to the safe side, and each joint's position where the pair is worst; empty: it moves neither
+// body against the other.
+std::string ranges_csv(const RangeReport& report, const JointRanges& ranges, const std::string& unit) {
+    const RoundedLengths lengths(unit);
+    std::vector<std::pair<std::string, bool>> joints;  // name, does it turn
+    for (const LinkageCoordinate& c : ranges.linkage.coordinates)
+        for (const auto& joint : c.joints) joints.emplace_back(joint.joint, joint.is_angle);
+    std::string text = "a,b,required[" + unit + "],lower[" + unit + "],upper[" + unit + "],finding";
+    for (const auto& [name, is_angle] : joints) text += "," + csv_word(name + (is_angle ? "[deg]" : "[" + unit + "]"));
+    text += "\n";
+    for (const RangeRow& row : report.rows) {
+        const RangeClearance& least = row.least;
+        text += csv_word(row.spec.a.name) + "," + csv_word(row.spec.b.name) + "," +
+                (row.spec.required_by.empty() ? "" : formatted("%.9g", least.minimum / lengths.metres())) + "," +
+                lengths.shortest(least.lower, Towards::down) + "," +
+                (std::isfinite(least.upper) ? lengths.shortest(least.upper, Towards::up) : "") + "," + finding_word(least);
+        std::map<std::string, std::string> places;
+        for_joints(ranges, least, [&](const auto& joint, double value, const LinkageCoordinate&) {
+            places[joint.joint] = formatted("%.9g", joint.is_angle ? value * degrees : value / lengths.metres());
+        });
+        for (const auto& joint : joints) text += "," + places[joint.first];
+        text += "\n";
+    }
+    return text;
 }
 
 std::string combination(const JointRanges& ranges, const RangeClearance& pair, const RoundedLengths& lengths) {
@@ -239,7 +275,7 @@ std::string ranges_text(const RangeReport& report, const Model& model, const Joi
                           console.coloured(formatted("%-16s", finding_word(least)), least.status == PairStatus::clear).c_str());
         text += "  " + combination(ranges, least, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
-        text += "\n";
+        text += (row.change.word.empty() ? "" : "  " + row.change.word) + "\n";
     }
     int told = 0;
     for (const RangeRow& row : report.rows)
@@ -253,6 +289,7 @@ std::string ranges_text(const RangeReport& report, const Model& model, const Joi
     if (!report.left_out.empty()) text += "not judged, as these may not collide: " + joined(report.left_out) + "; name them with --pairs\n";
     if (!report.uncovered.empty()) text += formatted("%zu without a row: ", report.uncovered.size()) + joined(report.uncovered) + "\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
+    if (report.baseline) text += report.baseline->text();
     if (!report.message.empty()) text += report.message + "\n";
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
@@ -274,9 +311,7 @@ Errors write_range_proof(const RangeQuestion& question, core::certificate::Range
 
 }  // namespace
 
-int clearance_over_ranges(const RangeQuestion& question, const CommonOptions& common, Console& console) {
-    if (!question.certificate.empty())
-        if (Errors errors = try_output_file(question.certificate); !errors.empty()) return console.input_errors(errors);
+int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, Console& console) {
     if (file_kind(question.path) == FileKind::trajectory)
         return console.input_errors(
             {{ErrorCode::unsupported, question.path, "a trajectory has no joints: --ranges wants a scene or design"}});
@@ -306,6 +341,12 @@ int clearance_over_ranges(const RangeQuestion& question, const CommonOptions& co
     const std::vector<RangeClearance> results = certify_ranges(loaded->model, *ranges, requests, certify);
     RangeReport report = make_range_report(loaded->model, *ranges, *selection, results);
     report.tolerance = certify.tolerance;
+    if (question.baseline) compare_with(*std::move(question.baseline), report);
+    if (!question.csv.empty()) {
+        const std::string table = ranges_csv(report, *ranges, unit_name(loaded->model.length_unit));
+        if (const Errors errors = core::files::write_file_atomically(question.csv, table); !errors.empty())
+            return console.input_errors(errors);
+    }
     Json json = ranges_json(report, loaded->model, *ranges);
     std::string text = ranges_text(report, loaded->model, *ranges, question.explain, console);
     if (!question.certificate.empty()) {
@@ -313,6 +354,9 @@ int clearance_over_ranges(const RangeQuestion& question, const CommonOptions& co
         json["certificate"] = {{"file", question.certificate}, {"trajectory", certificate_trajectory(question.certificate)}};
         text += "certificate: " + question.certificate + "; check it with fettle validate " + question.certificate + "\n";
     }
+    report::Motion assembled{loaded->model, core::clearance::as_assembled(loaded->model), loaded->scene_path};
+    const Errors errors = write_folder(question.folder, std::move(assembled), common, console, json, text);
+    if (!errors.empty()) return console.input_errors(errors);
     console.result(json, text);
     return report.status == PairStatus::violated ? exit_violated : report.status == PairStatus::undecided ? exit_undecided : exit_done;
 }

@@ -6,10 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <unordered_map>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_document.hpp"
 #include "fettle/design/cli/answers.hpp"
 
 namespace fettle::design::cli {
@@ -171,14 +169,8 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     } else {
         add_witness(json, pair, subject, names);
     }
-    if (!pair.change.empty()) json["change"] = pair.change;
-    if (pair.before) json["before"] = {{"status", pair.before->status}, {"lower", pair.before->lower}, {"upper", pair.before->upper}};
+    add_change(json, pair.change);
     return json;
-}
-
-int count_changes(const ClearanceReport& report, const char* change) {
-    return static_cast<int>(
-        std::count_if(report.pairs.begin(), report.pairs.end(), [&](const ReportedPair& p) { return p.change == change; }));
 }
 
 // Worst first; rows are large, and there may be many.
@@ -208,8 +200,6 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
                                                     : "all bodies are of one group");
     return message;
 }
-
-bool is_finding(const std::string& status) { return status == "violated" || status == "undecided"; }
 
 }  // namespace
 
@@ -266,33 +256,9 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
     return report;
 }
 
-Errors compare_with_baseline(const std::string& path, ClearanceReport& report) {
-    auto document = core::files::JsonDocument::read(path);
-    if (!document) return document.errors();
-    report.baseline = path;
-    const auto row_key = [](const std::string& a, const std::string& b) { return a < b ? a + '\n' + b : b + '\n' + a; };
-    std::unordered_map<std::string, ReportedPair*> rows;
-    for (ReportedPair& pair : report.pairs) rows.try_emplace(row_key(pair.spec.a.name, pair.spec.b.name), &pair);
-    const core::files::JsonNode list = document->root().require("pairs");
-    for (const core::files::JsonNode& node : list.elements()) {
-        const auto a = node.require("a").string(), b = node.require("b").string();
-        const auto status = node.require("status").choice({"clear", "violated", "undecided", "contact"});
-        const auto lower = node.require("lower").number();
-        const core::files::JsonNode upper_node = node.require("upper");
-        const auto upper = upper_node.is_null() ? std::numeric_limits<double>::infinity() : upper_node.number();
-        if (!a || !b || !status || !lower || !upper) continue;
-        const auto found = rows.find(row_key(*a, *b));
-        if (found != rows.end()) {
-            found->second->before = Before{*status, *lower, *upper};
-        } else if (is_finding(*status)) {
-            report.missing.push_back(*a + ":" + *b);
-        }
-    }
-    for (ReportedPair& pair : report.pairs) {
-        const bool now = is_finding(core::clearance::to_string(pair.least.status)), then = pair.before && is_finding(pair.before->status);
-        pair.change = now ? (then ? "existing" : "new") : (then ? "resolved" : "");
-    }
-    return document->errors();
+void compare_with(Baseline baseline, ClearanceReport& report) {
+    for (ReportedPair& pair : report.pairs) pair.change = baseline.compare(pair.spec.a.name, pair.spec.b.name, pair.least.status);
+    report.baseline = std::move(baseline);
 }
 
 Json report_json(const ClearanceReport& report, const Subject& subject) {
@@ -321,13 +287,7 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["uncovered"] = report.uncovered;
     json["notes"] = subject.notes;
     if (!report.message.empty()) json["message"] = report.message;
-    if (!report.baseline.empty()) {
-        json["baseline"] = {{"file", report.baseline},
-                            {"new", count_changes(report, "new")},
-                            {"existing", count_changes(report, "existing")},
-                            {"resolved", count_changes(report, "resolved")},
-                            {"missing", report.missing}};
-    }
+    if (report.baseline) json["baseline"] = report.baseline->json();
     return json;
 }
 

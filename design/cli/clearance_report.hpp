@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/design/cli/clearance_baseline.hpp"
 #include "fettle/design/cli/clearance_pairs.hpp"
 #include "fettle/design/cli/clearance_subject.hpp"
 
@@ -23,20 +24,13 @@ enum class Finding {
 };
 const char* to_string(Finding finding);
 
-/// A pair in an earlier report.
-struct Before {
-    std::string status;
-    double lower = 0, upper = 0;  ///< [m]
-};
-
 struct ReportedPair {
     PairSpec spec;
     core::clearance::PairClearance least;                 ///< of the two bodies that are closest; bounds and status of the whole pair
     std::vector<core::clearance::PairClearance> members;  ///< one per pair of bodies
     Finding finding = Finding::undecided;
-    std::string overlap;           ///< says that one lies inside the other; empty: it does not
-    std::optional<Before> before;  ///< in the baseline
-    std::string change;            ///< "new", "existing", "resolved"; empty: nothing to tell, or no baseline
+    std::string overlap;  ///< says that one lies inside the other; empty: it does not
+    Change change;        ///< against the baseline
 };
 
 struct ClearanceReport {
@@ -45,9 +39,8 @@ struct ClearanceReport {
     std::vector<std::string> left_out;   ///< not judged: no clash was found, nothing else is told
     std::vector<std::string> uncovered;  ///< pairs of bodies that no row speaks of
     std::string message;                 ///< why nothing was judged, or not to the end; empty: it was
-    std::vector<std::string> missing;    ///< findings of the baseline whose pairs were not judged now
-    std::string baseline;                ///< file; empty: none
-    double tolerance = 0;                ///< [m]
+    std::optional<Baseline> baseline;
+    double tolerance = 0;  ///< [m]
     core::clearance::PairStatus status = core::clearance::PairStatus::clear;
 };
 
@@ -59,8 +52,8 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
 /// A body's pose at a witness's instant: that of its file's frame.
 core::kinematics::Pose file_pose(const Subject& subject, const core::clearance::Witness& witness, int body);
 
-/// Marks findings as new, existing or resolved. Errors: the file is no report.
-Errors compare_with_baseline(const std::string& path, ClearanceReport& report);
+/// Marks findings as new, existing or resolved.
+void compare_with(Baseline baseline, ClearanceReport& report);
 
 /// Keys: docs/interface.md, and gap, sampled, finding, pose_a, pose_b, required_by ... SI.
 nlohmann::ordered_json report_json(const ClearanceReport& report, const Subject& subject);

@@ -64,7 +64,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           lengths.up(least.upper).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
         if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
-        text += (pair.change.empty() ? "" : "  " + pair.change) + "\n";
+        text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
     }
     return text;
 }
@@ -162,13 +162,6 @@ std::string shortest(double x) {
     return {buffer, code == std::errc() ? end : buffer};
 }
 
-std::string quoted(const std::string& name) {
-    if (name.find_first_of(",\"\n") == std::string::npos) return name;
-    std::string text = "\"";
-    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return text + "\"";
-}
-
 }  // namespace
 
 std::string report_text(const ClearanceReport& report, const Subject& subject, const std::string& unit, int explain,
@@ -202,14 +195,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
                 joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
                 (report.uncovered.size() > 6 ? ", ...\n" : "\n");
     for (const std::string& note : subject.notes) text += "note: " + note + "\n";
-    if (!report.baseline.empty()) {
-        int changes[3] = {0, 0, 0};
-        for (const ReportedPair& pair : report.pairs)
-            for (int k = 0; k < 3; ++k)
-                changes[k] += pair.change == std::vector<const char*>{"new", "existing", "resolved"}[static_cast<size_t>(k)];
-        text += formatted("against %s: %d new, %d existing, %d resolved\n", report.baseline.c_str(), changes[0], changes[1], changes[2]);
-        if (!report.missing.empty()) text += "found there and not judged now: " + joined(report.missing) + "\n";
-    }
+    if (report.baseline) text += report.baseline->text();
     if (!report.message.empty()) text += report.message + "\n";
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
@@ -219,8 +205,8 @@ std::string margins_csv(const ClearanceReport& report, const Subject& subject, c
     std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
     for (const ReportedPair& pair : report.pairs) {
         for (const PairClearance& member : pair.members) {
-            const std::string names = quoted(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
-                                      quoted(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
+            const std::string names = csv_word(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
+                                      csv_word(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
             for (const core::clearance::MarginInterval& m : member.margin) {
                 const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
                 text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +

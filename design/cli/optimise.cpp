@@ -71,6 +71,11 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
     if (!done) return console.input_errors(done.errors());
     const OptimiseOutcome& outcome = done->outcome;
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
+    forget_motion(folder.directory);
+    if (outcome.final.usable) {
+        const Errors unwritten = write_animation(folder.directory, *outcome.final.model, outcome.final.simulation.trajectory);
+        if (!unwritten.empty()) return console.input_errors(unwritten);
+    }
     Json json = outcome_json(run.problem, outcome, run.facts);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
     if (!rows.empty()) {

@@ -258,7 +258,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     text += by_models_text(design, outcome);
     text += verdict_text(design, report.optimality, run.repair ? "the squared change" : "the objective");
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
-    return text + "written to " + run.out + ": design.final.json, trajectory.json, history.jsonl, result.json\n";
+    return text + "written to " + run.out + ": design.final.json, trajectory.json, motion.glb, history.jsonl, result.json\n";
 }
 
 int exit_code(OptimiserStatus status) {

@@ -70,6 +70,8 @@ std::string line_of(const StartResult& start) {
     std::string text = formatted("seed %-8llu %-12s", static_cast<unsigned long long>(start.seed), start.status.c_str());
     if (!start.result.is_object()) return text + " " + start.message;
     text += formatted(" objective %-12.8g %3d evaluations", number(start.result, "objective"), start.result["evaluations"].get<int>());
+    const double violation = number(start.result, "constraint_violation");
+    if (violation > 0) return text + formatted(", largest violation %.3g", violation);
     const std::string limits = joined_names(start.result["limited_by"]);
     return limits.empty() ? text : text + ", held by " + limits;
 }

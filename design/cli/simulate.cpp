@@ -19,7 +19,6 @@
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/path_proof.hpp"
 #include "fettle/design/cli/report_made.hpp"
-#include "fettle/design/exports/glb_writer.hpp"
 
 namespace fettle::design::cli {
 
@@ -108,16 +107,13 @@ Errors write_motion(const SimulateArguments& options, const core::model::Model& 
     const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", simulation.trajectory.steps.size());
     if (!kept) return kept.errors();
     if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-    std::error_code ignored;
-    std::filesystem::remove(folder / "result.json", ignored);  // it speaks of another motion from here on
+    forget_motion(options.out);  // what is there speaks of another motion from here on
     Errors errors =
         core::records::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
     for (const auto& [name, text] : tables) {
         if (errors.empty()) errors = core::files::write_file_atomically(folder / name, text);
     }
-    if (errors.empty())
-        errors = core::files::write_file_atomically(folder / "motion.glb",
-                                                    exports::glb_bytes(exports::assembly_of(model, simulation.trajectory)));
+    if (errors.empty()) errors = write_animation(options.out, model, simulation.trajectory);
     return errors;
 }
 

@@ -151,6 +151,9 @@ private:
                 add(ErrorCode::out_of_range, place(parameter),
                     "body `" + body.name + "` has no shape with a dimension \"" + move.dimension + "\"");
         }
+        if (move.target == MoveTarget::density && body.inertial)
+            add(ErrorCode::inconsistent, place(parameter),
+                "the mass of body `" + body.name + "` is given (`inertial`), and follows no density");
         if (move.target == MoveTarget::motor_rate && (move.dof < 0 || move.dof > 5 || !body.prescribed[static_cast<size_t>(move.dof)]))
             add(ErrorCode::inconsistent, place(parameter), "body `" + body.name + "` has no motor on that coordinate");
     }

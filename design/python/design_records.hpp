@@ -112,8 +112,6 @@ FETTLE_RECORD(fettle::design::description::Design, "Design", field("scene", &Typ
 FETTLE_RECORD(fettle::design::reading::DesignFile, "DesignFile", field("design", &Type::design), field("path", &Type::path),
               field("text", &Type::text), field("scene_path", &Type::scene_path), field("length_unit", &Type::length_unit),
               field("output", &Type::output), field("warnings", &Type::warnings))
-FETTLE_RECORD(fettle::design::description::Measurement, "Measurement", field("value", &Type::value), field("lower", &Type::lower),
-              field("upper", &Type::upper), field("clearance", &Type::clearance), field("fault", &Type::fault))
 FETTLE_RECORD(fettle::design::optimisers::Rows, "Rows", field("values", &Type::values), field("jacobian", &Type::jacobian))
 FETTLE_RECORD(fettle::design::problem::DesignEvaluation, "DesignEvaluation", field("usable", &Type::usable), field("reason", &Type::reason),
               field("simulation", &Type::simulation), field("terms", &Type::terms), field("constraints", &Type::constraints),

@@ -33,6 +33,7 @@ py::dict defaults() {
     add_default<fettle::core::scene::Damping>(all);
     add_default<fettle::core::scene::Friction>(all);
     add_default<fettle::core::scene::Friction::Pair>(all);
+    add_default<fettle::core::scene::Inertial>(all);
     add_default<fettle::core::scene::Joint>(all);
     add_default<fettle::core::scene::Mechanism>(all);
     add_default<fettle::core::scene::MotionCurve>(all);

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/python/own_quantity.hpp"
 
+#include <cmath>
+
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
 FETTLE_WORDS(fettle::core::base::Dimension, "number", "length", "area", "volume", "angle", "time", "mass", "force", "torque", "energy",
              "speed", "angular_speed", "acceleration", "density", "stiffness")
+FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least")
+FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
+FETTLE_WORDS(fettle::design::quantities::JointLoadKind, "force", "torque", "effort")
 
 namespace fettle::design::python {
 
@@ -84,6 +91,17 @@ void add_model_gradient(const py::object& gradient, double scale, Seeds& seeds) 
     }
 }
 
+// A number that is exact, or a Measurement with bounds.
+Measurement measurement_from(const py::object& answer) {
+    if (!py::isinstance(answer, record_class("Measurement"))) return description::exact(answer.cast<double>());
+    auto measured = answer.cast<Measurement>();
+    if (!(measured.lower <= measured.value && measured.value <= measured.upper))
+        throw py::value_error("a Measurement's value lies between its lower and its upper bound");
+    return measured;
+}
+
+constexpr double rounding_of_squares = 1e-9;  // of a value, by which the sum of its deviations' squares may miss it
+
 /// An object of Python's as a quantity.
 class PythonQuantity : public Quantity {
 public:
@@ -98,24 +116,45 @@ public:
 
     Measurement value(const Simulated& simulated) const override {
         const py::gil_scoped_acquire locked;
-        return description::exact(ask("value", simulated).cast<double>());
+        return measurement_from(ask("value", simulated));
     }
 
     void add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const override {
         const py::gil_scoped_acquire locked;
-        const py::object gradient = ask("gradient", simulated);
+        add_gradient(ask("gradient", simulated), scale, seeds);
+    }
+
+    VectorX deviations(const Simulated& simulated) const override {
+        const py::gil_scoped_acquire locked;
+        const Rows found = Rows::ensure(ask("deviations", simulated));
+        if (!found || found.ndim() != 1) throw py::value_error("a quantity's deviations() are numbers, of shape (m,)");
+        const VectorX deviations = Eigen::Map<const VectorX>(found.data(), found.size());
+        if (deviations.size() == 0) return deviations;
+        const double value = measurement_from(ask("value", simulated)).value, squares = deviations.squaredNorm();
+        if (!(std::abs(squares - value) <= rounding_of_squares * std::max(std::abs(value), squares)))
+            throw py::value_error("the squares of a quantity's deviations() sum up to its value()");
+        return deviations;
+    }
+
+    void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const override {
+        const py::gil_scoped_acquire locked;
+        add_gradient(ask("deviation_gradient", simulated, i), scale, seeds);
+    }
+
+private:
+    static void add_gradient(const py::object& gradient, double scale, Seeds& seeds) {
         if (!py::isinstance(gradient, record_class("QuantityGradient")))
-            throw py::type_error("a quantity's gradient() returns a fettle.QuantityGradient");
+            throw py::type_error("a quantity's gradient() and deviation_gradient() return a fettle.QuantityGradient");
         add_pose_gradient(gradient, scale, seeds);
         add_model_gradient(gradient, scale, seeds);
     }
 
-private:
-    py::object ask(const char* what, const Simulated& simulated) const {
+    template <class... More>
+    py::object ask(const char* what, const Simulated& simulated, More... more) const {
         const py::object view = py::cast(SimulatedView(simulated));
         const auto close = [&] { view.cast<SimulatedView&>().close(); };
         try {
-            py::object answer = quantity_->attr(what)(view);
+            py::object answer = quantity_->attr(what)(view, more...);
             close();
             return answer;
         } catch (...) {
@@ -158,6 +197,13 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
         return std::make_shared<MarkerPath>(body(), q.attr("point").cast<Vector3>(), q.attr("targets").cast<std::vector<Vector3>>(),
                                             q.attr("times").cast<std::vector<double>>());
     }
+    const auto over = [&] { return q.attr("over").cast<Over>(); };
+    if (is("JointLoad")) {
+        JointLoad::Of of{q.attr("kind").cast<JointLoadKind>(), q.attr("name").cast<std::string>(), q.attr("axis").cast<Vector3>(),
+                         q.attr("effort_dimension").cast<Dimension>()};
+        return std::make_shared<JointLoad>(std::move(of), over());
+    }
+    if (is("Energy")) return std::make_shared<Energy>(q.attr("kind").cast<EnergyKind>(), over());
     return nullptr;
 }
 
@@ -187,6 +233,9 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     if (const auto* q = dynamic_cast<const Stroke*>(quantity.get())) return record_class("Stroke")(q->body(), q->axis(), q->target());
     if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get()))
         return record_class("MarkerPath")(q->body(), q->point(), q->targets(), q->times());
+    if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
+        return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
+    if (const auto* q = dynamic_cast<const Energy*>(quantity.get())) return record_class("Energy")(q->kind(), q->over());
     return py::cast(OpaqueQuantity{quantity});
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Quantities between Python and the library: those of ../quantities are dataclasses of the same names; an object with `value()` and
-/// `gradient()` (fettle.Quantity) is a Quantity of the library, called with the interpreter's lock.
+/// `gradient()` (fettle.Quantity), and `deviations()` and `deviation_gradient()` where it is a sum of squares, is a Quantity of the
+/// library, called with the interpreter's lock. Throws ValueError for a Measurement whose bounds do not hold its value, and for deviations
+/// whose squares miss the value by more than rounding.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,6 +10,7 @@
 #include <memory>
 
 #include "fettle/design/description/quantity.hpp"
+#include "fettle/design/python/motion_records.hpp"
 
 namespace fettle::design::python {
 
@@ -16,3 +19,6 @@ pybind11::object quantity_to_python(const std::shared_ptr<const description::Qua
 void bind_quantities(pybind11::module_& module);
 
 }  // namespace fettle::design::python
+
+FETTLE_RECORD(fettle::design::description::Measurement, "Measurement", field("value", &Type::value), field("lower", &Type::lower),
+              field("upper", &Type::upper), field("clearance", &Type::clearance), field("fault", &Type::fault))

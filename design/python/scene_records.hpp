@@ -96,10 +96,12 @@ public:
 
 }  // namespace pybind11::detail
 
+FETTLE_RECORD(fettle::core::scene::Inertial, "Inertial", field("mass", &Type::mass), field("centre", &Type::centre),
+              field("inertia", &Type::inertia))
 FETTLE_RECORD(fettle::core::scene::Body, "Body", field("name", &Type::name), field("where", &Type::where), field("type", &Type::type),
               field("mesh", &Type::mesh), field("shape", &Type::shape), field("mesh_policy", &Type::mesh_policy),
               field("density", &Type::density), field("density_given", &Type::density_given), field("mass_kind", &Type::mass_kind),
-              field("material", &Type::material), field("mu", &Type::mu), field("pose", &Type::pose),
+              field("inertial", &Type::inertial), field("material", &Type::material), field("mu", &Type::mu), field("pose", &Type::pose),
               field("linear_velocity", &Type::linear_velocity), field("angular_velocity", &Type::angular_velocity),
               field("prescribed", &Type::prescribed), field("script", &Type::script), field("force", &Type::force),
               field("torque", &Type::torque), field("damping", &Type::damping), field("reference_point", &Type::reference_point),

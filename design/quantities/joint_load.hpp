@@ -27,6 +27,7 @@ public:
     };
     JointLoad(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
 
+    const Of& of() const { return of_; }
     Dimension dimension() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 

@@ -26,7 +26,7 @@ description::Measurement Mass::value(const description::Simulated& s) const {
     double sum = 0;
     for (const Of& of : bodies_) {
         const Body& body = s.model.bodies[static_cast<size_t>(of.body)];
-        sum += body.density * amount(body, of.kind);
+        sum += body.given_mass ? *body.given_mass : body.density * amount(body, of.kind);
     }
     return description::exact(sum);
 }
@@ -34,6 +34,7 @@ description::Measurement Mass::value(const description::Simulated& s) const {
 void Mass::add_seeds(const description::Simulated& s, const description::Measurement&, double scale, description::Seeds& seeds) const {
     for (const Of& of : bodies_) {
         const Body& body = s.model.bodies[static_cast<size_t>(of.body)];
+        if (body.given_mass) continue;
         adjoint::BodyGradient& bar = seeds.model_bar.bodies[static_cast<size_t>(of.body)];
         adjoint::scene::amount_adjoint(body.mesh, of.kind, scale * body.density, bar.vertices_bar);
         bar.density_bar += scale * amount(body, of.kind);
@@ -46,7 +47,7 @@ Errors Mass::check(const core::model::Model& model, int) const {
         Errors found = description::check_body(model, of.body);
         if (found.empty()) {
             const Body& body = model.bodies[static_cast<size_t>(of.body)];
-            if (!core::scene::centre_of_mass(body.mesh, of.kind))
+            if (!body.given_mass && !core::scene::centre_of_mass(body.mesh, of.kind))
                 found.push_back({ErrorCode::mesh_invalid, "",
                                  "the mesh of body \"" + body.name + "\" has nothing for a density in " +
                                      core::scene::density_unit(of.kind) + " (of an open mesh there is no volume)"});

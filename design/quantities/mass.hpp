@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Mass of one or more bodies [kg], static bodies included: density times what it is per, by the body's MassKind
 /// (core/scene/mass_kind.hpp): the volume of the solid (small openings capped), the area of the triangles, the length of the edges, the
-/// number of vertices.
+/// number of vertices. A mass that the scene gives (Body::inertial) is that, whatever the mesh becomes.
 #pragma once
 
 #include <vector>

@@ -16,6 +16,7 @@ class StepSeries : public description::Quantity {
 public:
     explicit StepSeries(Over over) : over_(over) {}
 
+    Over over() const { return over_; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;

@@ -79,6 +79,7 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
         if (!index) continue;
         bodies.push_back(*index);
         const core::scene::Body& body = context.scene.bodies[static_cast<size_t>(*index)];
+        if (body.inertial) continue;
         if (!body.density_given) {
             entry.fail(ErrorCode::missing_key,
                        "body " + entry.shown() + " has no density in its scene, so it has no mass; give it a `density`");

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/report/design_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/quantities/clearance.hpp"
@@ -39,6 +42,26 @@ bool pairs_match(const description::Design& design, const Json& result) {
         clearances += dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr ? 1 : 0;
     const Json pairs = member(member(result, "clearance"), "pairs");
     return pairs.is_array() && pairs.size() == clearances;
+}
+
+// The largest difference of a parameter, in its range.
+Json away(const description::Design& design, const Json& from, const Json& to) {
+    double most = 0;
+    for (const description::Parameter& p : design.parameters) {
+        const Json a = member(from, p.name), b = member(to, p.name);
+        if (!a.is_number() || !b.is_number()) return {};
+        const double range = description::from_si(p.upper, p.unit) - description::from_si(p.lower, p.unit);
+        most = std::max(most, std::abs(a.get<double>() - b.get<double>()) / range);
+    }
+    return in_unit(most, 1);
+}
+
+double number_or_infinity(const Json& json) { return json.is_number() ? json.get<double>() : std::numeric_limits<double>::infinity(); }
+
+// As the best one is chosen: what is minimised, of those that meet all requirements, else the violation.
+std::tuple<double, double, double> rank_of_start(const Json& row) {
+    const Json& minimised = row["distance"].is_number() ? row["distance"] : row["objective"];
+    return {row["taken"].get<bool>() ? 0 : 1, std::max(0.0, number_or_infinity(row["violation"])), number_or_infinity(minimised)};
 }
 
 }  // namespace
@@ -101,6 +124,27 @@ Json parameter_rows(const description::Design& design, const Json& result) {
                         {"held", member(held, p.name)},
                         {"step", step}});
     }
+    return rows;
+}
+
+Json start_rows(const description::Design& design, const Json& result) {
+    Json rows = Json::array();
+    const Json starts = member(result, "starts"), seed = member(result, "seed"), parameters = member(result, "parameters");
+    if (!starts.is_array()) return rows;
+    for (const Json& start : starts) {
+        const Json limits = member(start, "limited_by");
+        rows.push_back({{"seed", member(start, "seed")},
+                        {"status", member(start, "status")},
+                        {"taken", member(start, "seed") == seed},
+                        {"objective", member(start, "objective")},
+                        {"violation", member(start, "constraint_violation")},
+                        {"evaluations", member(start, "evaluations")},
+                        {"distance", member(member(start, "repair"), "distance")},
+                        {"away", away(design, member(start, "parameters"), parameters)},
+                        {"limits", limits.is_array() ? limits : Json::array()},
+                        {"message", member(start, "message")}});
+    }
+    std::stable_sort(rows.begin(), rows.end(), [](const Json& x, const Json& y) { return rank_of_start(x) < rank_of_start(y); });
     return rows;
 }
 

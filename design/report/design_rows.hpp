@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The tables of an optimised design: its requirements and its parameters.
+/// The tables of an optimised design: its requirements, its parameters, and the starts that it is the best of.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -23,5 +23,10 @@ nlohmann::ordered_json requirement_rows(const description::Design& design, const
 
 /// List of {name, unit, start, end, lower, upper, held: null or a word of docs/interface.md, step: null, or how far it could move}.
 nlohmann::ordered_json parameter_rows(const description::Design& design, const nlohmann::ordered_json& result);
+
+/// List of {seed, status, taken: is it the one that the answer is of, objective: null where there is none, violation, evaluations,
+/// distance: of a repair, else null, away: the largest difference of a parameter from the one taken, in its range, null where not known,
+/// limits: texts, message}, the best first; empty where there was one start.
+nlohmann::ordered_json start_rows(const description::Design& design, const nlohmann::ordered_json& result);
 
 }  // namespace fettle::design::report

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -92,6 +93,19 @@ std::vector<PairClearance> nearest_of_pairs(const std::vector<PairClearance>& wi
     return list;
 }
 
+// Over the ranges of the joints: where the pair is worst. Null: it is no such pair, or nothing moves it.
+Json worst_place(const Json& coordinates) {
+    std::string text;
+    for (const Json& each : coordinates.is_array() ? coordinates : Json::array()) {
+        const bool is_angle = member(each, "unit") == "rad";
+        char number[48];
+        std::snprintf(number, sizeof number, is_angle ? " %.4g deg" : " %.4g mm",
+                      each.at("value").get<double>() * (is_angle ? 180 / M_PI : 1 / millimetre));
+        text += (text.empty() ? "worst at " : ", ") + each.at("joint").get<std::string>() + number;
+    }
+    return text.empty() ? Json() : Json(text);
+}
+
 float rounded_down(double x) {
     const auto y = static_cast<float>(x);
     return static_cast<double>(y) > x ? std::nextafter(y, -std::numeric_limits<float>::infinity()) : y;
@@ -109,6 +123,7 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
         const Json time = witness.is_object() ? member(witness, "time") : member(pair, "time");
         Json note = member(pair, "reason");
         if (note.is_null()) note = member(pair, "overlap");
+        if (note.is_null()) note = worst_place(member(pair, "coordinates"));
         if (measured.is_boolean() && !measured.get<bool>()) note = "at least twice as far apart as required: not measured";
         rows.push_back({{"a", a},
                         {"b", b},

@@ -14,7 +14,8 @@ namespace fettle::design::report {
 inline constexpr std::size_t most_pairs = 200, most_margins = 8;
 
 /// A row {a, b, body_a, body_b: indices, -1: none, motion, minimum: null if none is required, lower, upper: null if not measured, status,
-/// finding, time [s], point_a, point_b: null if not measured, note} of each pair of an answer (docs/interface.md), up to most_pairs.
+/// finding, time [s], point_a, point_b: null if not measured, note} of each pair of an answer (docs/interface.md), up to most_pairs. The
+/// note of a pair over the ranges of joints is where it is worst.
 /// @param pairs   `pairs` of `fettle clearance`, or of `clearance` of `fettle optimise`.
 /// @param motion  per pair: is it over the motion?
 nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model, const std::vector<bool>& motion);

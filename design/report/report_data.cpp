@@ -57,7 +57,7 @@ void add_optimisation(Json& data, const ReportSource& source) {
     const Json starts = member(result, "starts"), optimality = member(result, "optimality");
     if (starts.is_array())
         data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + member(result, "seed").dump() +
-                                  "; result.json tells of all.");
+                                  "; the table of starts tells of all.");
     data["optimality"] = optimality.is_object() ? Json{{"predicted_gain", member(optimality, "predicted_gain")},
                                                        {"worth", member(optimality, "worth")},
                                                        {"judged", member(optimality, "judged")}}
@@ -130,6 +130,9 @@ Json report_data(const ReportSource& source, const std::function<bool()>& should
     data["margins"] = data["history"] = data["series_note"] = Json();
     data["requirements"] = source.design ? requirement_rows(*source.design, source.result) : Json::array();
     data["parameters"] = source.design ? parameter_rows(*source.design, source.result) : Json::array();
+    data["starts"] = source.design ? start_rows(*source.design, source.result) : Json::array();
+    data["ranges"] = member(source.result, "source") == "over the ranges of the joints";
+    data["files"] = source.files;
     const Json limits = member(source.result, "limits");
     data["limits"] = limits.is_array() ? limits : Json::array();
     if (source.kind == ReportKind::optimise) add_optimisation(data, source);

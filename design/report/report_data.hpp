@@ -9,10 +9,12 @@
 ///   motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none
 ///   meshes, views   moving_parts.hpp; "before" (of an optimisation) and "after"
 ///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp
-///   requirements, parameters: design_rows.hpp; limits: texts
+///   ranges          is a clearance over all positions of the joints?
+///   requirements, parameters, starts: design_rows.hpp; limits: texts
 ///   history         search_curves.hpp; null if there is none
 ///   series          step_curves.hpp; series_note
 ///   notices         texts
+///   files           names in the page's folder that it offers
 #pragma once
 
 #include <functional>
@@ -49,6 +51,7 @@ struct ReportSource {
     StepTables tables;
     LinearMotors linear;
     std::vector<std::string> notices;
+    std::vector<std::string> files;  ///< that the page offers, as they are called in its folder
 };
 
 /// Which command answered so; nothing if none of them did.

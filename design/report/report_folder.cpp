@@ -106,6 +106,14 @@ Errors write_tables(const fs::path& folder, const StepTables& tables) {
     return {};
 }
 
+// What a reader of the page may want to take from beside it.
+std::vector<std::string> files_beside(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const char* name : {"motion.glb", "design.final.json", "trajectory.json", "result.json"})
+        if (fs::exists(folder / name)) names.emplace_back(name);
+    return names;
+}
+
 // As the optimiser's trials are simulated.
 Simulation simulated(const Model& model, int steps, bool outputs, const std::function<bool()>& should_stop) {
     core::stepper::SimulationOptions options;
@@ -181,19 +189,11 @@ private:
         source_.linear = linear_motors(file->design.scene.mechanism);
         source_.history = text_or_empty(folder_ / "history.jsonl");
         source_.design = file->design;
-        if (options_.fresh) forget();
         if (!source_.motion) return {};
         const Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
         if (!problem) return problem.errors();
         if (Errors errors = take_tables(*problem); !errors.empty()) return errors;
         return take_before(*problem, file->scene_path);
-    }
-
-    // What is there may be of another run.
-    void forget() {
-        std::error_code ignored;
-        for (const char* name : {"trajectory.start.json", "steps.csv", "contacts.csv", "drives.csv", "joints.csv"})
-            fs::remove(folder_ / name, ignored);
     }
 
     // Forces of the final design: as they are kept, or simulated once more, with the same bits.
@@ -257,6 +257,7 @@ Result<std::string> write_report(const std::string& folder, ReportOptions option
     const fs::path path = folder;
     if (Errors errors = FolderReader(path, options, source).read(); !errors.empty()) return errors;
     const std::string file = options.out.empty() ? (path / "report.html").string() : options.out;
+    if (options.out.empty()) source.files = files_beside(path);
     const std::string page = page_of(report_data(source, options.should_stop));
     if (Errors errors = core::files::write_file_atomically(file, page); !errors.empty()) return errors;
     return file;

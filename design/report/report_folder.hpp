@@ -4,8 +4,8 @@
 ///   trajectory.json    bodies and motion
 ///   design.final.json, history.jsonl      of an optimisation
 ///   steps.csv, contacts.csv, drives.csv, joints.csv     forces and energies
-/// Of an optimisation the motion of the design before (trajectory.start.json) and these tables are computed, and kept there, where they are
-/// missing: two simulations.
+/// Others that are there are offered beside the page. Of an optimisation the motion of the design before (trajectory.start.json) and these
+/// tables are computed, and kept there, where they are missing: two simulations.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,6 @@ namespace fettle::design::report {
 struct ReportOptions {
     std::string out;                                           ///< file; empty: report.html in the folder
     std::vector<std::string> mesh_dirs;                        ///< also looked in for meshes
-    bool fresh = false;                                        ///< what could be there from an earlier run is computed again
     std::optional<Motion> motion;                              ///< of the folder's trajectory, if it is at hand
     std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
 };

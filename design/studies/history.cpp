@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
@@ -193,6 +195,15 @@ Result<std::string> rename_away(const fs::path& path) {
     }
 }
 
+// A run that was killed may take a moment to let go of its file.
+bool lock(int file) {
+    for (int tries = 0; ::flock(file, LOCK_EX | LOCK_NB) != 0; ++tries) {
+        if (tries == 10) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return true;
+}
+
 }  // namespace
 
 Result<History> History::open(const std::string& directory, const HistoryHeader& header, HistoryMode mode) {
@@ -205,7 +216,7 @@ Result<History> History::open(const std::string& directory, const HistoryHeader&
     // Locked before it is renamed or read: a history that another run is still writing is left alone.
     history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (history.file_ < 0) return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
-    if (::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
+    if (!lock(history.file_)) {
         return Error{ErrorCode::file_unreadable, path.string(),
                      "another process is writing this history; wait for it, or give --out another folder"};
     }

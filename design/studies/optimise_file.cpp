@@ -23,7 +23,12 @@ Errors write_files(const reading::DesignFile& file, const std::string& directory
     const std::filesystem::path folder = directory;
     const std::string text = reading::design_text(file, outcome.report.point, directory);
     Errors errors = core::files::write_file_atomically(folder / "design.final.json", text);
-    if (!errors.empty() || !outcome.final.usable) return errors;
+    if (!errors.empty()) return errors;
+    if (!outcome.final.usable) {
+        std::error_code ignored;
+        std::filesystem::remove(folder / "trajectory.json", ignored);  // of an earlier run: it would pass for this one's
+        return {};
+    }
     return core::records::write_trajectory(folder / "trajectory.json", outcome.final.simulation.trajectory, *outcome.final.model,
                                            file.scene_path);
 }

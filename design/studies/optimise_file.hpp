@@ -11,8 +11,10 @@
 namespace fettle::design::studies {
 
 struct RunFolder {
-    std::string directory;  ///< for history.jsonl, design.final.json, trajectory.json; made if it is not there
-    bool resume = false;    ///< replay an existing history
+    /// For history.jsonl, design.final.json and trajectory.json, which is taken away where no design could be simulated; made if it is not
+    /// there.
+    std::string directory;
+    bool resume = false;  ///< replay an existing history
 };
 
 struct FileOutcome {

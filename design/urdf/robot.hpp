@@ -25,8 +25,10 @@ struct Geometry {
 
 struct Link {
     std::string name;
-    std::optional<double> mass;  ///< [kg]
-    std::vector<Geometry> collision, visual;
+    std::optional<double> mass;        ///< [kg]
+    core::kinematics::Pose centre;     ///< of mass, and the axes of `inertia`, in the link's frame
+    std::optional<Matrix3> inertia{};  ///< about the centre of mass, along its axes [kg m^2]
+    std::vector<Geometry> collision{}, visual{};
 
     /// What can touch: the collision geometry, of links without any the visual one.
     const std::vector<Geometry>& geometry() const { return collision.empty() ? visual : collision; }

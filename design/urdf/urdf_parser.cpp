@@ -45,7 +45,8 @@ private:
         if (xml_.name() != "link" && xml_.name() != "joint") return;
         if (name.empty()) xml_.fail(ErrorCode::missing_key, "a <" + std::string(xml_.name()) + "> needs a `name`");
         if (xml_.name() == "link") {
-            robot_.links.push_back({name, {}, {}, {}});
+            robot_.links.emplace_back();
+            robot_.links.back().name = name;
             link_ = true;
             section_ = nullptr;
             return;
@@ -68,7 +69,7 @@ private:
             if (section_) section_->emplace_back();
             return;
         }
-        if (inertial_ && name == "mass") link.mass = positive_number("value");
+        if (inertial_) return read_in_inertial(link);
         if (!section_) return;
         Geometry& geometry = section_->back();
         if (name == "origin" && xml_.depth() == 4) geometry.origin = origin();
@@ -90,6 +91,17 @@ private:
             xml_.fail(ErrorCode::unsupported,
                       "<" + std::string(name) + "> is no geometry that is read; there are box, cylinder, sphere, mesh");
         }
+    }
+
+    void read_in_inertial(Link& link) {
+        const std::string_view name = xml_.name();
+        if (name == "mass") link.mass = positive_number("value");
+        if (name == "origin") link.centre = origin();
+        if (name != "inertia") return;
+        const auto entry = [&](const char* key) { return number(key).value_or(0); };
+        const double xy = entry("ixy"), xz = entry("ixz"), yz = entry("iyz");
+        link.inertia.emplace();
+        *link.inertia << entry("ixx"), xy, xz, xy, entry("iyy"), yz, xz, yz, entry("izz");
     }
 
     void read_in_joint() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reads a URDF file (ROS's unified robot description format) into a Robot. Taken: links (mass, collision, visual: box, cylinder, sphere,
-/// mesh), joints (type, origin, axis, limit, dynamics, mimic). Passed over: inertia tensors, materials, transmissions, sensors, effort and
+/// Reads a URDF file (ROS's unified robot description format) into a Robot. Taken: links (mass and inertia, collision, visual: box,
+/// cylinder, sphere, mesh), joints (type, origin, axis, limit, dynamics, mimic). Passed over: materials, transmissions, sensors, effort and
 /// velocity limits, safety controllers, Gazebo's elements.
 #pragma once
 

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/core/scene/inertial.hpp"
 #include "fettle/design/shapes/shape_generator.hpp"
 
 namespace fettle::design::urdf {
@@ -21,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::geometry::Mesh;
 using core::kinematics::Pose;
+using core::scene::Inertial;
 using Json = nlohmann::ordered_json;
 
 constexpr double default_density = 1000;
@@ -141,6 +144,7 @@ public:
         if (!errors_.empty()) return errors_;
         if (scene_["bodies"].empty()) return Error{ErrorCode::mesh_invalid, robot_.name, "no link has any geometry"};
         if (scene_["joints"].empty()) scene_.erase("joints");
+        for (Json& body : scene_["bodies"]) write_inertial(body);
         out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", scene_.dump(2) + "\n"});
         return std::move(out_);
     }
@@ -179,6 +183,8 @@ private:
         } else if (index != root_ && parent_joint_.at(link.name)->type != "fixed") {
             errors_.push_back(
                 {ErrorCode::unsupported, robot_.name, "the link \"" + link.name + "\" moves and has no geometry; give it a small one"});
+        } else if (link.mass) {
+            add_to(body, link, pose);
         }
         for (const Joint& joint : robot_.joints) {
             if (joint.parent != link.name) continue;
@@ -213,15 +219,57 @@ private:
             const double volume = core::geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3);
             const bool known = link.mass && volume > 0;
             body["density"] = known ? *link.mass / volume : default_density;
-            if (!known)
+            if (!known && !inertial_of_link(link))
                 out_.warnings.push_back("link \"" + link.name + "\": no mass, or no volume for it; its density is taken as 1000 kg/m^3");
         }
+        masses_[name] = {pose, inertial_of_link(link)};
         body["mesh"] = file;
         body["position"] = numbers(1e3 * pose.position);
         const Vector3 rpy = rpy_of_rotation(pose.rotation);
         const Eigen::AngleAxisd turn(pose.rotation);
         if (rpy.norm() > 0) body["rotation_vector"] = numbers(180 / M_PI * turn.angle() * turn.axis());
         scene_["bodies"].push_back(std::move(body));
+    }
+
+    /// Along the link's axes; nothing where the file has none, or one that no body has.
+    std::optional<Inertial> inertial_of_link(const Link& link) {
+        if (!link.mass || !link.inertia) return std::nullopt;
+        const Matrix3& turn = link.centre.rotation;
+        const Inertial found{*link.mass, link.centre.position, turn * *link.inertia * turn.transpose()};
+        const std::string fault = core::scene::fault_of(found);
+        if (fault.empty()) return found;
+        if (doubted_.insert(link.name).second)
+            out_.warnings.push_back("link \"" + link.name + "\": its inertia is left out, that of a solid of its mass is taken: " + fault);
+        return std::nullopt;
+    }
+
+    /// What a link without geometry weighs goes to the body that it is fixed to.
+    void add_to(const std::string& body, const Link& link, const Pose& pose) {
+        if (body.empty()) return;
+        const auto parent = masses_.find(body);
+        const std::optional<Inertial> own = inertial_of_link(link);
+        if (parent == masses_.end() || !parent->second.inertial || !own) {
+            out_.warnings.push_back("link \"" + link.name + "\": has no geometry, and its mass is left out: it and the link that it is " +
+                                    "fixed to have no inertia each");
+            return;
+        }
+        const Pose& to = parent->second.pose;
+        Matrix4 shift = Matrix4::Identity();  // of the link's frame into that of the body
+        shift.topLeftCorner<3, 3>() = to.rotation.transpose() * pose.rotation;
+        shift.topRightCorner<3, 1>() = to.rotation.transpose() * (pose.position - to.position);
+        const Matrix4 sum = core::scene::moments_about(*parent->second.inertial, Vector3::Zero()) +
+                            shift * core::scene::moments_about(*own, Vector3::Zero()) * shift.transpose();
+        parent->second.inertial = core::scene::inertial_of(sum);
+    }
+
+    void write_inertial(Json& body) const {
+        const auto found = masses_.find(body["name"].get<std::string>());
+        if (found == masses_.end() || !found->second.inertial) return;
+        const Inertial& own = *found->second.inertial;
+        Json rows = Json::array();
+        for (int k = 0; k < 3; ++k) rows.push_back(numbers(own.inertia.row(k).transpose()));
+        body.erase("density");
+        body["inertial"] = {{"mass", own.mass}, {"centre", numbers(1e3 * own.centre)}, {"inertia", rows}};
     }
 
     /// @param child  the frame of the child's link. @param parent  a body, or empty for the world.
@@ -277,6 +325,12 @@ private:
     ImportedScene out_;
     Errors errors_;
     std::map<std::string, const Joint*> parent_joint_;
+    struct BodyMass {
+        Pose pose;                         // of the body's frame in the world
+        std::optional<Inertial> inertial;  // along its axes
+    };
+    std::map<std::string, BodyMass> masses_;  // by body
+    std::set<std::string> doubted_;           // links whose inertia no body has
     int root_ = -1;
     std::size_t visited_ = 0;
 };

@@ -24,10 +24,10 @@ struct ImportedScene {
 };
 
 /// At coordinates 0 (or the limit nearest to it). A link's geometry becomes one mesh in the link's frame; cylinders and spheres become
-/// polyhedra inside them. Density: mass over volume, so that the mass is the file's and the inertia that of the solid. Links without
-/// geometry are frames: of their parent if they are fixed to it, of the world if they are a root; what is fixed to the world is static.
-/// Errors: of meshes; unsupported (a link without geometry that moves, what mimics a joint that does not turn); inconsistent (links that
-/// form no tree).
+/// polyhedra inside them. Mass and inertia are the file's; where it has no inertia, or one that no body has (a warning), the density is
+/// mass over volume, and the inertia that of the solid. Links without geometry are frames: of their parent if they are fixed to it, which
+/// takes their mass and inertia, of the world if they are a root; what is fixed to the world is static. Errors: of meshes; unsupported (a
+/// link without geometry that moves, what mimics a joint that does not turn); inconsistent (links that form no tree).
 Result<ImportedScene> scene_of_robot(const Robot& robot, const ImportOptions& options);
 
 }  // namespace fettle::design::urdf

@@ -138,17 +138,17 @@ private:
         return text + "</link>\n";
     }
 
-    /// Of the model's second moments M = integral of rho [X;1][X;1]^T about its reference point, axes of the file.
+    /// As the scene gives it, else of the model's second moments; axes of the file.
     std::string inertial_text(std::size_t i, const Pose& file) const {
         const core::model::Body& body = model_.bodies[i];
-        const double mass = body.moments(3, 3);
-        if (!(mass > 0)) return "";
-        const Vector3 centre = body.moments.topRightCorner<3, 1>() / mass;
-        const Matrix3 spread = body.moments.topLeftCorner<3, 3>() - mass * centre * centre.transpose();
-        const Matrix3 inertia = spread.trace() * Matrix3::Identity() - spread;
+        const std::optional<core::scene::Inertial>& given = scene_.bodies[i].inertial;  // of what does not move, too
+        if (!given && !(body.moments(3, 3) > 0)) return "";
+        core::scene::Inertial own = given ? *given : core::scene::inertial_of(body.moments);
+        if (!given) own.centre += body.reference_point;
+        const Matrix3& inertia = own.inertia;
         const auto entry = [&](const char* name, int r, int c) { return std::string(" ") + name + "=\"" + decimal(inertia(r, c)) + "\""; };
-        const Pose at{file.rotation, core::kinematics::world_position(file, centre + body.reference_point)};
-        return "<inertial>" + origin_text(at) + "<mass value=\"" + decimal(mass) + "\"/><inertia" + entry("ixx", 0, 0) +
+        const Pose at{file.rotation, core::kinematics::world_position(file, own.centre)};
+        return "<inertial>" + origin_text(at) + "<mass value=\"" + decimal(own.mass) + "\"/><inertia" + entry("ixx", 0, 0) +
                entry("ixy", 0, 1) + entry("ixz", 0, 2) + entry("iyy", 1, 1) + entry("iyz", 1, 2) + entry("izz", 2, 2) + "/></inertial>\n";
     }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws the pictures of docs/concepts.md, of what the program says about examples/slider_crank (half a minute of one core):
-draw.py FETTLE, from the root of the repository. Needs nothing but the standard library; the same program draws the same pictures."""
+draw.py FETTLE [FOLDER], from the root of the repository. Needs nothing but the standard library; the same program draws the same pictures.
+Those in pixels: screenshots.py."""
 import collections
 import csv
 import json
@@ -13,6 +14,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DESIGN = "examples/slider_crank/slider_crank.design.json"
+PICTURES = ("scene", "parts", "play", "margins", "contact", "convergence")
 COLOURS = {"block": "#7fb5d8", "crank": "#e8b040", "rod": "#4db596", "piston": "#d9a3c2"}  # lighter than `fettle draw` has them
 INK, GREY, BAND = "#222222", "#888888", "#9db8dd"
 
@@ -190,9 +192,11 @@ def evaluations(path, limits):
     return found
 
 
-def main(program):
+def main(program, place=HERE):
+    place = pathlib.Path(place)
+
     def run(*arguments):
-        return json.loads(subprocess.run([program, "--json", "--quiet", *arguments], capture_output=True, text=True, check=False).stdout)
+        return json.loads(subprocess.run([program, "--json", "--quiet", *arguments], cwd=HERE.parent.parent, capture_output=True, text=True, check=False).stdout)
 
     def first_line(path):
         with open(path) as file:
@@ -200,7 +204,7 @@ def main(program):
 
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
-        run("draw", DESIGN, "--out", str(HERE / "scene.svg"), "--size", "920x560", "--plain", "--title", "slider-crank")
+        run("draw", DESIGN, "--out", str(place / "scene.svg"), "--size", "920x560", "--plain", "--title", "slider-crank")
         run("simulate", DESIGN, "--steps", "1", "--out", folder + "/before")
         tuned = run("optimise", DESIGN, "--out", folder + "/after")
         after = folder + "/after/trajectory.json"
@@ -213,9 +217,9 @@ def main(program):
         pictures = {"parts": parts_picture(starts[0]), "play": play_picture(*starts, clearances), "margins": margins_picture(rows),
                     "contact": contact_picture(rows), "convergence": convergence_picture(evaluations(out / "after/history.jsonl", limits), own)}
     for name, text in pictures.items():
-        (HERE / f"{name}.svg").write_text(text)
+        (place / f"{name}.svg").write_text(text)
         print(f"{name}.svg: {len(text)} bytes, tuned: {tuned['status']}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _fettle
 from ._record import Record
+from .results import Measurement
 from .scene import Body, Mesh, MeshProgram, Scene, Vector
 
 Array = NDArray[np.float64]
@@ -102,11 +103,22 @@ class Quantity:
     #: Does a simulation change nothing of it (of the parts as assembled, or of their shapes alone)?
     at_rest: bool = False
 
-    def value(self, simulated: "_fettle.Simulated") -> float:
-        """SI."""
+    def value(self, simulated: "_fettle.Simulated") -> Union[float, Measurement]:
+        """SI. A number that is known within bounds alone: a fettle.Measurement, lower <= value <= upper; requirements are judged by its
+        bounds, and `value` is what is optimised and differentiated."""
         raise NotImplementedError
 
     def gradient(self, simulated: "_fettle.Simulated") -> QuantityGradient:
+        """Derivative of the value."""
+        raise NotImplementedError
+
+    def deviations(self, simulated: "_fettle.Simulated") -> ArrayLike:
+        """(m,) numbers whose squares sum up to the value (SI, so in the square root of its unit), in an order that does not change; empty,
+        where it is no such sum. Given them, the optimisers "ipopt" and "gauss_newton" know the curvature of the objective."""
+        return ()
+
+    def deviation_gradient(self, simulated: "_fettle.Simulated", i: int) -> QuantityGradient:
+        """Derivative of deviations(simulated)[i]; asked for where there are deviations."""
         raise NotImplementedError
 
 
@@ -148,7 +160,27 @@ class MarkerPath(Record):
     times: Sequence[float] = ()
 
 
-AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, "_fettle.OpaqueQuantity"]
+@dataclasses.dataclass(eq=False)
+class JointLoad(Record):
+    """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
+    "mean", "largest" or "least"."""
+
+    kind: str  #: "force", "torque"; "effort" of a motor
+    name: str  #: of the joint, of the motor
+    over: str = "end"
+    axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
+    effort_dimension: str = "torque"  #: of a motor's effort; "force" where it drives a travel
+
+
+@dataclasses.dataclass(eq=False)
+class Energy(Record):
+    """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
+
+    kind: str  #: "kinetic", "potential", "spring", "total"
+    over: str = "end"
+
+
+AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, Energy, "_fettle.OpaqueQuantity"]
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 

@@ -113,6 +113,15 @@ def held() -> List[Optional[MotionCurve]]:
 
 
 @dataclasses.dataclass(eq=False)
+class Inertial(Record):
+    """Mass and inertia that are given, not counted from the mesh."""
+
+    mass: float = 0.0  #: [kg]
+    centre: Vector = dataclasses.field(default_factory=_zero)  #: of mass, in the mesh file's frame [m]
+    inertia: ArrayLike = dataclasses.field(default_factory=lambda: np.zeros((3, 3)))  #: about the centre, axes of that frame [kg m^2]
+
+
+@dataclasses.dataclass(eq=False)
 class Body(Record):
     """A rigid part. `prescribed`: px py pz rx ry rz in world axes, None: free."""
 
@@ -125,6 +134,7 @@ class Body(Record):
     density: float = 1000.0  #: [kg/m^3], [kg/m^2], [kg/m] or [kg], by mass_kind
     density_given: bool = True
     mass_kind: Literal["volume", "area", "length", "vertex"] = "volume"
+    inertial: Optional[Inertial] = None  #: in place of density times what the mesh has
     material: str = ""
     mu: Optional[float] = None
     pose: Pose = dataclasses.field(default_factory=Pose)

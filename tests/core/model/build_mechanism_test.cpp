@@ -122,6 +122,16 @@ TEST_CASE("start velocities agree with joints, changed least", "[mechanism]") {
     CHECK(omega(1, 0) == Approx(spin).epsilon(1e-12));
 }
 
+TEST_CASE("start velocities that nobody gave follow joints and motors without a word", "[mechanism]") {
+    scene::Scene scene = hinged_bar();
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(2))};
+    const Model model = built(scene);
+    CHECK_FALSE(contains(warnings_of(model), "start velocities"));
+    CHECK(model.bodies[0].velocity_start.norm() > 1);  // they do follow
+    scene.bodies[0].angular_velocity = Vector3(0, 0, 1);
+    CHECK(contains(warnings_of(built(scene)), "start velocities of `bar` were changed"));
+}
+
 TEST_CASE("names that are not there are refused", "[mechanism]") {
     scene::Scene scene = hinged_bar();
     scene.mechanism.joints[0].b.body = "beam";

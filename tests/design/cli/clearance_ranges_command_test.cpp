@@ -64,12 +64,64 @@ TEST_CASE("ranges: bodies that joints join are not judged unless named, options 
     const Json left_out = all.json()["left_out"];
     CHECK(std::count(left_out.begin(), left_out.end(), Json("base:post")) == 1);
     CHECK(all.pair("base", "left_arm")["status"] == "clear");  // told to collide
-    for (const char* other : {"--motion", "--kinematic", "--csv x.csv", "--steps 3"})
+    for (const char* other : {"--motion", "--kinematic", "--steps 3"})
         CHECK(run(std::string("clearance ") + two_arms + " --ranges " + other).code == 3);
     const DesignFolder folder;
     const Answer none = run("clearance " + folder.file("small.scene.json") + " --ranges", true);
     CHECK(none.code == 3);
     CHECK(none.says("there is no joint"));
+}
+
+TEST_CASE("ranges: findings against an earlier report, a table with the joints' positions, a folder with a report") {
+    const DesignFolder folder;
+    const std::string command = std::string("clearance ") + two_arms + " --ranges --json --pairs 'post:*_hand' ";
+    const Answer strict = run(command + "--minimum 10mm --out " + folder.file("out"));
+    REQUIRE(strict.code == 1);
+    const Json kept = Json::parse(text_of(folder.file("out/result.json")));
+    CHECK(kept["pairs"] == strict.json()["pairs"]);
+    CHECK(kept["command"].get<std::string>().find("--ranges") != std::string::npos);
+    CHECK(text_of(folder.file("out/trajectory.json")).find("fettle_trajectory") != std::string::npos);
+    const std::string page = text_of(folder.file("out/report.html"));
+    const size_t data = page.find("id=\"fettle-report\">");
+    REQUIRE(data != std::string::npos);
+    const size_t note = page.find("worst at left_shoulder -90", data);
+    CHECK(note != std::string::npos);
+    CHECK(page.find("\"ranges\":true", data) != std::string::npos);
+
+    const std::string before = " --baseline " + folder.file("out/result.json");
+    const Answer same = run(command + "--minimum 10mm" + before), loose = run(command + "--minimum 5mm" + before);
+    CHECK(same.json()["baseline"]["existing"] == 2);
+    CHECK(same.json()["baseline"]["new"] == 0);
+    CHECK(same.pair("post", "left_hand")["change"] == "existing");
+    CHECK(same.pair("post", "left_hand")["before"]["upper"] == strict.pair("post", "left_hand")["upper"]);
+    CHECK(loose.code == 0);
+    CHECK(loose.json()["baseline"]["resolved"] == 2);
+    const Answer one = run(std::string("clearance ") + two_arms + " --ranges --json --minimum 10mm --pairs post:left_hand" + before);
+    CHECK(one.json()["baseline"]["missing"] == Json({"post:right_hand"}));
+    CHECK(run(command + "--baseline " + folder.file("none.json")).code == 3);
+
+    const std::string csv = folder.file("worst.csv");
+    REQUIRE(run(command + "--minimum 5mm --tolerance 0.001mm --csv " + csv).code == 0);
+    std::istringstream lines(text_of(csv));
+    std::string head, row;
+    std::getline(lines, head);
+    CHECK(head == "a,b,required[mm],lower[mm],upper[mm],finding,left_shoulder[deg],right_shoulder[deg],left_elbow[deg],right_elbow[deg]");
+    int rows = 0;
+    while (std::getline(lines, row)) {
+        ++rows;
+        std::vector<std::string> words;
+        std::istringstream cells(row);
+        for (std::string word; std::getline(cells, word, ',');) words.push_back(word);
+        if (row.back() == ',') words.emplace_back();
+        REQUIRE(words.size() == 10);
+        CHECK(words[2] == "5");
+        CHECK(std::stod(words[3]) <= 110 - reach);
+        CHECK(std::stod(words[4]) >= 110 - reach - 1e-12);
+        const size_t own = words[1] == "left_hand" ? 6 : 7, other = own == 6 ? 7 : 6;
+        CHECK(std::abs(std::abs(std::stod(words[own])) - 90) < 1);
+        CHECK(words[other].empty());
+    }
+    CHECK(rows == 2);
 }
 
 TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or meshes have changed") {

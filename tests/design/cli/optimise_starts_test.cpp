@@ -55,6 +55,17 @@ TEST_CASE("the best start meets the requirements, then is lowest; the first of e
     CHECK(best_start({far, near}) == 1);
 }
 
+TEST_CASE("a start's line tells what holds a design that meets its requirements, and by how much another fails") {
+    StartResult met = ended(0, 1), violated = ended(0.25, 2);
+    met.result["evaluations"] = violated.result["evaluations"] = 3;
+    met.result["limited_by"] = {"mass", "width (upper bound)"};
+    violated.result["limited_by"] = {"width is at its upper bound; more of it would help"};
+    const std::string good = starts_text({met}), bad = starts_text({violated});
+    CHECK(good.find("held by mass; width (upper bound)") != std::string::npos);
+    CHECK(bad.find("held by") == std::string::npos);
+    CHECK(bad.find("largest violation 0.25") != std::string::npos);
+}
+
 TEST_CASE("--starts: seeds that are too large are refused") {
     const DesignFolder folder;
     CHECK(run("optimise " + folder.design() + " --starts 2 --seed 2000001 --out " + (folder.path / "x").string()).code == 3);

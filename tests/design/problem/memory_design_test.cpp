@@ -121,6 +121,27 @@ bool same_bits(const VectorX& a, const VectorX& b) {
 
 }  // namespace
 
+TEST_CASE("a body whose mass is given: no density moves it, and what follows from its mesh is not differentiated") {
+    Design design = tilted_plate();
+    design.scene.bodies[1].inertial = core::scene::Inertial{2e-3, Vector3::Zero(), 2e-7 * Matrix3::Identity()};
+    const auto problem = DesignProblem::create(design);
+    REQUIRE(problem);
+    problem::EvaluateOptions values;
+    values.gradients = false;
+    const VectorX p = values_of(design.parameters);
+    const DesignEvaluation at = problem->evaluate(p, values);
+    CAPTURE(at.reason);
+    REQUIRE(at.usable);
+    CHECK(at.terms[1].value == 2e-3);
+    const DesignEvaluation differentiated = problem->evaluate(p);
+    CHECK_FALSE(differentiated.usable);
+    CHECK(differentiated.reason.find("its mass is not that of") != std::string::npos);
+    design.parameters.push_back(parameter("density", 1000, 500, 2000, {{.target = MoveTarget::density, .body = 1}}, "kg/m^3"));
+    const auto refused = DesignProblem::create(design);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.errors().front().message.find("is given") != std::string::npos);
+}
+
 TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differentiated, optimised in memory") {
     const auto problem = DesignProblem::create(tilted_plate());
     REQUIRE(problem);

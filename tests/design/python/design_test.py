@@ -99,6 +99,107 @@ def test_what_a_quantity_sees_ends_with_the_call():
         _ = simulated.positions
 
 
+class TimedPath(fettle.Quantity):
+    """fettle.MarkerPath of a body's reference point with a target at each configuration, written in Python."""
+
+    dimension = "area"
+
+    def __init__(self, body, targets):
+        self.body, self.targets = body, np.asarray(targets)
+
+    def away(self, simulated):
+        return (simulated.positions[:, self.body] - self.targets).ravel() / np.sqrt(len(self.targets))
+
+    def value(self, simulated):
+        return float(self.away(simulated) @ self.away(simulated))
+
+    def gradient(self, simulated):
+        return self.weighted(simulated, 2 * self.away(simulated))
+
+    def deviations(self, simulated):
+        return self.away(simulated)
+
+    def deviation_gradient(self, simulated, i):
+        return self.weighted(simulated, np.eye(self.targets.size)[i])
+
+    def weighted(self, simulated, weights):
+        positions = np.zeros_like(simulated.positions)
+        positions[:, self.body] = weights.reshape(-1, 3) / np.sqrt(len(self.targets))
+        return fettle.QuantityGradient(positions=positions)
+
+
+def path_design(kind):
+    """The tilted plate's part on a path of 13 points."""
+    design = tilted_plate()
+    times = 0.005 * np.arange(13)
+    targets = np.array([2e-3, 1e-3, 4.2e-3]) + np.outer(times, [0.01, -0.02, 0.03])
+    if kind == "own":
+        quantity = TimedPath(1, targets)
+    else:
+        built = fettle.build_model(design.scene)
+        quantity = fettle.MarkerPath(1, built.reference_points[1], targets, times)
+    design.objective = [fettle.ObjectiveTerm("path", 2.0, 1e-6, quantity)]
+    design.constraints = []
+    return design
+
+
+def test_deviations_of_an_own_quantity_are_the_librarys():
+    """A sum of squares written in Python gives Gauss-Newton's rows as the library's own quantity does."""
+    own, known = (fettle.DesignProblem(path_design(kind)) for kind in ("own", "known"))
+    at, expected = own.evaluate(own.values), known.evaluate(known.values)
+    assert expected.residuals.size == 39 and np.all(np.any(expected.residual_jacobian != 0, axis=0))
+    assert at.objective == pytest.approx(expected.objective, rel=1e-9)
+    assert at.residuals == pytest.approx(expected.residuals, rel=1e-9, abs=1e-12)
+    scale = np.abs(expected.residual_jacobian).max(axis=0)
+    assert np.allclose(at.residual_jacobian / scale, expected.residual_jacobian / scale, rtol=0, atol=1e-9)
+    assert at.gradient == pytest.approx(2 * at.residual_jacobian.T @ at.residuals, rel=1e-9)
+
+
+def test_wrong_deviations_are_refused():
+    class Unsquared(TimedPath):
+        def deviations(self, simulated):
+            return 2 * self.away(simulated)
+
+    class Flat(TimedPath):
+        def deviations(self, simulated):
+            return self.value(simulated)
+
+    class Ungiven(TimedPath):
+        deviation_gradient = fettle.Quantity.deviation_gradient
+
+    faults = [(Unsquared, ValueError, "sum up to its value"), (Flat, ValueError, "shape .m,."), (Ungiven, NotImplementedError, "")]
+    for kind, error, words in faults:
+        design = path_design("own")
+        design.objective[0].quantity = kind(1, design.objective[0].quantity.targets)
+        problem = fettle.DesignProblem(design)
+        with pytest.raises(error, match=words):
+            problem.value_and_gradient(problem.values)
+
+
+def test_an_own_quantity_can_tell_bounds():
+    class Rounded(MeanHeight):
+        def __init__(self, body, down, up):
+            super().__init__(body)
+            self.down, self.up = down, up
+
+        def value(self, simulated):
+            found = super().value(simulated)
+            return fettle.Measurement(found, found - self.down, found + self.up)
+
+    plain = fettle.DesignProblem(tilted_plate())
+    expected = plain.evaluate(plain.values)
+    problem = fettle.DesignProblem(tilted_plate(Rounded(1, 1e-3, 2e-3)))
+    at = problem.evaluate(problem.values)
+    height = expected.constraints[0].value
+    assert at.constraints[0] == fettle.Measurement(height, height - 1e-3, height + 2e-3)
+    assert np.array_equal(at.gradient, expected.gradient)
+    assert at.violation == pytest.approx(max(0, 3.9e-3 - (height - 1e-3)) / 1e-3) and at.violation > expected.violation
+    for down, up in ((-1e-3, 2e-3), (1e-3, float("nan"))):
+        problem = fettle.DesignProblem(tilted_plate(Rounded(1, down, up)))
+        with pytest.raises(ValueError, match="between its lower and its upper bound"):
+            problem.value(problem.values)
+
+
 def test_threads_share_a_problem(tilted):
     expected = tilted.value_and_gradient(tilted.values)[1]
     found = [None] * 4

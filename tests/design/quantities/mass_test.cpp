@@ -13,6 +13,20 @@ Mass mass_of(core::scene::MassKind kind) { return Mass(std::vector<Mass::Of>{{0,
 
 }  // namespace
 
+TEST_CASE("mass: a given one is that, whatever the mesh") {
+    core::model::Model model = cube_model();
+    model.bodies[0].given_mass = 0.7;
+    const core::stepper::Trajectory trajectory = moving(1);
+    const Mass mass = mass_of(core::scene::MassKind::volume);
+    CHECK(mass.value({model, trajectory, 1e-9}).value == 0.7);
+    adjoint::Seeds seeds = adjoint::zero_seeds(model, 1);
+    mass.add_seeds({model, trajectory, 1e-9}, {}, 2, seeds);
+    CHECK(seeds.model_bar.bodies[0].vertices_bar.isZero(0));
+    CHECK(seeds.model_bar.bodies[0].density_bar == 0);
+    model.bodies[0].mesh.triangles.pop_back();
+    CHECK(mass.check(model, 1).empty());
+}
+
 TEST_CASE("mass: value and derivative in vertices and density") {
     core::model::Model model = cube_model();
     const core::stepper::Trajectory trajectory = moving(1);

@@ -226,6 +226,44 @@ TEST_CASE("report: rows of a design, what is required in mm, what it costs per m
     CHECK(parameters[3]["unit"] == "kg/m^3");
 }
 
+TEST_CASE("report: starts, the one taken first, then as they would be chosen") {
+    const DesignFolder folder;
+    const auto file = reading::read_design(folder.design());
+    REQUIRE(file);
+    const auto values = [](double height, double place) {
+        return Json{{"height", height}, {"width", 20}, {"place", place}, {"density", 1000}, {"speed", 40}};
+    };
+    const auto start = [&](int seed, const char* status, const Json& objective, const Json& violation, const Json& parameters) {
+        return Json{{"seed", seed},
+                    {"status", status},
+                    {"message", "why"},
+                    {"objective", objective},
+                    {"evaluations", seed + 1},
+                    {"constraint_violation", violation},
+                    {"parameters", parameters},
+                    {"limited_by", {"mass"}}};
+    };
+    Json result{{"seed", 7}, {"parameters", values(10, 5)}, {"starts", Json::array()}};
+    CHECK(start_rows(file->design, Json::object()).empty());
+    result["starts"] = {start(0, "infeasible", 0.5, 0.3, values(10, 0)), start(6, "optimal", 3.0, 0.0, values(12, 5)),
+                        start(7, "optimal", 2.0, 0.0, values(10, 5)), start(8, "failed", Json(), Json(), Json())};
+    const Json rows = start_rows(file->design, result);
+    REQUIRE(rows.size() == 4);
+    std::vector<int> order;
+    for (const Json& row : rows) order.push_back(row["seed"].get<int>());
+    CHECK(order == std::vector<int>{7, 6, 0, 8});
+    CHECK(rows[0]["taken"] == true);
+    CHECK(rows[0]["away"] == 0.0);
+    CHECK(rows[1]["taken"] == false);
+    CHECK(rows[1]["away"].get<double>() == Approx(2.0 / 8));  // of height, between 6 and 14
+    CHECK(rows[2]["away"].get<double>() == Approx(5.0 / 25));
+    CHECK(rows[2]["violation"] == 0.3);
+    CHECK(rows[3]["away"].is_null());
+    CHECK(rows[3]["objective"].is_null());
+    CHECK(rows[3]["message"] == "why");
+    CHECK(rows[0]["limits"] == Json({"mass"}));
+}
+
 TEST_CASE("report: how a search went, with trials that failed and a line that was cut off") {
     const DesignFolder folder;
     const auto file = reading::read_design(folder.design());
@@ -273,8 +311,14 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     REQUIRE_FALSE(data["pairs"].empty());
     CHECK(data["pairs"][0]["upper"].get<double>() >= data["least"].get<double>());
     const std::string first = contents(out + "/report.html");
+    CHECK(data["files"] == Json({"motion.glb", "trajectory.json", "result.json"}));
+    CHECK(run("report " + out).code == 0);
+    CHECK(contents(out + "/report.html") == first);  // from the folder alone, to the byte
     CHECK(run("report " + out + " --out " + folder.file("again.html")).code == 0);
-    CHECK(contents(folder.file("again.html")) == first);  // from the folder alone, to the byte
+    Json elsewhere = data_of(contents(folder.file("again.html")));
+    CHECK(elsewhere["files"].empty());  // none is beside it
+    elsewhere["files"] = data["files"];
+    CHECK(elsewhere == data);
 
     const std::string fit = folder.file("fit");
     const auto cleared = run("clearance " + scene + " --minimum 1mm --pairs cube:wall --out " + fit + " --json");
@@ -284,6 +328,13 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(judged["pairs"][0]["minimum"] == 1.0);
     CHECK(judged["margins"].is_null());  // as assembled
     CHECK(Json::parse(contents(fit + "/result.json"))["pairs"][0]["lower"] == Json(cleared.json()["pairs"][0]["lower"]));
+
+    // Of its own motion nothing is taken away but the answer; of another one everything is.
+    CHECK(run("clearance " + out + "/trajectory.json --no-report --out " + out).code <= 2);
+    CHECK_FALSE(std::filesystem::exists(out + "/report.html"));
+    for (const char* name : {"/motion.glb", "/steps.csv", "/trajectory.json"}) CHECK(std::filesystem::exists(out + name));
+    CHECK(run("clearance " + scene + " --motion --steps 7 --no-report --out " + out).code <= 2);
+    for (const char* name : {"/motion.glb", "/steps.csv"}) CHECK_FALSE(std::filesystem::exists(out + name));
 
     REQUIRE(run("simulate " + scene + " --steps 2 --no-report --out " + folder.file("bare")).code == 0);
     CHECK_FALSE(std::filesystem::exists(folder.file("bare") + "/report.html"));
@@ -308,10 +359,31 @@ TEST_CASE("report: an optimisation's has the design before and after, and the fo
     CHECK(data["history"]["objective"].size() == answer.json().at("evaluations").get<size_t>());
     CHECK_FALSE(data["series"].empty());
     CHECK(data["margins"]["pairs"].size() >= 1);
+    CHECK(data["files"] == Json({"motion.glb", "design.final.json", "trajectory.json", "result.json"}));
     CHECK(run("report " + out).code == 0);
     CHECK(contents(out + "/report.html") == first);  // with what is kept: the same
+    REQUIRE(run("export " + out + "/trajectory.json --to " + folder.file("run.glb")).code == 0);
+    CHECK(contents(out + "/motion.glb") == contents(folder.file("run.glb")));
     const Json notices = data["notices"];
     CHECK(notices.dump().find("has changed since") == std::string::npos);
+}
+
+TEST_CASE("a run that cannot begin leaves nothing of an earlier one's motion to be taken for its own") {
+    const DesignFolder folder;
+    const std::string out = folder.file("opt"), place = "\"name\": \"place\", \"value\": 3, \"lower\": -5, \"upper\": 20";
+    REQUIRE(run("optimise " + folder.design() + " --out " + out).code <= 2);
+    const std::vector<std::string> motion{"trajectory.json", "motion.glb", "trajectory.start.json", "steps.csv", "report.html"};
+    for (const std::string& name : motion) CHECK(std::filesystem::exists(out + "/" + name));
+    const std::string in_the_wall = fettle::tests::design_support::replaced(
+        fettle::tests::design_support::small_design, place, "\"name\": \"place\", \"value\": 37, \"lower\": 36, \"upper\": 38");
+    folder.write("wall.design.json", in_the_wall);
+    const auto failed = run("optimise " + folder.file("wall.design.json") + " --no-report --json --out " + out);
+    CHECK(failed.code == 2);
+    CHECK(failed.json().at("status") == "start_failed");
+    CHECK(Json::parse(contents(out + "/result.json"))["status"] == "start_failed");
+    for (const std::string& name : motion) CHECK_FALSE(std::filesystem::exists(out + "/" + name));
+    REQUIRE(run("report " + out).code == 0);
+    CHECK(data_of(contents(out + "/report.html"))["files"] == Json({"design.final.json", "result.json"}));
 }
 
 }  // namespace fettle::design::report::report_data_test

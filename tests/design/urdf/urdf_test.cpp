@@ -50,6 +50,22 @@ const std::string arm = R"(<?xml version="1.0"?>
 
 json scene_json(const ImportedScene& scene) { return json::parse(scene.files.front().second); }
 
+struct Mass {
+    double mass;
+    Vector3 centre;
+    Matrix3 inertia;
+};
+
+// What moves of a body, along the world's axes: frames differ from scene to scene.
+Mass mass_in_world(const core::scene::Scene& scene, std::size_t body) {
+    const auto model = core::model::build_model(scene);
+    REQUIRE(model);
+    const core::model::Body& of = model->bodies[body];
+    const core::scene::Inertial own = core::scene::inertial_of(of.moments);
+    const Matrix3& turn = of.pose_start.rotation;
+    return {own.mass, core::kinematics::world_position(of.pose_start, own.centre), turn * own.inertia * turn.transpose()};
+}
+
 Vector3 vector(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
 
 }  // namespace
@@ -104,6 +120,7 @@ TEST_CASE("URDF: the program imports a robot that simulates, with the file's mas
     CAPTURE(valid.out);
     REQUIRE(valid.code == 0);
     CHECK(valid.json()["parts"][1]["mass"].get<double>() == Approx(0.6));
+    CHECK(valid.json()["warnings"].empty());
     CHECK(valid.json()["parts"][2]["mass"].get<double>() == Approx(0.1));
     CHECK(run("simulate " + to + " --steps 5 --json").json()["status"] == "ok");
 
@@ -118,14 +135,11 @@ TEST_CASE("URDF: the program imports a robot that simulates, with the file's mas
     for (std::size_t i = 0; i < 3; ++i) {
         const auto &a = first->bodies[i], &b = second->bodies[i];
         CHECK(a.name == b.name);
-        for (const auto& [x, y] : {std::pair{Vector3(a.mesh.vertices.rowwise().maxCoeff()), Vector3(b.mesh.vertices.rowwise().maxCoeff())}})
-            CHECK((x - y).norm() < 1);  // frames differ: only what stands in the world is compared
-        const auto centre = [](const core::scene::Body& body) {
-            const Matrix4 m = core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-            return Vector3(body.pose.rotation * Vector3(m.topRightCorner<3, 1>() / m(3, 3)) + body.pose.position);
-        };
-        CHECK((centre(a) - centre(b)).norm() < 1e-7);
-        if (i > 0) CHECK(a.density == Approx(b.density).epsilon(1e-5));
+        if (i == 0) continue;  // it does not move, and its file has no mass
+        const Mass x = mass_in_world(*first, i), y = mass_in_world(*second, i);
+        CHECK(x.mass == Approx(y.mass).epsilon(1e-12));
+        CHECK((x.centre - y.centre).norm() < 1e-9);
+        CHECK((x.inertia - y.inertia).norm() < 1e-9 * x.inertia.norm());
     }
     REQUIRE(second->mechanism.joints.size() == 2);
     CHECK(second->bodies[0].type == core::scene::BodyType::static_body);
@@ -138,6 +152,57 @@ TEST_CASE("URDF: the program imports a robot that simulates, with the file's mas
         CHECK((*found->forces.limits)[0] == Approx((*joint.forces.limits)[0]).margin(1e-12));
         CHECK((*found->forces.limits)[1] == Approx((*joint.forces.limits)[1]));
     }
+}
+
+TEST_CASE("URDF: inertia in, about its own centre and axes; what is fixed to a link weighs with it") {
+    const std::string box = "<collision><geometry><box size=\"0.1 0.2 0.3\"/></geometry></collision>";
+    const auto imported = [](const std::string& links) {
+        const auto robot = parse_urdf("<robot name=\"r\">" + links + "</robot>", "r.urdf");
+        REQUIRE(robot);
+        ImportOptions floating;
+        floating.floating = true;
+        const auto scene = scene_of_robot(*robot, floating);
+        REQUIRE(scene);
+        return *scene;
+    };
+    // A quarter turn about z: x and y change places.
+    const std::string inertial =
+        "<inertial><origin xyz=\"0.01 0.02 0.03\" rpy=\"0 0 1.5707963267948966\"/><mass value=\"2\"/>"
+        "<inertia ixx=\"0.03\" ixy=\"0.001\" ixz=\"0\" iyy=\"0.02\" iyz=\"0\" izz=\"0.04\"/></inertial>";
+    const auto one = imported("<link name=\"a\">" + inertial + box + "</link>");
+    CHECK(one.warnings.empty());
+    const json body = scene_json(one)["bodies"][0];
+    CHECK_FALSE(body.contains("density"));
+    CHECK(body["inertial"]["mass"] == 2.0);
+    CHECK((vector(body["inertial"]["centre"]) - Vector3(10, 20, 30)).norm() < 1e-12);
+    CHECK((vector(body["inertial"]["inertia"][0]) - Vector3(0.02, -0.001, 0)).norm() < 1e-15);
+    CHECK((vector(body["inertial"]["inertia"][1]) - Vector3(-0.001, 0.03, 0)).norm() < 1e-15);
+    CHECK(vector(body["inertial"]["inertia"][2])[2] == 0.04);
+
+    // Two halves of a rod of 2 kg and 0.4 m, the second a link without geometry: together the rod, m L^2 / 12 about its middle.
+    const double half = 1 * 0.04 / 12, thin = 1e-5;
+    const auto rod = [&](double x) {
+        return "<inertial><origin xyz=\"" + std::to_string(x) + " 0 0\"/><mass value=\"1\"/><inertia ixx=\"" + std::to_string(thin) +
+               "\" ixy=\"0\" ixz=\"0\" iyy=\"" + json(half).dump() + "\" iyz=\"0\" izz=\"" + json(half).dump() + "\"/></inertial>";
+    };
+    const std::string joint = "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0.3 0 0\"/></joint>";
+    const auto both = imported("<link name=\"a\">" + rod(0.1) + box + "</link><link name=\"b\">" + rod(0) + "</link>" + joint);
+    CHECK(both.warnings.empty());
+    const json whole = scene_json(both)["bodies"][0]["inertial"];
+    CHECK(whole["mass"] == 2.0);
+    CHECK((vector(whole["centre"]) - Vector3(200, 0, 0)).norm() < 1e-9);
+    CHECK(vector(whole["inertia"][2])[2] == Approx(2 * 0.16 / 12).epsilon(1e-9));
+    CHECK(vector(whole["inertia"][0])[0] == Approx(2 * thin).epsilon(1e-9));
+
+    // An inertia that no body has, and a mass that has nowhere to go, are told.
+    const std::string impossible = "<inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"3\"/></inertial>";
+    const auto doubted = imported("<link name=\"a\">" + impossible + box + "</link>");
+    REQUIRE(doubted.warnings.size() == 1);
+    CHECK(contains(doubted.warnings[0], "sum of the other two"));
+    CHECK(scene_json(doubted)["bodies"][0]["density"].get<double>() == Approx(2 / 0.006));
+    const auto lost = imported("<link name=\"a\">" + box + "</link><link name=\"b\">" + rod(0) + "</link>" + joint);
+    REQUIRE(lost.warnings.size() == 2);  // and a has none
+    CHECK(contains(lost.warnings[1], "left out"));
 }
 
 TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not are refused") {

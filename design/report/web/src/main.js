@@ -6,7 +6,7 @@ import { announce, byId, element } from "./dom.js";
 import { forcePlots, marginPlot, searchPlots } from "./curves.js";
 import { startMotion } from "./motion.js";
 import { repaintPlots, setPlotTime } from "./plots.js";
-import { costBars, pairTable, parameterTable, requirementTable } from "./tables.js";
+import { costBars, pairTable, parameterTable, requirementTable, startTable } from "./tables.js";
 import { startPrinting, startTheme } from "./theme.js";
 import * as words from "./words.js";
 
@@ -33,6 +33,8 @@ function fillFooter(data) {
   const lines = [];
   if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, data.command)));
   lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. Folder: `, element("code", {}, data.folder)));
+  const files = data.files.flatMap((name, k) => [k ? ", " : "", element("a", { href: name, download: name }, name), words.fileWords[name] ? ` (${words.fileWords[name]})` : ""]);
+  if (files.length) lines.push(element("p", { id: "files" }, "Beside this page: ", ...files, "."));
   lines.push(element("p", {}, "Proven: a bound that holds over the whole continuous motion of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm."));
   byId("footer").append(...lines);
 }
@@ -54,7 +56,8 @@ function fillSections(data, motion) {
   if (data.requirements.length) {
     section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
   } else if (data.pairs.length) {
-    const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : "Worst first. A row shows its narrowest gap in the picture above.";
+    const shown = data.ranges ? "" : " A row shows its narrowest gap in the picture above.";
+    const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : `Worst first.${shown}`;
     section("Clearances", data.pair_count > data.pairs.length ? `${intro} ${data.pair_count - data.pairs.length} more pairs are in result.json.` : intro, pairTable(data, show));
   }
   const figures = () => element("div", { class: "figures" });
@@ -67,6 +70,7 @@ function fillSections(data, motion) {
     fillLimits(data);
     section("Parameters", "The open dot is where it began, the full one where it ended.", parameterTable(data));
   }
+  if (data.starts.length) section("Starts", words.startsIntro(data), startTable(data));
   if (data.history?.objective.length > 1) {
     const box = figures();
     section("How it got there", null, box);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
 import { element } from "./dom.js";
-import { lowerBound, number, seconds, upperBound, withUnit } from "./numbers.js";
-import { heldWords } from "./words.js";
+import { lowerBound, number, plural, seconds, upperBound, withUnit } from "./numbers.js";
+import { heldWords, spansMuch, startName } from "./words.js";
 
 function tableOf(label, headings, rows) {
   const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
@@ -12,7 +12,7 @@ function tableOf(label, headings, rows) {
 
 const cell = (label, type, ...children) => element("td", { "data-label": label, class: type + (children.length && children[0] !== "\u2013" ? "" : " nothing") }, ...children);
 
-const tones = { clear: "good", met: "good", violated: "bad", "not met": "bad", "below threshold": "bad", clash: "bad", undecided: "open", contact: "plain" };
+const tones = { clear: "good", met: "good", optimal: "good", feasible: "open", infeasible: "bad", interrupted: "open", failed: "bad", start_failed: "bad", violated: "bad", "not met": "bad", "below threshold": "bad", clash: "bad", undecided: "open", contact: "plain" };
 const status = (word) => element("span", { class: `status ${tones[word] ?? "plain"}` }, word);
 
 const pairName = (pair) => `${pair.a} \u2013 ${pair.b}`;
@@ -74,6 +74,44 @@ export function parameterTable(data) {
     cell("", "wide", rangeDrawing(p)),
     cell("Held by", "", p.held ? heldWords[p.held] ?? p.held : "\u2013", p.step ? element("small", {}, `could move by ${withUnit(number(p.step, 3), p.unit)}`) : null)));
   return tableOf("Parameters", [["Parameter"], ["Start", "num"], ["End", "num"], ["Bounds", "num"], ["Within them"], ["Held by"]], rows);
+}
+
+const mostStarts = 100;
+
+// Where a start's number lies among all: 0 to 1, by its logarithm where they span more than a hundredfold.
+function placing(numbers) {
+  const known = numbers.filter((x) => typeof x === "number" && Number.isFinite(x));
+  const low = Math.min(...known), high = Math.max(...known);
+  const scale = spansMuch(known) ? Math.log : (x) => x;
+  return (x) => (high > low ? (scale(x) - scale(low)) / (scale(high) - scale(low)) : 0);
+}
+
+function startDot(place, met, taken) {
+  const x = 6 + 108 * place;
+  return element("svg", { class: `range start${met ? "" : " unmet"}${taken ? " taken" : ""}`, viewBox: "0 0 120 16", "aria-hidden": "true" },
+    element("svg:line", { x1: 6, x2: 114, y1: 8, y2: 8 }), element("svg:circle", { cx: x, cy: 8, r: taken ? 5 : 4 }));
+}
+
+// The starts of an optimisation, the best first.
+export function startTable(data) {
+  const least = (s) => (data.repair ? s.distance : s.objective), words = { start_failed: "start failed" };
+  const place = placing(data.starts.map(least));
+  const rows = data.starts.slice(0, mostStarts).map((s) => {
+    const met = s.violation !== null && s.violation <= 0, known = least(s) !== null;
+    const why = met ? s.limits.join("; ") : s.violation !== null ? `violated by up to ${number(s.violation, 3)}` : s.message;
+    return element("tr", s.taken ? { class: "taken" } : {},
+      element("td", {}, startName(s), s.taken ? element("small", {}, "taken") : null),
+      cell("Verdict", "", status(words[s.status] ?? s.status)),
+      cell(data.repair ? "Change" : "Objective", "num", number(least(s))),
+      cell("", "wide", known ? startDot(place(least(s)), met, s.taken) : "\u2013"),
+      cell("Away", "num", s.taken || s.away === null ? "\u2013" : `${number(100 * s.away, 2)}\u00a0%`),
+      cell("Simulations", "num", number(s.evaluations)),
+      cell("Limited by", "whole", why || "\u2013"));
+  });
+  const headings = [["Start"], ["Verdict"], [data.repair ? "Change" : "Objective", "num"], ["Among all"], ["Away", "num"], ["Simulations", "num"], ["Limited by"]];
+  const table = tableOf("Starts", headings, rows), more = data.starts.length - rows.length;
+  if (more > 0) table.append(element("p", { class: "section-intro" }, `${plural(more, "more start")} in result.json.`));
+  return table;
 }
 
 // What each requirement costs: bars, the dearest first.

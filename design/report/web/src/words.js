@@ -11,6 +11,7 @@ export function asked(data) {
   if (data.description) return data.description;
   if (data.kind === "optimise")
     return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} are met and the objective is least.`;
+  if (data.ranges) return "Certified clearances over all positions of the joints within their limits, in every combination.";
   if (data.kind === "clearance") return data.motion ? "Certified clearances over the motion." : "Certified clearances as assembled.";
   return "A simulation of the mechanism.";
 }
@@ -57,7 +58,7 @@ function simulated(data) {
 }
 
 function cleared(data) {
-  const pairs = data.pairs, required = pairs.filter((p) => p.minimum !== null), where = data.motion ? "over the whole motion" : "as assembled";
+  const pairs = data.pairs, required = pairs.filter((p) => p.minimum !== null), where = data.ranges ? "over all positions of the joints" : data.motion ? "over the whole motion" : "as assembled";
   const of = (status) => pairs.filter((p) => p.status === status);
   const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
   const total = data.pair_count ?? pairs.length;
@@ -91,10 +92,32 @@ export function facts(data) {
   if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
-  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.motion ? "over the motion" : "as assembled"]);
+  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints' ranges" : data.motion ? "over the motion" : "as assembled"]);
   if (data.kind !== "optimise") rows.push(["Parts", String(data.views[0]?.bodies.length ?? 0), `${data.views[0]?.bodies.filter((b) => b.type !== "static").length ?? 0} of them not fixed`]);
   return rows;
 }
+
+// What the files beside the page are for.
+export const fileWords = {
+  "motion.glb": "the animation, for browsers, Blender and slicers",
+  "design.final.json": "the design as it ended, to go on from",
+  "trajectory.json": "the motion, for every other command",
+  "result.json": "this answer, for programs",
+};
+
+// Is a logarithmic scale wanted?
+export const spansMuch = (numbers) => Math.min(...numbers) > 0 && Math.max(...numbers) > 100 * Math.min(...numbers);
+
+export function startsIntro(data) {
+  const met = data.starts.filter((s) => s.violation !== null && s.violation <= 0).length, total = data.starts.length;
+  const same = data.starts.filter((s) => !s.taken && s.away !== null && s.away < 0.01).length;
+  const again = same ? ` ${plural(same, "other start")} ended within a hundredth of the ranges of the one that was taken.` : "";
+  const shown = data.starts.map((s) => (data.repair ? s.distance : s.objective)).filter((x) => x !== null);
+  const scale = spansMuch(shown) ? ", by its logarithm" : "";
+  return `${met} of ${plural(total, "start")} met all requirements; the one taken is the first. The dot: its ${data.repair ? "change" : "objective"} between the least and the greatest${scale}, open where requirements are violated. Away: the largest difference of a parameter from the one taken, of its range.${again}`;
+}
+
+export const startName = (start) => (start.seed === 0 ? "the file\u2019s values" : `random, seed ${start.seed}`);
 
 // What holds a parameter, as people say it.
 export const heldWords = {
