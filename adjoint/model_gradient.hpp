@@ -3,6 +3,8 @@
 /// never sees a design parameter: design/ chains these with its own Jacobians.
 #pragma once
 
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
@@ -45,9 +47,13 @@ struct MechanismGradient {
     std::vector<double> row_rate;                  ///< rate of a motor's curve
 };
 
+/// By two bodies a < b: in their coefficient of friction, as if it were one of its own. Pairs that are not there: 0.
+using FrictionGradient = std::map<std::pair<int, int>, double>;
+
 struct ModelGradient {
     std::vector<BodyGradient> bodies;
     Vector3 gravity_bar = Vector3::Zero();
+    FrictionGradient friction_bar;
     MechanismGradient mechanism;
 };
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
@@ -76,6 +82,7 @@ using MechanismTangent = MechanismGradient;
 struct ModelTangent {
     std::vector<BodyTangent> bodies;
     Vector3 gravity_dot = Vector3::Zero();
+    FrictionGradient friction_dot;
     MechanismTangent mechanism;
 };
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps);

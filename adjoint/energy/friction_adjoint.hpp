@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Friction (core/energy/friction.hpp): refused where a coefficient is above 0 between two bodies that may touch; elsewhere it is zero.
+/// Friction (core/energy/friction.hpp) in what a solve holds constant: adjoint/contact does the work. Refused beside an area-weighted
+/// barrier, whose normal forces hang on the areas too.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
+
+/// Has it two bodies that may touch with a coefficient above 0?
+bool has_friction(const core::model::Model& model);
 
 extern const TermAdjoint friction_term_adjoint;
 

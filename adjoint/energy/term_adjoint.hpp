@@ -8,20 +8,24 @@
 #include <vector>
 
 #include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "fettle/adjoint/contact/friction_adjoint.hpp"
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/energy/term.hpp"
 
 namespace fettle::adjoint::energy {
 
-/// Where a step ended: the gradient is zero over the free coordinates.
-using StepEnd = core::energy::DerivativesAt;
+/// Where a step ended, or one of its rounds of friction: the gradient is zero over the free coordinates.
+struct StepEnd : core::energy::DerivativesAt {
+    const contact::LaggedContacts* lag = nullptr;  ///< what friction was taken from; null: there is none
+};
 
 /// Gradients in the constants of one step that follow from the steps before it and from the shapes, by seed and body.
 struct StepGradient {
     std::vector<std::vector<Matrix34>> pose_hat_bar;
     std::vector<std::vector<Matrix34>> slip_reference_bar;
     std::vector<std::vector<Matrix4>> moments_bar;
+    std::vector<std::vector<Matrix34>> lag_poses_bar{};  ///< of where friction was taken from
 };
 
 /// Changes of the end poses and of the same constants, by body.
@@ -30,6 +34,7 @@ struct StepTangent {
     const std::vector<Matrix34>& pose_hat_dot;
     const std::vector<Matrix34>& slip_reference_dot;
     const std::vector<Matrix4>& moments_dot;
+    const std::vector<Matrix34>& lag_poses_dot;
 };
 
 struct TermAdjoint {

@@ -2,6 +2,7 @@
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
@@ -41,7 +42,7 @@ public:
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
         velocity_end_ = velocity_start_ = velocity_before_ = end_;
-        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = end_;
+        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = step_bar_.lag_poses_bar = end_;
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         y_bar_.assign(seeds.size(), std::vector<Vector6>(bodies, Vector6::Zero()));
         lambda_ = motion_ = y_bar_;
@@ -94,33 +95,85 @@ private:
             }
     }
 
+    static void set_zero(std::vector<std::vector<Matrix34>>& bars) {
+        for (auto& bodies : bars)
+            for (Matrix34& bar : bodies) bar.setZero();
+    }
+
+    static double largest(const std::vector<std::vector<Matrix34>>& bars) {
+        double out = 0;
+        for (const auto& bodies : bars)
+            for (const Matrix34& bar : bodies) out = std::max(out, bar.cwiseAbs().maxCoeff());
+        return out;
+    }
+
+    // Through the rounds of friction, last to first: each hands back what it owes to where the one before ended.
     Errors step_back(int t) {
-        const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
-        if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
-        for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar})
-            for (auto& bodies : *bars)
-                for (Matrix34& bar : bodies) bar.setZero();
-        if (is_bdf2()) velocity_back(step);
-        if (!solve(t, step)) return StepSolver::unsolved(trajectory_, t);
+        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)]);
+        set_zero(step_bar_.pose_hat_bar);
+        set_zero(step_bar_.slip_reference_bar);
+        for (int round = rounds.count(); round > 0; --round) {
+            const bool is_last = round == rounds.count();
+            const LinearisedStep step = rounds.linearise(round, solver_);
+            if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
+            if (is_last && is_bdf2()) velocity_back(step);
+            if (!round_back(t, step, is_last)) return StepSolver::unsolved(trajectory_, t);
+            if (rounds.is_fixed_point()) {
+                if (Errors errors = fixed_point_back(t, step); !errors.empty()) return errors;
+            } else if (round > 1) {
+                std::swap(end_, step_bar_.lag_poses_bar);
+                if (largest(end_) == 0) break;
+            } else {
+                add_lag_to_start();
+            }
+        }
+        const double slip_time = rounds.slip_time();
+        for (std::size_t s = 0; s < seeds_.size(); ++s)
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+                if (is_bdf2())
+                    bdf2_back(t, s, i, slip_time);
+                else
+                    pose_hat_back(t, s, i);
+            }
+        return {};
+    }
+
+    // One solve, from end_ to lag_poses_bar and the step's constants.
+    // @return whether there is a solution.
+    bool round_back(int t, const LinearisedStep& step, bool is_last) {
+        set_zero(step_bar_.lag_poses_bar);
+        if (!solve(t, step, is_last)) return false;
         energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
         if (step.rows.count() > 0) constraint::subtract_rows_reverse({step.problem, step.poses, step.multipliers}, motion_, mu_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
             if (step.rows.count() > 0) add_transposed(step.rows, mu_[s], h_lambda);
-            for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
-                prescribed_back(t, s, i, step, h_lambda[i]);
-                if (is_bdf2())
-                    bdf2_back(t, s, i, step.problem.slip_time);
-                else
-                    pose_hat_back(t, s, i);
-            }
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) prescribed_back(t, s, i, step, h_lambda[i]);
         }
-        return {};
+        return true;
+    }
+
+    // The lag is that of the end itself: with B its part of the residual's derivative, lambda = H^-1 (y_bar - B^T lambda), a sum that falls
+    // as the rounds of friction do.
+    Errors fixed_point_back(int t, const LinearisedStep& step) {
+        const double first = largest(step_bar_.lag_poses_bar);
+        for (int k = 0; k < StepSolver::most_repeats; ++k) {
+            const double left = largest(step_bar_.lag_poses_bar);
+            if (left == 0 || left <= StepSolver::repeated * first) return {};
+            std::swap(end_, step_bar_.lag_poses_bar);
+            if (!round_back(t, step, false)) return StepSolver::unsolved(trajectory_, t);
+        }
+        return StepSolver::unsettled(trajectory_, t);
+    }
+
+    void add_lag_to_start() {
+        for (std::size_t s = 0; s < seeds_.size(); ++s)
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) start_[s][i] += step_bar_.lag_poses_bar[s][i];
     }
 
     // y_bar, lambda, and lambda's motion (dq, phi) of each body.
     // @return whether there is a solution.
-    bool solve(int t, const LinearisedStep& step) {
+    bool solve(int t, const LinearisedStep& step, bool is_last) {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i)
             left_jacobian_[i] = core::kinematics::left_jacobian(step.points[i].rotation_vector);
         MatrixX rhs(dofs_.count, static_cast<Eigen::Index>(seeds_.size()));
@@ -132,7 +185,7 @@ private:
                     left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
             rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
-            if (const auto& bar = seeds_[s].multiplier_bar; !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
+            if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
                 of_rows.col(static_cast<Eigen::Index>(s)) = bar[static_cast<std::size_t>(t)];
         }
         const StepSolver::Solution solution = solver_.solve(step, rhs, of_rows);
@@ -154,7 +207,7 @@ private:
         Vector6 increment_bar = Vector6::Zero();
         for (int k = 0; k < 6; ++k)
             if (!is_free(body, k)) increment_bar[k] = y_bar_[s][i][k] - h_lambda[k];
-        out_[s].bodies[i].increment_bar[t] = increment_bar;
+        out_[s].bodies[i].increment_bar[t] += increment_bar;
         start_[s][i].col(3) += increment_bar.head<3>();
         if (rotates_freely(body)) return;
         const Vector3& theta = step.points[i].rotation_vector;
@@ -227,7 +280,7 @@ private:
     std::vector<ModelGradient> out_;
     std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
     std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2)
-    energy::StepGradient step_bar_;  // P_hat's of the step at hand; the moments' of all
+    energy::StepGradient step_bar_;  // P_hat's and P_slip's of the step at hand, the lag's of the round; the moments' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
     std::vector<VectorX> mu_;  // [seed]: adjoint variable of the rows
     std::vector<Matrix3> left_jacobian_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/adjoint/energy/friction_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
@@ -173,6 +174,12 @@ Errors StepSolver::unsolved(const core::stepper::Trajectory& trajectory, int t) 
              "the trajectory simulated from another model?"}};
 }
 
+Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t) {
+    const double time = trajectory.time_start + t * trajectory.timestep;
+    return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
+             "the step at t = " + std::to_string(time) + " s has no derivative: friction jams, its normal forces hang on themselves"}};
+}
+
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     indefinite_.reset();
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
@@ -248,27 +255,83 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
     return out;
 }
 
-LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
-                              const std::vector<double>& angles, StepSolver& solver) {
+StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                       const std::vector<double>& angles)
+    : problem_(core::energy::step_problem(model, history_at(model, trajectory, t, angles), model.kappa)) {
+    set_end_time(problem_, t * model.timestep + model.timestep);
+    const core::stepper::TrajectoryStep& step = trajectory.steps[t];
+    const bool frictional = energy::has_friction(model);
+    is_fixed_point_ = frictional && model.integrator == core::scene::Integrator::quasi_static;
+    if (frictional && !is_fixed_point_) {
+        add_end({}, trajectory.poses[t]);
+        for (std::size_t r = 0; r + 1 < step.friction_rounds.size(); ++r)
+            add_end(step.friction_rounds[r], poses_of(problem_, step.friction_rounds[r]));
+    } else {
+        ends_.emplace_back();
+    }
+    add_end(step.nodes.back(), trajectory.poses[t + 1]);
+    if (is_fixed_point_) ends_.front() = ends_.back();
+}
+
+void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses) {
+    const core::model::Model& model = *problem_.model;
+    core::contact::ContactSet contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
+    ends_.push_back({std::move(points),
+                     std::make_shared<const contact::LaggedContacts>(contact::LaggedContacts{std::move(poses), std::move(contacts)})});
+}
+
+LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
+    const core::model::Model& model = *problem_.model;
+    const End& end = ends_[static_cast<std::size_t>(round)];
     LinearisedStep step;
-    step.problem = core::energy::step_problem(model, history_at(model, trajectory, t, angles), model.kappa);
-    set_end_time(step.problem, t * model.timestep + model.timestep);
-    step.poses = trajectory.poses[t + 1];
-    step.points = trajectory.steps[t].nodes.back();
-    const core::contact::Candidates candidates = core::contact::find_candidates(model, step.poses, 0);
-    step.contacts = core::contact::find_contacts(model, candidates, step.poses);
+    step.problem = problem_;
+    step.poses = end.at->poses;
+    step.points = end.points;
+    step.contacts = end.at->contacts;
+    step.lag = ends_[static_cast<std::size_t>(round) - 1].at;
+    if (step.lag)
+        step.problem.friction = core::contact::lag_friction(model, step.lag->contacts, step.lag->poses, problem_.barrier,
+                                                            problem_.slip_reference, problem_.slip_time);
     step.derivatives =
         core::energy::chart_derivatives(step.problem, step.points, step.poses, step.contacts, core::contact::HessianKind::exact);
     if (!model.mechanism.rows.empty()) add_rows(solver, step);
     return step;
 }
 
+LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
+                              const std::vector<double>& angles, StepSolver& solver) {
+    const StepRounds rounds(model, trajectory, t, angles);
+    return rounds.linearise(rounds.count(), solver);
+}
+
+namespace {
+
+// One step says enough.
+Errors check_friction_rounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+    if (!energy::has_friction(model)) return {};
+    for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
+        const core::stepper::TrajectoryStep& step = trajectory.steps[t];
+        if (step.friction_rounds.empty())
+            return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
+                     "the trajectory does not hold where its rounds of friction ended: only one that is in memory, and was simulated for "
+                     "gradients, does"}};
+        if (step.fractions.empty()) continue;
+        Errors errors{energy::refusal("step " + std::to_string(t), "friction in a step in which a prescribed motion changes")};
+        errors.back().message += " yet; let tables and stops fall on whole steps";
+        return errors;
+    }
+    return {};
+}
+
+}  // namespace
+
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "a trajectory has a pose before and after each step");
     FETTLE_ASSERT(trajectory.poses[0].size() == model.bodies.size(), "the trajectory is of another model");
     FETTLE_ASSERT(trajectory.timestep == model.timestep, "the trajectory was simulated with another time step");
     Errors errors = check_integrator(model);
-    for (const Errors& more : {energy::check_terms(model), check_scripts(model)}) errors.insert(errors.end(), more.begin(), more.end());
+    for (const Errors& more : {energy::check_terms(model), check_scripts(model), check_friction_rounds(model, trajectory)})
+        errors.insert(errors.end(), more.begin(), more.end());
     for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const double angle = trajectory.steps[t].nodes.back()[i].rotation_vector.norm();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// One step, of implicit Euler, BDF2 or quasi-static, linearised about its solution: what the reverse and the forward sweep share.
-/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, true Hessian), so that a trajectory needs to
-/// store nothing else.
+/// Everything is computed anew from the trajectory's configurations (broad phase, contacts, friction's lag, true Hessian), so that a
+/// trajectory needs to store nothing else, but for where the rounds of friction ended.
 #pragma once
 
 #include <Eigen/SparseLU>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "fettle/adjoint/energy/term_adjoint.hpp"
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
@@ -17,15 +18,17 @@
 
 namespace fettle::adjoint::stepper {
 
+/// Or one of its rounds of friction: then "the step's end" is the round's.
 struct LinearisedStep {
     core::energy::StepProblem problem;
-    std::vector<core::kinematics::Pose> poses;         ///< at the step's end
-    std::vector<core::kinematics::ChartPoint> points;  ///< the same in the step's chart
-    core::contact::ContactSet contacts;                ///< at the step's end
-    core::energy::ChartDerivatives derivatives;        ///< gradient and true Hessian in the chart (q, theta), of the Lagrangian
-    core::constraint::RowJacobian rows;                ///< of joints and motors, in the chart
-    VectorX multipliers;                               ///< per row: those that balance the potential's gradient
-    core::energy::DerivativesAt end() const { return {problem, poses, contacts, core::contact::HessianKind::exact}; }
+    std::vector<core::kinematics::Pose> poses;           ///< at the step's end
+    std::vector<core::kinematics::ChartPoint> points;    ///< the same in the step's chart
+    core::contact::ContactSet contacts;                  ///< at the step's end
+    std::shared_ptr<const contact::LaggedContacts> lag;  ///< what friction was taken from; null: there is none
+    core::energy::ChartDerivatives derivatives;          ///< gradient and true Hessian in the chart (q, theta), of the Lagrangian
+    core::constraint::RowJacobian rows;                  ///< of joints and motors, in the chart
+    VectorX multipliers;                                 ///< per row: those that balance the potential's gradient
+    energy::StepEnd end() const { return {{problem, poses, contacts, core::contact::HessianKind::exact}, lag.get()}; }
 };
 
 /// The system of one step: H over the free degrees of freedom, or [H C^T; C 0] where there are rows.
@@ -52,6 +55,12 @@ public:
     /// Of the whole step, where a solution is none.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
+    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that `most_repeats` solves leave more than
+    /// `repeated` of what they had at first.
+    static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
+    static constexpr int most_repeats = 200;
+    static constexpr double repeated = 1e-13;
+
     /// Largest share of its forces by which a body may be out of balance.
     static constexpr double balanced = 1e-6;
 
@@ -68,14 +77,44 @@ private:
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.
 std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-/// Step t, which leads from trajectory.poses[t] to poses[t + 1]. @param angles  at its start.
+/// The rounds of friction of step t, which leads from trajectory.poses[t] to poses[t + 1]: each a solve of its own, with the normal forces
+/// and tangents of where the one before ended, the first with those of the step's start. Without friction there is one.
+class StepRounds {
+public:
+    /// @param angles  at the step's start.
+    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const std::vector<double>& angles);
+
+    int count() const { return static_cast<int>(ends_.size()) - 1; }
+
+    /// Quasi-static steps with friction: one round, whose lag is that of its own end (solver/newton.hpp).
+    bool is_fixed_point() const { return is_fixed_point_; }
+
+    double slip_time() const { return problem_.slip_time; }
+
+    /// @param round  1 .. count(); the last is the step's end.
+    LinearisedStep linearise(int round, StepSolver& solver) const;
+
+private:
+    struct End {
+        std::vector<core::kinematics::ChartPoint> points;
+        std::shared_ptr<const contact::LaggedContacts> at;
+    };
+    void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses);
+
+    core::energy::StepProblem problem_;
+    std::vector<End> ends_;  // the first is where friction was taken from for the first round; empty without friction
+    bool is_fixed_point_ = false;
+};
+
+/// The last round of step t. @param angles  at its start.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const std::vector<double>& angles, StepSolver& solver);
 
 /// What the sweeps cannot differentiate, by name: newmark; with bdf2 damping of contacts, dampers and friction of joints; what the terms
-/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier, friction), scripts of
-/// poses (all unsupported); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract:
-/// the trajectory belongs to the model (number of bodies, time step).
+/// refuse (adjoint/energy: shells, wires, points and solids with capped openings, torques, the area-weighted barrier), scripts of poses,
+/// with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not hold where its rounds
+/// ended (inconsistent); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract: the
+/// trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

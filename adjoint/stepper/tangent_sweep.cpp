@@ -2,6 +2,7 @@
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
@@ -132,36 +133,74 @@ private:
         return change;
     }
 
+    // What a step holds constant, and how that changes; of the end what changes with the unknowns held.
+    struct StepChange {
+        std::vector<RotationDerivatives> r;  // of the round at hand
+        std::vector<Matrix34> pose_hat_dot, slip_dot;
+    };
+
     Errors step(int t) {
-        const LinearisedStep step = linearise_step(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)], solver_);
-        if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
+        const StepRounds rounds(model_, trajectory_, t, angles_[static_cast<std::size_t>(t)]);
+        StepChange change;
+        for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+            change.pose_hat_dot.push_back(pose_hat_change(t, i));
+            change.slip_dot.push_back(slip_change(t, i));
+        }
+        std::vector<Matrix34> end_dot = poses_dot_;
+        for (int round = 1; round <= rounds.count(); ++round) {
+            const LinearisedStep step = rounds.linearise(round, solver_);
+            if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
+            if (rounds.is_fixed_point()) {
+                if (Errors errors = fixed_point(t, step, change, end_dot); !errors.empty()) return errors;
+            } else if (!solve(t, step, change, end_dot)) {
+                return StepSolver::unsolved(trajectory_, t);
+            }
+        }
+        multipliers_.push_back(multiplier_dot_);
+        advance(t, end_dot);
+        return {};
+    }
+
+    // One solve: end_dot is that of where friction was taken from, and becomes that of the round's end.
+    // @return whether there is a solution.
+    bool solve(int t, const LinearisedStep& step, StepChange& change, std::vector<Matrix34>& end_dot) {
         const std::size_t n = model_.bodies.size();
-        std::vector<RotationDerivatives> r(n);
-        std::vector<Matrix34> end_dot(n);
-        std::vector<Matrix34> pose_hat_dot(n), slip_dot(n);
+        const std::vector<Matrix34> lag_dot = end_dot;
+        change.r.resize(n);
         for (std::size_t i = 0; i < n; ++i) {
-            r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
-            end_dot[i] = known_change(t, i, r[i]);
-            pose_hat_dot[i] = pose_hat_change(t, i);
-            slip_dot[i] = slip_change(t, i);
+            change.r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
+            end_dot[i] = known_change(t, i, change.r[i]);
         }
         contact::PoseGradientTangent energy =
-            adjoint::energy::terms_tangent(step.end(), {end_dot, pose_hat_dot, slip_dot, moments_dot_}, direction_);
+            adjoint::energy::terms_tangent(step.end(), {end_dot, change.pose_hat_dot, change.slip_dot, moments_dot_, lag_dot}, direction_);
         VectorX row_dot;
         if (step.rows.count() > 0)
             row_dot = constraint::add_rows_tangent({step.problem, step.poses, step.multipliers}, end_dot, direction_, energy);
         std::vector<Vector6> residual_dot(n), y_dot(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i)
-            for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, r[i], k, energy.value[i], energy.dot[i]);
+            for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, change.r[i], k, energy.value[i], energy.dot[i]);
         const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
         const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
-        if (!solution.is_one) return StepSolver::unsolved(trajectory_, t);
         core::solver::scatter(dofs_, solution.y.col(0), y_dot);
-        multipliers_.push_back(step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX());
+        multiplier_dot_ = step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX();
         for (std::size_t i = 0; i < n; ++i)
-            for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, r[i], k);
-        advance(t, end_dot);
-        return {};
+            for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, change.r[i], k);
+        return solution.is_one;
+    }
+
+    // Friction was taken from the end itself: again until the end changes as it is assumed to.
+    Errors fixed_point(int t, const LinearisedStep& step, StepChange& change, std::vector<Matrix34>& end_dot) {
+        for (int k = 0; k < StepSolver::most_repeats; ++k) {
+            const std::vector<Matrix34> assumed = end_dot;
+            if (!solve(t, step, change, end_dot)) return StepSolver::unsolved(trajectory_, t);
+            double left = 0, all = 0;
+            for (std::size_t i = 0; i < end_dot.size(); ++i) {
+                left = std::max(left, (end_dot[i] - assumed[i]).cwiseAbs().maxCoeff());
+                all = std::max(all, end_dot[i].cwiseAbs().maxCoeff());
+            }
+            if (left <= StepSolver::repeated * all) return {};
+        }
+        return StepSolver::unsettled(trajectory_, t);
     }
 
     void advance(int t, const std::vector<Matrix34>& end_dot) {
@@ -191,6 +230,7 @@ private:
     std::vector<Matrix34> poses_before_dot_, velocities_before_dot_;  // at the start of the one before
     std::vector<std::vector<Vector6>> out_;
     std::vector<VectorX> multipliers_;
+    VectorX multiplier_dot_;  // of the round at hand
 };
 
 }  // namespace

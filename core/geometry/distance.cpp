@@ -17,24 +17,40 @@ struct PointEdge {
 
 // Where on the segment, and how far the point is from there.
 struct OnSegment {
-    double t;       // closest parameter in [0, 1]
-    bool interior;  // strictly between the ends
+    double t;            // closest parameter in [0, 1]
+    bool interior;       // strictly between the ends
+    Vector3 difference;  // from there to the point
     double distance_squared;
 };
+
+// The part of r that is normal to d. What rounding left along d is of the size of the vertices' distances, not of r: near contact it
+// would turn r, and with it the force, by far more than rounding does.
+Vector3 normal_to(const Vector3& d, double dd, const Vector3& r) { return r - (r.dot(d) / dd) * d; }
 
 OnSegment closest_on_segment(const Vector3& p, const Vector3& e0, const Vector3& e1) {
     const Vector3 e = e1 - e0, w = p - e0;
     const double ee = e.squaredNorm();
     const double pe = w.dot(e);
-    if (!(pe > 0) || ee == 0) return {0, false, w.squaredNorm()};
-    if (pe >= ee) return {1, false, (p - e1).squaredNorm()};
+    if (!(pe > 0) || ee == 0) return {0, false, w, w.squaredNorm()};
+    if (pe >= ee) {
+        const Vector3 end = p - e1;
+        return {1, false, end, end.squaredNorm()};
+    }
     const double t = pe / ee;
-    return {t, true, (w - t * e).squaredNorm()};
+    const Vector3 r = normal_to(e, ee, w - t * e);
+    return {t, true, r, r.squaredNorm()};
 }
 
+// From the weights. Differences to one vertex first: r stays accurate far from the origin because the weights sum to zero.
 void finish(const Vertices& x, ClosestPoints& c) {
-    // Differences to one vertex first: r stays accurate far from the origin because the weights sum to zero.
     c.difference = c.weight[0] * (*x[0] - *x[3]) + c.weight[1] * (*x[1] - *x[3]) + c.weight[2] * (*x[2] - *x[3]);
+    c.distance_squared = c.difference.squaredNorm();
+}
+
+// Turns r onto the pair's normal n = u x v where that is told by n better than by the weights. @param size_squared  L^2, about
+void turn_to(const Vector3& n, double nn, double sine_squared, double size_squared, ClosestPoints& c) {
+    if (!(c.distance_squared <= sine_squared * size_squared)) return;
+    c.difference = (c.difference.dot(n) / nn) * n;
     c.distance_squared = c.difference.squaredNorm();
 }
 
@@ -59,7 +75,8 @@ ClosestPoints best_of(const Vertices& x, const std::array<PointEdge, N>& cases) 
         c.free_weight[0][pe.e0] = pe.sign;
         c.free_weight[0][pe.e1] = -pe.sign;
     }
-    finish(x, c);
+    c.difference = pe.sign * on.difference;
+    c.distance_squared = on.distance_squared + 0 * (*x[0] + *x[1] + *x[2] + *x[3]).sum();  // not finite if a vertex is not
     return c;
 }
 
@@ -67,13 +84,6 @@ ClosestPoints best_of(const Vertices& x, const std::array<PointEdge, N>& cases) 
 struct InPlane {
     double along_u, along_v;
 };
-
-// For nearly parallel u and v.
-InPlane accurate_in_plane(const Vector3& u, const Vector3& v, const Vector3& w) {
-    const Vector3 n = accurate_cross(u, v);
-    const double nn = n.squaredNorm();
-    return {accurate_cross(w, v).dot(n) / nn, accurate_cross(u, w).dot(n) / nn};
-}
 
 // The optimum of a convex function over the square or the triangle of parameters lies on its boundary when it is not inside.
 // @param interior  what the coordinates of w make of the closest points; nothing if they are not strictly inside.
@@ -89,12 +99,19 @@ ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, con
     ClosestPoints c;
     if (!interior({w.cross(v).dot(n) / nn, u.cross(w).dot(n) / nn}, c)) return best_of(x, boundary);
     finish(x, c);
-    const double sine_squared = nn / (uu * vv);
+    const double sine_squared = nn / (uu * vv), size_squared = uu + vv + w.squaredNorm();
     constexpr double trusted = 1024 * unit_roundoff;
-    if (c.distance_squared * (sine_squared * sine_squared) >= trusted * trusted * (uu + vv + w.squaredNorm())) return c;
+    if (c.distance_squared * (sine_squared * sine_squared) >= trusted * trusted * size_squared) {
+        turn_to(n, nn, sine_squared, size_squared, c);
+        return c;
+    }
+    // Nearly parallel, or nearly touching.
     const ClosestPoints best = best_of(x, boundary);
-    if (!interior(accurate_in_plane(u, v, w), c)) return best;
+    const Vector3 accurate = accurate_cross(u, v);
+    const double squared = accurate.squaredNorm();
+    if (!interior({accurate_cross(w, v).dot(accurate) / squared, accurate_cross(u, w).dot(accurate) / squared}, c)) return best;
     finish(x, c);
+    turn_to(accurate, squared, squared / (uu * vv), size_squared, c);
     return c.distance_squared <= best.distance_squared ? c : best;
 }
 

@@ -18,6 +18,11 @@
 ///    min(36 u^2 (L + h / sin theta)^2 / h, 6 u (L + h / sin theta)), and the best of the boundary stands beside it, which
 ///    adds at most min((L sin theta)^2 / (2 h), L sin theta), as from any place within to the boundary is at most L sin theta in the
 ///    direction that opens. The lesser of the two is at most 12 u L for all h and theta. Below sin theta = 8 u the boundary alone is.
+///
+/// Direction: the weights alone leave 11 u L of rounding in r, of which a part lies in the pair's plane (or along its edge): at a gap of
+/// 1e-9 L that would turn a contact's force by 1e-6. It is taken out: r is what remains along the plane's normal u x v if h <= L sin theta,
+/// and normal to the edge where one is met. The normal is off by 4 u / sin theta, which changes the length by less than u L. So r is off by
+/// an angle of 4 u / sin theta there, and by 4 u L / h on an edge, about the edge alone.
 #pragma once
 
 #include <array>

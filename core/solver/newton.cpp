@@ -34,6 +34,7 @@ constexpr int stagnant_iterations = 12;        // without a smaller residual, wh
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
 constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
+constexpr double settled_motion = 1e-13;     // of the scene's size: ends of rounds that agree to rounding
 constexpr double friction_resolution = 0.1;  // of eps_v
 constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjoint's accuracy
 
@@ -62,6 +63,7 @@ public:
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
+            if (frictional_ && options_.keep_rounds) result_.round_ends.push_back(at_.points);
         } while (frictional_ && another_round());
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
@@ -128,6 +130,7 @@ private:
     bool another_round() {
         if (result_.status != NewtonStatus::converged) return false;
         if (problem_.friction.pairs.empty() && at_.contacts.count == 0) return false;
+        if (options_.keep_rounds && options_.caution > 0) return !is_fixed_point();
         const int rounds = model_.friction.rounds;
         if (rounds > 0) return result_.friction_rounds < rounds;
         const bool settled = result_.friction_rounds > 1 && result_.iterations == first_of_round_;
@@ -136,17 +139,28 @@ private:
         return true;
     }
 
+    // The first lag of a cautious step is that of a point on the way, which is no solution of anything: a derivative is that of normal
+    // forces which are those of the end. (Where they never agree the balance tells, with those of the end.)
+    bool is_fixed_point() const {
+        const auto& ends = result_.round_ends;
+        return result_.friction_rounds >= most_friction_rounds ||
+               (ends.size() > 1 && is_within(ends[ends.size() - 2], settled_motion * model_.diagonal));
+    }
+
+    bool is_within(const std::vector<ChartPoint>& end, double enough) const {
+        for (std::size_t i = 0; i < end.size(); ++i) {
+            Vector6 way;
+            way << at_.points[i].position - end[i].position, at_.points[i].rotation_vector - end[i].rotation_vector;
+            if (!(motion_of(model_.bodies[i], way) <= enough)) return false;
+        }
+        return true;
+    }
+
     // To the tolerance.
     bool has_been_here() const {
         const double enough = velocity_tolerance() * model_.timestep;
-        return std::any_of(ends_of_rounds_.begin(), ends_of_rounds_.end(), [&](const std::vector<ChartPoint>& end) {
-            for (std::size_t i = 0; i < end.size(); ++i) {
-                Vector6 way;
-                way << at_.points[i].position - end[i].position, at_.points[i].rotation_vector - end[i].rotation_vector;
-                if (!(motion_of(model_.bodies[i], way) <= enough)) return false;
-            }
-            return true;
-        });
+        return std::any_of(ends_of_rounds_.begin(), ends_of_rounds_.end(),
+                           [&](const std::vector<ChartPoint>& end) { return is_within(end, enough); });
     }
 
     // A step is due unless this round has made one, or an earlier round has and this one starts where it ended.
@@ -250,7 +264,7 @@ private:
         if (const std::string lost = lost_bodies(); !lost.empty()) return stop(NewtonStatus::not_held, lost);
         if (was_the_last(direction, fraction) || leaves_nothing(direction, fraction)) return stop(NewtonStatus::converged);
         if (direction.drive > 0) drive_.count_stalls(fraction * direction.drive);
-        if (!has_arrived(direction) && drive_.is_stalled()) {
+        if (!has_arrived(direction) && (drive_.is_stalled() || closes_altogether(direction))) {
             if (!is_near_enough(direction)) return stop(NewtonStatus::blocked, failure_message(direction, "its way is blocked"));
             if (is_slow(direction) && is_accurate_enough(direction.residual)) return stop(NewtonStatus::converged);
         }
@@ -374,6 +388,11 @@ private:
     }
 
     bool is_accurate_enough(double residual) const { return !options_.to_rounding || residual <= usable_residual; }
+
+    // What remains to be driven is all the gap there is: to go on would only leave less of it than can be proven.
+    bool closes_altogether(const Direction& direction) const {
+        return is_near_enough(direction) && at_.contacts.minimum_distance - model_.dmin <= direction.remaining_norm;
+    }
 
     // Prescribed coordinates are met to this where contact leaves no more (a gap that closes altogether).
     bool is_near_enough(const Direction& direction) const { return direction.remaining_norm <= prescribed_tolerance * model_.diagonal; }

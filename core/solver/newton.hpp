@@ -28,6 +28,7 @@ enum class NewtonStatus { converged, blocked, not_held, not_converged, interrupt
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
+    bool keep_rounds = false;  ///< of friction: where each one ends. With caution they go on until the ends agree to rounding
     bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level: "converged" has at most 1e-8
     double caution =
         0;  ///< > 0: begin with this shift of the Hessian in units of the inertia, and let it fall as steps do what they promise
@@ -44,9 +45,10 @@ struct NewtonResult {
     std::vector<kinematics::Pose> poses;                    ///< at the end of the path
     int iterations = 0;
     int friction_rounds = 0;
-    contact::ContactSet contacts;   ///< at the end of the path
-    contact::FrictionSet friction;  ///< of the last round: what the solution was solved with
-    VectorX multipliers;            ///< per row of the mechanism, of the potential times its weight
+    std::vector<std::vector<kinematics::ChartPoint>> round_ends;  ///< of friction, if they are to be kept
+    contact::ContactSet contacts;                                 ///< at the end of the path
+    contact::FrictionSet friction;                                ///< of the last round: what the solution was solved with
+    VectorX multipliers;                                          ///< per row of the mechanism, of the potential times its weight
     double shift = 0;     ///< largest that made a Hessian definite, in units of the bodies' inertia (newton_direction.hpp); 0: none needed
     double residual = 0;  ///< where derivatives were taken last: |gradient over free DOFs| (rotations divided by the body's radius) / sum
                           ///< of the forces' magnitudes

@@ -97,12 +97,14 @@ DrivenStep drive(const model::Model& model, const StepState& state, const energy
         solver::NewtonOptions stretch = options;
         if (k > 0) stretch.start = out.path.nodes.back();
         stretch.to_rounding = options.to_rounding && last;
+        stretch.keep_rounds = options.keep_rounds && last;
         const int iterations = out.solved.iterations, rounds = out.solved.friction_rounds;
         out.solved = solver::minimise(last ? problem : towards(problem, way[k].fraction), way[k].targets, workspace, stretch);
         out.solved.iterations += iterations;
         out.solved.friction_rounds += rounds;
         if (out.solved.status != solver::NewtonStatus::converged) return out;
         store_path(model, state, out.solved.path, workspace, out.path);
+        out.path.friction_rounds = std::move(out.solved.round_ends);
         if (way.size() > 1) store_fractions(way[k].fraction, out.path);
     }
     return out;
@@ -204,7 +206,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     solver::NewtonOptions newton;
     newton.velocity_tolerance = model.velocity_tolerance;
     newton.max_iterations = model.max_newton_iterations;
-    newton.to_rounding = options.for_gradient;
+    newton.to_rounding = newton.keep_rounds = options.for_gradient;
     newton.should_stop = options.should_stop;
     const std::vector<PrescribedNode> way = prescribed_path(model, state.history.poses, state.time);
     if (is_quasi_static(model)) ask_for_equilibrium(model, way.back(), newton);

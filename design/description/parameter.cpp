@@ -25,6 +25,8 @@ bool is_vector(MoveTarget target) {
     }
 }
 
+bool is_of_friction(MoveTarget target) { return target >= MoveTarget::body_mu && target <= MoveTarget::default_mu; }
+
 bool is_of_mechanism(MoveTarget target) { return target >= MoveTarget::point_a; }
 
 VectorX values_of(const std::vector<Parameter>& parameters) {

@@ -26,6 +26,11 @@ enum class MoveTarget {
     angular_velocity,  ///< vector
     force,             ///< vector: on a body
     gravity,           ///< vector: of the scene; `body` counts for nothing
+    // Coefficients of friction:
+    body_mu,      ///< a body's own
+    material_mu,  ///< of materials[0]
+    pair_mu,      ///< of the pair materials[0], materials[1]
+    default_mu,   ///< of what has none of its own
     // Of `part`, one of the scene's mechanism:
     point_a,  ///< vector: of a joint or spring, in a's file frame (of the world: in the world)
     point_b,
@@ -48,6 +53,8 @@ enum class MoveTarget {
 
 /// Is it three numbers, whose components are moved by `direction`?
 bool is_vector(MoveTarget target);
+/// Is it a coefficient of friction?
+bool is_of_friction(MoveTarget target);
 /// Is it a number or vector (those from point_a on) of one of the scene's joints, springs, motors and loads?
 bool is_of_mechanism(MoveTarget target);
 
@@ -62,6 +69,7 @@ struct Move {
     Vector3 position_offset = Vector3::Zero();  ///< of a vector, SI; counts in components with a nonzero coefficient
     core::model::Origin part = {};              ///< the joint, spring, motor or load
     int entry = 0;                              ///< of a curve's values
+    std::vector<std::string> materials = {};    ///< whose coefficient of friction it is
 };
 
 struct Parameter {

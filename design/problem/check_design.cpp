@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/design/problem/friction_moves.hpp"
 #include "fettle/design/problem/mechanism_moves.hpp"
 
 namespace fettle::design::problem {
@@ -126,6 +127,9 @@ private:
         for (const Move& move : parameter.moves) {
             if (is_of_mechanism(move.target)) {
                 const std::string reason = misfit(design_.scene.mechanism, move);
+                if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
+            } else if (is_of_friction(move.target)) {
+                const std::string reason = friction_misfit(design_.scene, move);
                 if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
             } else if (move.target == MoveTarget::gravity) {
                 continue;

@@ -7,6 +7,7 @@
 
 #include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/problem/friction_moves.hpp"
 #include "fettle/design/problem/mechanism_moves.hpp"
 
 namespace fettle::design::problem {
@@ -48,7 +49,7 @@ public:
         finish_vectors();
         finish_turns();
         finish_numbers();
-        if (Errors bad = check_mechanism(); !bad.empty()) return bad;
+        if (Errors bad = check_numbers(); !bad.empty()) return bad;
         const Errors errors = make_shapes();
         if (!errors.empty()) return errors;
         std::stable_sort(moved_.changes.begin(), moved_.changes.end(), [](const BodyChange& a, const BodyChange& b) {
@@ -69,17 +70,25 @@ private:
         double value = 0;
     };
     // What is moved: two moves of one target have one key.
-    using Key = std::tuple<MoveTarget, int, core::model::Origin::List, int, int>;
+    using Key = std::tuple<MoveTarget, int, core::model::Origin::List, int, int, std::vector<std::string>>;
     static Key key_of(const Move& move) {
         const bool of_mechanism = is_of_mechanism(move.target);
-        const bool of_body = !of_mechanism && move.target != MoveTarget::gravity;
-        return {move.target, of_body ? move.body : 0, of_mechanism ? move.part.list : core::model::Origin::List::joint,
-                of_mechanism ? move.part.index : 0, move.target == MoveTarget::curve_value ? move.entry : 0};
+        const bool of_materials = is_of_friction(move.target) && move.target != MoveTarget::body_mu;
+        const bool of_body = !of_mechanism && !of_materials && move.target != MoveTarget::gravity;
+        std::vector<std::string> materials;
+        if (of_materials) materials = move.materials;
+        std::sort(materials.begin(), materials.end());
+        return {move.target,
+                of_body ? move.body : 0,
+                of_mechanism ? move.part.list : core::model::Origin::List::joint,
+                of_mechanism ? move.part.index : 0,
+                move.target == MoveTarget::curve_value ? move.entry : 0,
+                materials};
     }
 
     void apply(int k, const Move& move) {
         if (is_vector(move.target)) add_to_vector(move, p_[k]);
-        if (is_of_mechanism(move.target) || move.target == MoveTarget::gravity) {
+        if (is_of_mechanism(move.target) || is_of_friction(move.target) || move.target == MoveTarget::gravity) {
             if (!is_vector(move.target)) add_to_number(move, p_[k]);
             moved_.linear_changes.push_back({k, move});
             return;
@@ -176,14 +185,21 @@ private:
     }
 
     void finish_numbers() {
-        for (const auto& [key, sum] : numbers_) set_number(sum.move, sum.value, moved_.scene.mechanism);
+        for (const auto& [key, sum] : numbers_) {
+            if (is_of_friction(sum.move.target))
+                set_coefficient(sum.move, sum.value, moved_.scene);
+            else
+                set_number(sum.move, sum.value, moved_.scene.mechanism);
+        }
     }
 
-    Errors check_mechanism() const {
+    Errors check_numbers() const {
         Errors errors;
         for (const LinearChange& change : moved_.linear_changes) {
-            if (!is_of_mechanism(change.move.target)) continue;
-            for (Error& error : moved_badly(moved_.scene.mechanism, change.move)) errors.push_back(std::move(error));
+            if (is_of_mechanism(change.move.target))
+                for (Error& error : moved_badly(moved_.scene.mechanism, change.move)) errors.push_back(std::move(error));
+            if (is_of_friction(change.move.target))
+                for (Error& error : coefficient_moved_badly(moved_.scene, change.move)) errors.push_back(std::move(error));
         }
         return errors;
     }
@@ -301,13 +317,20 @@ Matrix34 written_pose_bar(const core::model::Model& model, const adjoint::model:
     return out;
 }
 
-double linear_part(const Move& move, const adjoint::ModelGradient& gradient, const adjoint::model::WrittenStartGradient& start,
-                   const adjoint::model::SceneMechanismGradient& mechanism) {
+// Of what stands in the scene's mechanism and friction.
+struct SceneGradient {
+    adjoint::model::SceneMechanismGradient mechanism;
+    adjoint::model::SceneFrictionGradient friction;
+};
+
+double linear_part(const Move& move, const core::scene::Scene& scene, const adjoint::ModelGradient& gradient,
+                   const adjoint::model::WrittenStartGradient& start, const SceneGradient& of_scene) {
     const auto body = static_cast<size_t>(move.body);
     if (is_of_mechanism(move.target)) {
-        if (!is_vector(move.target)) return move.scale * number_gradient(move, mechanism);
-        return move.scale * move.direction.dot(vector_gradient(move, mechanism));
+        if (!is_vector(move.target)) return move.scale * number_gradient(move, of_scene.mechanism);
+        return move.scale * move.direction.dot(vector_gradient(move, of_scene.mechanism));
     }
+    if (is_of_friction(move.target)) return move.scale * coefficient_gradient(move, scene, of_scene.friction);
     switch (move.target) {
         case MoveTarget::gravity:
             return move.scale * move.direction.dot(gradient.gravity_bar);
@@ -331,8 +354,8 @@ Result<MovedScene> move_scene(const Design& design, const VectorX& p, SceneDeriv
 VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& of_model, int parameter_count) {
     adjoint::ModelGradient gradient = of_model;
     adjoint::model::WrittenStartGradient start = adjoint::model::written_start_adjoint(model, gradient);
-    const adjoint::model::SceneMechanismGradient mechanism =
-        adjoint::model::build_mechanism_adjoint(moved.scene, model, gradient.mechanism, start);
+    const SceneGradient of_scene{adjoint::model::build_mechanism_adjoint(moved.scene, model, gradient.mechanism, start),
+                                 adjoint::model::build_friction_adjoint(moved.scene, gradient.friction_bar)};
     VectorX result = VectorX::Zero(parameter_count);
     for (const BodyChange& change : moved.changes) {
         const auto i = static_cast<size_t>(change.body);
@@ -351,7 +374,7 @@ VectorX pull_back(const MovedScene& moved, const core::model::Model& model, cons
         result[change.parameter] += sum;
     }
     for (const LinearChange& change : moved.linear_changes)
-        result[change.parameter] += linear_part(change.move, gradient, start, mechanism);
+        result[change.parameter] += linear_part(change.move, moved.scene, gradient, start, of_scene);
     return result;
 }
 

@@ -22,7 +22,8 @@ struct BodyChange {
     Vector6 rate_dot = Vector6::Zero();  ///< of the prescribed coordinates' rates
 };
 
-/// A move of what is linear in its parameter: numbers and vectors of joints, springs, motors and loads, velocities, forces, gravity.
+/// A move of what is linear in its parameter: numbers and vectors of joints, springs, motors and loads, velocities, forces, gravity,
+/// coefficients of friction.
 struct LinearChange {
     int parameter = 0;
     description::Move move;
@@ -39,7 +40,7 @@ enum class SceneDerivative { wanted, not_wanted };
 
 /// The scene at parameter values p (SI, one per parameter), and its derivative there.
 /// Errors: dimensions that make no valid part; `where` names the parameter's body and dimension. Springs, dampers and loads of 0
-/// (mechanism_moves.hpp).
+/// (mechanism_moves.hpp), and no friction (friction_moves.hpp).
 /// Contract: check_design finds nothing.
 Result<MovedScene> move_scene(const description::Design& design, const VectorX& p, SceneDerivative derivative = SceneDerivative::wanted);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/problem/friction_moves.hpp"
 #include "fettle/design/problem/mechanism_moves.hpp"
 
 namespace fettle::design::reading {
@@ -73,6 +74,7 @@ public:
         : node_(node), context_(context), mechanism_(context.scene.mechanism), parameter_(parameter) {}
 
     std::optional<Move> read() {
+        if (node_["mu"].exists()) return read_coefficient();
         if (node_["gravity"].exists()) {
             node_.allow_keys({"gravity", "scale", "offset"});
             move_.target = MoveTarget::gravity;
@@ -85,6 +87,26 @@ public:
     }
 
 private:
+    std::optional<Move> read_coefficient() {
+        node_.allow_keys({"body", "material", "materials", "mu", "scale", "offset"});
+        const JsonNode body = node_["body"], material = node_["material"], materials = node_["materials"];
+        if (body.exists() + material.exists() + materials.exists() > 1) {
+            node_.fail(ErrorCode::inconsistent, "one of `body`, `material` and `materials` says whose `mu` is moved");
+            return std::nullopt;
+        }
+        move_.target = body.exists() ? MoveTarget::body_mu : material.exists() ? MoveTarget::material_mu : MoveTarget::default_mu;
+        if (materials.exists()) move_.target = MoveTarget::pair_mu;
+        if (body.exists() && !find_subject("body")) return std::nullopt;
+        if (material.exists()) move_.materials = {material.string().value_or("")};
+        for (const JsonNode& name : materials.elements()) move_.materials.push_back(name.string().value_or(""));
+        if (const std::string reason = problem::friction_misfit(context_.scene, move_); !reason.empty()) {
+            node_.fail(ErrorCode::inconsistent, reason);
+            return std::nullopt;
+        }
+        read_number(node_["mu"], {});
+        return move_;
+    }
+
     std::optional<Move> read_of(std::string_view subject) {
         const std::vector<Property>& properties = properties_of(subject);
         std::vector<std::string_view> keys{subject, "scale", "offset"};
@@ -241,7 +263,7 @@ private:
 }  // namespace
 
 bool is_mechanism_move(const JsonNode& node) {
-    if (node["gravity"].exists()) return true;
+    if (node["gravity"].exists() || node["mu"].exists()) return true;
     if (node["motor"].exists()) return !node["rate"].exists();
     for (const char* subject : {"joint", "spring", "damper", "load"})
         if (node[subject].exists()) return true;

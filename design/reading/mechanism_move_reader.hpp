@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Reads the moves of a design file that are linear in their parameter: of joints, springs, motors and loads, of gravity, and of a body's
-/// turn, velocity and force. Part of parameter_reader.hpp.
+/// Reads the moves of a design file that are linear in their parameter: of joints, springs, motors and loads, of gravity, of coefficients
+/// of friction, and of a body's turn, velocity and force. Part of parameter_reader.hpp.
 ///     { "joint": "A", "point_a": [1, 0, 0] }            { "spring": "back", "stiffness": true }
 ///     { "motor": "drive", "value": 2 }                  { "load": "push", "force": [0, 0, -1] }
 ///     { "gravity": [0, 0, -1] }                         { "body": "crank", "turn": [0, 0, 1] }
+///     { "materials": ["steel", "brass"], "mu": true }   { "body": "crank", "mu": true }, { "material": "steel", "mu": true }, { "mu": true
+///     }
 #pragma once
 
 #include "fettle/core/files/json_document.hpp"

@@ -98,12 +98,13 @@ private:
             node.allow_keys({"body", "density", "scale", "offset"});
             read_density(node, parameter, move);
         } else {
-            node.allow_keys({"body", "dimension", "position", "density", "turn", "velocity", "angular_velocity", "force", "motor", "rate",
-                             "joint", "spring", "damper", "load", "gravity", "scale", "offset"});
+            node.allow_keys({"body",    "dimension", "position",  "density", "turn",   "velocity", "angular_velocity",
+                             "force",   "motor",     "rate",      "joint",   "spring", "damper",   "load",
+                             "gravity", "material",  "materials", "mu",      "scale",  "offset"});
             node.fail(ErrorCode::missing_key,
                       "a move says what it moves: `body` with `dimension`, `position`, `turn`, `velocity`, `angular_velocity`, `force` or "
-                      "`density`, `motor` with `rate`, `speed` or `value`, `joint`, `spring`, `damper` or `load` with what of it, or "
-                      "`gravity`");
+                      "`density`, `motor` with `rate`, `speed` or `value`, `joint`, `spring`, `damper` or `load` with what of it, "
+                      "`gravity`, or a coefficient of friction: `mu`, of a `body`, a `material`, two `materials`, or of all others");
         }
         if (const auto body = context_.body(node.require(node["motor"].exists() ? "motor" : "body"))) {
             move.body = *body;

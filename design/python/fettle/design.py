@@ -197,7 +197,8 @@ class Move(Record):
     """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
     design/description/parameter.hpp lists the targets."""
 
-    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force"; "gravity"; of `part`
+    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force"; "gravity"; coefficients of
+    #: friction "body_mu", "material_mu", "pair_mu", "default_mu"; of `part`
     #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",
     #: "pitch", "ratio", "curve_value", "curve_rate", "load_point", "load_force"
     target: str = "dimension"
@@ -210,6 +211,7 @@ class Move(Record):
     position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of vectors
     part: Origin = dataclasses.field(default_factory=Origin)
     entry: int = 0  #: curve_value: which
+    materials: List[str] = dataclasses.field(default_factory=list)  #: material_mu: one, pair_mu: two
 
 
 @dataclasses.dataclass(eq=False)

@@ -148,7 +148,7 @@ void check_scene(const SweepScene& scene, bool differences) {
     std::mt19937_64 random(31);
     const std::vector<TrajectoryGradient> seeds = random_seeds(scene, random);
     const bool still = scene.model.integrator == core::scene::Integrator::quasi_static;
-    for (const ParameterKind kind : all_kinds) {
+    for (const ParameterKind kind : kinds_of(scene)) {
         const ModelTangent direction = random_direction(scene, kind, random);
         CAPTURE(scene.name, to_string(kind));
         const Vector3 derivative = check_sweeps(scene, simulation.trajectory, seeds, direction);

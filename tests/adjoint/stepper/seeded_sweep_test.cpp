@@ -43,7 +43,7 @@ TEST_CASE("seeds are swept together, and what they owe to the model is added", "
     for (size_t k = 0; k < 3; ++k) {
         ModelGradient sum = seeds[k].model_bar;
         add(sum, (*swept)[k]);
-        for (const ParameterKind kind : all_kinds) {
+        for (const ParameterKind kind : kinds_of(scene)) {
             const ModelTangent direction = random_direction(scene, kind, random);
             CAPTURE(k, to_string(kind));
             CHECK(pairing(scene, (*together)[k], direction) == Approx(pairing(scene, sum, direction)).epsilon(1e-13).margin(1e-300));

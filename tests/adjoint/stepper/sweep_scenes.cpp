@@ -117,6 +117,22 @@ SweepScene pusher() {
 
 std::vector<SweepScene> all_scenes() { return {free_flight(), stack(), twisted_pair(), tilting_motor(), double_motor(), pusher()}; }
 
+SweepScene rubbed(SweepScene scene) {
+    scene.name += ", rubbed";
+    scene.model.friction.mu.setConstant(0.4);
+    scene.model.friction.eps_v = 0.05;
+    scene.model.friction.rounds = 2;
+    return scene;
+}
+
+std::vector<ParameterKind> kinds_of(const SweepScene& scene) {
+    std::vector<ParameterKind> kinds{ParameterKind::vertices,  ParameterKind::pose_start, ParameterKind::velocity_start,
+                                     ParameterKind::density,   ParameterKind::gravity,    ParameterKind::force,
+                                     ParameterKind::increments};
+    if (scene.model.friction.mu.maxCoeff() > 0) kinds.push_back(ParameterKind::friction);
+    return kinds;
+}
+
 ContactCount count_contacts(const Model& model, const core::stepper::Trajectory& trajectory) {
     ContactCount count;
     for (std::size_t t = 1; t < trajectory.poses.size(); ++t) {
@@ -150,6 +166,8 @@ const char* to_string(ParameterKind kind) {
             return "force";
         case ParameterKind::increments:
             return "increments";
+        case ParameterKind::friction:
+            return "friction";
     }
     return "unknown";
 }
@@ -159,6 +177,11 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
     const auto vector = [&](double scale) { return Vector3(scale * Vector3::NullaryExpr([&] { return uniform(random); })); };
     ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
     if (kind == ParameterKind::gravity) d.gravity_dot = vector(10);
+    const int count = static_cast<int>(d.bodies.size());
+    const bool is_friction = kind == ParameterKind::friction;
+    const double mu_dot = is_friction ? uniform(random) : 0;
+    for (int a = 0; a < count && is_friction; ++a)
+        for (int b = a + 1; b < count; ++b) d.friction_dot[{a, b}] = mu_dot;
     for (std::size_t i = 0; i < d.bodies.size(); ++i) {
         const Body& body = scene.model.bodies[i];
         fettle::adjoint::BodyTangent& dot = d.bodies[i];
@@ -191,6 +214,7 @@ ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradi
 Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
     Model model = scene.model;
     model.gravity += s * direction.gravity_dot;
+    if (!direction.friction_dot.empty()) model.friction.mu.array() += s * direction.friction_dot.begin()->second;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         Body& body = model.bodies[i];
         const fettle::adjoint::BodyTangent& dot = direction.bodies[i];
@@ -218,6 +242,8 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
 
 double pairing(const SweepScene& scene, const ModelGradient& gradient, const ModelTangent& direction) {
     double sum = gradient.gravity_bar.dot(direction.gravity_dot);
+    for (const auto& [pair, dot] : direction.friction_dot)
+        if (const auto bar = gradient.friction_bar.find(pair); bar != gradient.friction_bar.end()) sum += bar->second * dot;
     for (std::size_t i = 0; i < direction.bodies.size(); ++i) {
         const fettle::adjoint::BodyGradient& bar = gradient.bodies[i];
         const fettle::adjoint::BodyTangent& dot = direction.bodies[i];

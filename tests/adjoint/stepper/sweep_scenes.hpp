@@ -34,6 +34,8 @@ SweepScene double_motor();
 /// A kinematic pusher (moves and turns) drives a box with fixed coordinates against a free one.
 SweepScene pusher();
 std::vector<SweepScene> all_scenes();
+/// The same with friction, solved in two rounds: boxes that slide faster than eps_v, and some that hardly do.
+SweepScene rubbed(SweepScene scene);
 
 /// How many contacts of each sort a trajectory has at its stored configurations.
 struct ContactCount {
@@ -41,13 +43,13 @@ struct ContactCount {
 };
 ContactCount count_contacts(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, increments };
-inline constexpr ParameterKind all_kinds[] = {ParameterKind::vertices,  ParameterKind::pose_start, ParameterKind::velocity_start,
-                                              ParameterKind::density,   ParameterKind::gravity,    ParameterKind::force,
-                                              ParameterKind::increments};
+enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, increments, friction };
+/// Friction's coefficients where there is friction, all others always.
+std::vector<ParameterKind> kinds_of(const SweepScene& scene);
 const char* to_string(ParameterKind kind);
 
-/// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures.
+/// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures. Of friction: all coefficients
+/// alike, and none where there is no friction.
 ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::mt19937_64& random);
 
 /// The gradient's own direction in the vertices, largest entry 0.05 m.

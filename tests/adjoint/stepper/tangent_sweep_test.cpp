@@ -51,7 +51,7 @@ void check_scene(const SweepScene& scene) {
         for (int s = 0; s < seed_count; ++s) out[s] = pairing(scene, (*gradients)[s], direction);
         return out;
     };
-    for (const ParameterKind kind : all_kinds) {
+    for (const ParameterKind kind : kinds_of(scene)) {
         const ModelTangent direction = random_direction(scene, kind, random);
         CAPTURE(scene.name, to_string(kind), derivative(direction).transpose());
         CHECK(error_along(scene, seeds, direction, derivative(direction)) < 1e-6);
@@ -69,5 +69,8 @@ TEST_CASE("differences: nearly parallel edges", "[adjoint][stepper][slow]") { ch
 TEST_CASE("differences: a motor that may tilt", "[adjoint][stepper][slow]") { check_scene(tilting_motor()); }
 TEST_CASE("differences: two prescribed rotations of three", "[adjoint][stepper][slow]") { check_scene(double_motor()); }
 TEST_CASE("differences: a scripted pusher and fixed coordinates", "[adjoint][stepper][slow]") { check_scene(pusher()); }
+TEST_CASE("differences: friction between boxes on boxes", "[adjoint][stepper][slow]") { check_scene(rubbed(stack())); }
+TEST_CASE("differences: friction, two prescribed rotations of three", "[adjoint][stepper][slow]") { check_scene(rubbed(double_motor())); }
+TEST_CASE("differences: friction, a scripted pusher and fixed coordinates", "[adjoint][stepper]") { check_scene(rubbed(pusher())); }
 
 }  // namespace fettle::adjoint::stepper::tangent_sweep_test

@@ -116,4 +116,50 @@ TEST_CASE("weights say where the closest points are") {
     CHECK(wrong == 0);
 }
 
+TEST_CASE("near contact the difference is turned by rounding of angles, not of lengths") {
+    Generator g;
+    int wrong = 0, faces = 0;
+    for (int i = 0; i < 3000; ++i) {
+        // A point over a triangle, or two edges over each other, of 14 m, a nanometre to a tenth of a millimetre apart along z.
+        const double gap = std::ldexp(1.0, -g.integer(13, 30));
+        PairVertices x;
+        for (Vector3& v : x) v = 14.0 * g.point(10);
+        for (Vector3& v : x) v.z() = 0;
+        if (g.type() == PairType::point_triangle) {
+            x[0] = (x[1] + x[2] + x[3]) / 3;
+            x[0].z() = gap;
+            const ClosestPoints c = closest(PairType::point_triangle, x);
+            if (c.free_count < 2) continue;
+            ++faces;
+            wrong += c.difference.head<2>().norm() > 0 || std::abs(c.difference.z() / gap - 1) > 1e-15;
+        } else {
+            x[0].z() = x[1].z() = gap;
+            const ClosestPoints c = closest(PairType::edge_edge, x);
+            if (c.free_count < 2) continue;
+            ++faces;
+            wrong += c.difference.head<2>().norm() > 0 || std::abs(c.difference.z() / gap - 1) > 1e-15;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(faces > 1000);
+}
+
+TEST_CASE("near an edge the difference is normal to it") {
+    Generator g;
+    int wrong = 0, edges = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const double gap = std::ldexp(1.0, -g.integer(13, 30));
+        const Vector3 e0 = 14.0 * g.point(10), e1 = 14.0 * g.point(10);
+        const Vector3 e = (e1 - e0).normalized(), off = gap * e.unitOrthogonal();
+        const Vector3 p = 0.3 * e0 + 0.7 * e1 + off;
+        // The triangle lies on the edge's other side.
+        const ClosestPoints c = point_triangle_closest(p, e0, e1, 0.5 * (e0 + e1) - 1e9 * off);
+        if (c.free_count != 1) continue;
+        ++edges;
+        wrong += std::abs(c.difference.dot(e)) > 4e-16 * c.difference.norm();
+    }
+    CHECK(wrong == 0);
+    CHECK(edges > 1000);
+}
+
 }  // namespace fettle::core::geometry::distance_test

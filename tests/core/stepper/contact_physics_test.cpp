@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bodies in contact without friction, or with it between free bodies: what no force between bodies can change, and what energy does.
+#include "fettle/core/clearance/clearance.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 
@@ -115,6 +116,29 @@ TEST_CASE("Newmark gives an elastic bounce back to the height it fell from", "[p
     }
     REQUIRE(touched);
     CHECK(highest_after == Approx(0.25).epsilon(2e-3));
+}
+
+TEST_CASE("A script that closes a gap altogether leaves what can be proven, whatever rounding does", "[physics]") {
+    // A plate comes up to a cube that a force holds against it, until the cube fills the gap to a wall exactly.
+    const auto plate = box_mesh({-0.05, -5, -5}, {0.05, 5, 5});
+    for (int i = 0; i < 6; ++i) {
+        CAPTURE(i);
+        core::model::Model model =
+            weightless({make_body("wall", plate, make_pose({0, 0, 0}, {1.05, 0, 0}), core::scene::BodyType::static_body),
+                        make_body("cube", cube(1), make_pose({0, 0, 0}, {0, 0, 0}), core::scene::BodyType::dynamic_body, 1e4),
+                        make_body("plate", plate, make_pose({0, 0, 0}, {-1.05, 0, 0}), core::scene::BodyType::kinematic_body)},
+                       0.01);
+        model.diagonal = 14;
+        model.bodies[1].force = Vector3(-1e6 * (1 + 1e-6 * i), 0, 0);
+        prescribe(model.bodies[2], 0, 1);
+        const auto out = run(model, 100);
+        CHECK(std::abs(out.trajectory.poses.back()[2].position.x() + 0.05) < 1e-9 * model.diagonal);
+        core::clearance::ClearanceOptions options;
+        options.motion = true;
+        options.tolerance = 1e-12;
+        const auto proven = core::clearance::certify_clearance(model, out.trajectory, {{0, 1, 0}, {1, 2, 0}}, options);
+        for (const auto& pair : proven) CHECK(pair.lower > 0);
+    }
 }
 
 }  // namespace fettle::core::stepper::contact_physics_test

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of mechanisms that have closed forms: oscillators (of the steps as they are made, exactly), crank torque, gears, a hanging
-// chain.
+// chain, what slides and stops by friction.
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "fettle/core/contact/barrier.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
@@ -84,6 +85,29 @@ Dual oscillator(double w, double h, int n) {
         now = next;
     }
     return now;
+}
+
+// A flat block on a plate, both with their file frames' origins at the world's, at rest on its contacts under `weight` [N].
+constexpr double block_dhat = 1e-3, block_kappa = 1e3, block_mass = 0.1;
+Design block_on_plate(double weight, double mu, double h, int steps) {
+    const auto parameters = core::contact::barrier_parameters(block_dhat, 0, block_kappa, 1);
+    const auto force = [&](double d) { return -2 * parameters.factor * core::contact::barrier(d * d, parameters.gap_hat).first * d; };
+    double low = 0, high = block_dhat;
+    while (high - low > 1e-15) (force(0.5 * (low + high)) > 0.25 * weight ? low : high) = 0.5 * (low + high);
+    Design design;
+    core::scene::Body plate = bar("plate", 1), block = bar("block", 1);
+    plate.mesh = tests::support::box_mesh({-1, -1, -0.1}, {3, 1, 0});
+    plate.type = core::scene::BodyType::static_body;
+    for (auto& dof : plate.prescribed) dof = core::scene::MotionCurve{};
+    block.mesh = tests::support::box_mesh({-0.05, -0.05, low}, {0.05, 0.05, low + 0.01});
+    design.scene = scene_of({plate, block}, h);
+    for (core::scene::Body& body : design.scene.bodies) body.group = -1;
+    design.scene.gravity = Vector3(0, 0, -gravity);
+    design.scene.dhat = block_dhat;
+    design.scene.kappa = block_kappa;
+    design.scene.friction.mu = mu;
+    design.steps = steps;
+    return design;
 }
 
 }  // namespace
@@ -224,6 +248,81 @@ TEST_CASE("closed form: what a hanging chain's joints carry, in density and grav
         CHECK(at.constraints[static_cast<size_t>(k)].value == Approx((3 - k) * 1000 * volume * 9.81).epsilon(1e-8));
         for (int j = 0; j < 3; ++j) CHECK(at.jacobian(k, j) == Approx(j < k ? 0 : volume * 9.81).epsilon(1e-7).margin(1e-10));
         CHECK(at.jacobian(k, 3) == Approx(-(3 - k) * 1000 * volume).epsilon(1e-7));
+    }
+}
+
+TEST_CASE("closed form: stopping distance in speed and friction", "[friction]") {
+    constexpr double speed = 0.6, mu = 0.3, deceleration = mu * gravity, eps_v = 1e-3;
+    const auto slid = [&](double h) {
+        Design design = block_on_plate(block_mass * gravity, mu, h, static_cast<int>(0.3 / h));
+        design.scene.bodies[1].linear_velocity = Vector3(speed, 0, 0);
+        design.parameters = {parameter("speed", speed, along({.target = MoveTarget::velocity, .body = 1}, x_axis)),
+                             parameter("mu", mu, {.target = MoveTarget::default_mu})};
+        return evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
+    };
+    // As the steps are made: v' + a h f0'(v') = v, f0' = 2 u - u^2 at u = v'/eps_v < 1.
+    struct Stop {
+        double x = 0, by_speed = 0, by_mu = 0;
+    };
+    const auto steps_of = [&](double h) {
+        Stop out;
+        double v = speed, v_speed = 1, v_mu = 0;
+        const double ah = deceleration * h;
+        for (int k = 0; k < static_cast<int>(0.3 / h); ++k) {
+            double next = v - ah, slope = 0;
+            if (next < eps_v) {  // u^2 a h - u (eps_v + 2 a h) + v = 0
+                const double b = eps_v + 2 * ah, root = std::sqrt(b * b - 4 * ah * v), u = 2 * v / (b + root);
+                next = u * eps_v;
+                slope = (2 - 2 * u) / eps_v;
+            }
+            const double rubbing = (v - next) / ah;  // f0'
+            v_mu = (v_mu - gravity * h * rubbing) / (1 + ah * slope);
+            v_speed /= 1 + ah * slope;
+            v = next;
+            out.x += h * v;
+            out.by_speed += h * v_speed;
+            out.by_mu += h * v_mu;
+        }
+        return out;
+    };
+    for (const double h : {0.01, 0.005, 0.0025}) {
+        const DesignEvaluation at = slid(h);
+        const Stop exact = steps_of(h);
+        CAPTURE(h);
+        CHECK(at.constraints[0].value == Approx(exact.x).epsilon(1e-4));
+        CHECK(at.jacobian(0, 0) == Approx(exact.by_speed).epsilon(1e-3));
+        CHECK(at.jacobian(0, 1) == Approx(exact.by_mu).epsilon(1e-3));
+        // The continuous motion's, to the first order in h.
+        const double lost = 0.5 * speed * h;
+        CHECK(std::abs(at.constraints[0].value - speed * speed / (2 * deceleration)) < 1.1 * lost);
+        CHECK(std::abs(at.jacobian(0, 0) - speed / deceleration) < 1.1 * h);
+        CHECK(std::abs(at.jacobian(0, 1) + speed * speed / (2 * mu * deceleration)) < 1.1 * lost / mu);
+    }
+}
+
+TEST_CASE("closed form: the way down an incline in angle and friction", "[friction]") {
+    constexpr double angle = 0.5, mu = 0.2, time = 0.3;
+    const double s = std::sin(angle), c = std::cos(angle), acceleration = gravity * (s - mu * c);
+    const Vector3 down(c, 0, -s);
+    for (const double h : {0.01, 0.005}) {
+        const int steps = static_cast<int>(std::lround(time / h));
+        Design design = block_on_plate(block_mass * gravity * c, mu, h, steps);
+        Move plate = along({.target = MoveTarget::turn, .body = 0}, y_axis), block = plate;
+        block.body = 1;
+        design.parameters = {parameter("angle", angle, plate), parameter("mu", mu, {.target = MoveTarget::default_mu})};
+        design.parameters[0].moves.push_back(block);
+        const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), down)});
+        CAPTURE(h);
+        const double half = 0.5 * h * h * steps * (steps + 1);  // h^2 (1 + ... + n); t^2/2 as h goes to 0
+        CHECK(at.constraints[0].value == Approx(acceleration * half).epsilon(1e-4));
+        // The first step rubs with the normal forces of the start, which the angle does not change.
+        CHECK(at.jacobian(0, 0) == Approx(gravity * (c * half + mu * s * (half - h * h * steps))).epsilon(1e-4));
+        CHECK(at.jacobian(0, 0) == Approx(0.5 * gravity * (c + mu * s) * time * time).epsilon(1.1 * h / time));
+        CHECK(at.jacobian(0, 1) == Approx(-gravity * c * half).epsilon(1e-3));
+        // How long it takes for a given way: t = sqrt(2 way / acceleration), dt = - dway / speed.
+        const double way = at.constraints[0].value, speed = acceleration * time;
+        CHECK(time == Approx(std::sqrt(2 * way / acceleration)).epsilon(h / time));
+        CHECK(-at.jacobian(0, 1) / speed == Approx(0.5 * time * gravity * c / acceleration).epsilon(1.1 * h / time));
     }
 }
 

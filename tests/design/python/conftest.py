@@ -9,7 +9,7 @@ import fettle
 
 def pytest_configure(config):
     """Marks that tests use."""
-    config.addinivalue_line("markers", "slow: not among the fast tests")
+    config.addinivalue_line("markers", "programs: runs OpenSCAD, or a Dask cluster")
 
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]

@@ -151,7 +151,7 @@ def cluster_fixture(tmp_path):
         process.wait()
 
 
-@pytest.mark.slow
+@pytest.mark.programs
 def test_on_a_dask_cluster_one_of_whose_workers_is_killed(tmp_path, cluster):
     address, workers = cluster
     design = short_design(Deadly(str(tmp_path / "marker")))

@@ -62,7 +62,7 @@ def test_programs_run_only_when_they_are_allowed():
         fettle.read_design(str(HINGE / "openscad_hinge.design.json"))
 
 
-@pytest.mark.slow
+@pytest.mark.programs
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="Debian's openscad is not installed")
 def test_the_hinge_of_openscad_is_tuned_under_certified_clearance():
     file = fettle.read_design(str(HINGE / "openscad_hinge.design.json"), allow_programs=True)
