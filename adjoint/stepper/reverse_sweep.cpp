@@ -71,6 +71,7 @@ public:
         return {};
     }
 
+    const SweepCounts& counts() const { return solver_.counts(); }
     std::vector<ModelGradient> take() { return std::move(out_); }
 
 private:
@@ -383,10 +384,11 @@ private:
 }  // namespace
 
 Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Trajectory& trajectory,
-                                                 const std::vector<TrajectoryGradient>& seeds) {
+                                                 const std::vector<TrajectoryGradient>& seeds, SweepCounts* counts) {
     if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
     ReverseSweep sweep(model, trajectory, seeds);
     if (Errors errors = sweep.run(); !errors.empty()) return errors;
+    if (counts != nullptr) *counts = sweep.counts();
     return sweep.take();
 }
 

@@ -31,12 +31,21 @@ struct LinearisedStep {
     energy::StepEnd end() const { return {{problem, poses, contacts, core::contact::HessianKind::exact}, lag.get()}; }
 };
 
+/// What a sweep has done so far.
+struct SweepCounts {
+    int assemblies = 0;      ///< of a true Hessian
+    int factorisations = 0;  ///< of a step's matrix; of a saddle system that of the masses, for the multipliers, too
+    int solves = 0;          ///< of all right-hand sides at once; refinement counts with its solve
+};
+
 /// The system of one step: H over the free degrees of freedom, or [H C^T; C 0] where there are rows.
 class StepSolver {
 public:
     explicit StepSolver(const core::model::Model& model);
 
     const core::solver::FreeDofs& dofs() const { return dofs_; }
+    const SweepCounts& counts() const { return counts_; }
+    void count_assembly() { ++counts_.assemblies; }
 
     /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
     /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
@@ -71,6 +80,7 @@ private:
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     core::solver::FreeDofs dofs_;
+    mutable SweepCounts counts_;
     core::solver::LinearSolver linear_;
     std::optional<core::constraint::SaddleSolver> saddle_;
     std::shared_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> indefinite_;  ///< where H is not positive definite on the rows
