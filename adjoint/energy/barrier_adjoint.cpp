@@ -4,18 +4,7 @@
 namespace fettle::adjoint::energy {
 namespace {
 
-Errors check_barrier(const core::model::Model& model) {
-    if (!model.area_weighted) return {};
-    const int count = static_cast<int>(model.bodies.size());
-    for (int a = 0; a < count; ++a)
-        for (int b = a + 1; b < count; ++b) {
-            if (!may_collide(model, a, b) || friction_coefficient(model, a, b) == 0) continue;
-            Errors errors{refusal("contact/area_weighted", "friction with the area-weighted barrier")};
-            errors.back().message += "; switch `area_weighted` off";
-            return errors;
-        }
-    return {};
-}
+Errors check_barrier(const core::model::Model&) { return {}; }
 
 contact::ContactsAtPose contacts_at(const StepEnd& at, const core::contact::ContactAreas& areas) {
     return {*at.problem.model, at.contacts, at.poses, at.problem.barrier, at.problem.model->area_weighted ? &areas : nullptr};

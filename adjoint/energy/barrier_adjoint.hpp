@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work. Refused is
-/// friction with area weights.
+/// The barrier (core/energy/barrier.hpp) in the shapes' vertices: adjoint/contact does the work.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"

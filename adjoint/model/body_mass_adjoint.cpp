@@ -71,7 +71,7 @@ Errors check_masses(const core::model::Model& model) {
     Errors errors;
     for (const Body& body : model.bodies) {
         const bool is_held = std::all_of(body.prescribed.begin(), body.prescribed.end(), [](const auto& dof) { return dof.has_value(); });
-        if (is_held || mass_kind_of(body, model.dhat)) continue;
+        if (is_held || body.given_mass || mass_kind_of(body, model.dhat)) continue;
         errors.push_back({core::base::ErrorCode::unsupported, body.name,
                           "'" + body.name + "' cannot be differentiated: its mass is not that of its mesh and density"});
     }
@@ -79,7 +79,7 @@ Errors check_masses(const core::model::Model& model) {
 }
 
 void mass_moments_adjoint(const Body& body, double dhat, const Matrix4& moments_bar, BodyGradient& bar) {
-    if (moments_bar.isZero(0)) return;
+    if (body.given_mass || moments_bar.isZero(0)) return;
     const std::optional<MassKind> kind = mass_kind_of(body, dhat);
     FETTLE_ASSERT(kind.has_value(), "the body's moments are those of its mesh");
     const Matrix4 unit = core::scene::unit_moments(body.mesh, *kind);
@@ -95,7 +95,7 @@ void mass_moments_adjoint(const Body& body, double dhat, const Matrix4& moments_
 }
 
 Matrix4 mass_moments_tangent(const Body& body, double dhat, const BodyTangent& dot) {
-    const std::optional<MassKind> kind = mass_kind_of(body, dhat);
+    const std::optional<MassKind> kind = body.given_mass ? std::nullopt : mass_kind_of(body, dhat);
     if (!kind) return Matrix4::Zero();
     const Matrix4 unit = core::scene::unit_moments(body.mesh, *kind);
     Matrix4 out = dot.density_dot * unit + body.density * scene::unit_moments_tangent(body.mesh, *kind, dot.vertices_dot);

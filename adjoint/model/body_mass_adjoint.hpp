@@ -3,7 +3,7 @@
 ///   M = density U(X) + 1/2 max(lacking, 0) diag(1, 1, 1, 0),   lacking = 1e-8 m r^2 - (s_1 + s_2)
 /// with U the moments of density 1 by the body's MassKind, and of wires and points s_1 <= s_2 the smaller eigenvalues of the central second
 /// moments C, whose sum changes by tr(dC) - u . dC u, u of the largest; r is |X| of the vertex farthest away (of several the first).
-/// A model's body does not say its MassKind: it is the one that its moments are of.
+/// A model's body does not say its MassKind: it is the one that its moments are of. A given mass hangs on neither.
 #pragma once
 
 #include <optional>
@@ -20,10 +20,11 @@ std::optional<core::scene::MassKind> mass_kind_of(const core::model::Body& body,
 /// Bodies that move freely whose moments are none of their mesh and density (unsupported).
 Errors check_masses(const core::model::Model& model);
 
-/// Adds to the body's vertices_bar and density_bar. Contract: mass_kind_of knows the body's kind, or `moments_bar` is zero.
+/// Adds to the body's vertices_bar and density_bar. Contract: mass_kind_of knows the body's kind, its mass is given, or `moments_bar` is
+/// zero.
 void mass_moments_adjoint(const core::model::Body& body, double dhat, const Matrix4& moments_bar, BodyGradient& bar);
 
-/// Change of the moments along the body's vertices_dot and density_dot; zero of a body whose moments are from elsewhere.
+/// Change of the moments along the body's vertices_dot and density_dot; zero where the mass is given, or the moments are from elsewhere.
 Matrix4 mass_moments_tangent(const core::model::Body& body, double dhat, const BodyTangent& dot);
 
 }  // namespace fettle::adjoint::model

@@ -71,6 +71,7 @@ public:
         return {};
     }
 
+    const SweepCounts& counts() const { return solver_.counts(); }
     std::vector<ModelGradient> take() { return std::move(out_); }
 
 private:
@@ -168,17 +169,22 @@ private:
                 add_lag_to_start();
             }
         }
+        start_back(t, rounds.problem());
+        return {};
+    }
+
+    // What the step's constants follow from.
+    void start_back(int t, const core::energy::StepProblem& problem) {
         for (std::size_t s = 0; s < seeds_.size(); ++s)
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 start_[s][i] += step_bar_.start_bar[s][i];
                 if (is_bdf2())
-                    bdf2_back(t, s, i, rounds.slip_time());
+                    bdf2_back(t, s, i, problem.slip_time);
                 else if (is_newmark())
-                    newmark_back(s, i, rounds.weight());
+                    newmark_back(s, i, problem.weight);
                 else
                     pose_hat_back(t, s, i);
             }
-        return {};
     }
 
     // One solve, from end_ to lag_poses_bar and the step's constants.
@@ -368,7 +374,7 @@ private:
     std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
     std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2, Newmark)
     std::vector<std::vector<Matrix34>> acceleration_end_, acceleration_start_;            // of A (Newmark)
-    energy::StepGradient step_bar_;  // P_hat's and P_slip's of the step at hand, the lag's of the round; the moments' of all
+    energy::StepGradient step_bar_;  // of the step at hand, the lag's of the round; moments' and areas' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
     std::shared_ptr<const contact::LaggedContacts> known_;  // with friction: at the start of the step that was gone through last
     std::vector<VectorX> mu_;                               // [seed]: adjoint variable of the rows
@@ -378,10 +384,11 @@ private:
 }  // namespace
 
 Result<std::vector<ModelGradient>> reverse_sweep(const Model& model, const Trajectory& trajectory,
-                                                 const std::vector<TrajectoryGradient>& seeds) {
+                                                 const std::vector<TrajectoryGradient>& seeds, SweepCounts* counts) {
     if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
     ReverseSweep sweep(model, trajectory, seeds);
     if (Errors errors = sweep.run(); !errors.empty()) return errors;
+    if (counts != nullptr) *counts = sweep.counts();
     return sweep.take();
 }
 

@@ -156,7 +156,8 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
 // Of an area-weighted barrier.
 Errors StepSolver::check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     const core::model::Model& model = *step.problem.model;
-    const core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
+    core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
+    if (areas.equal.empty() && step.lag) areas = step.lag->areas;
     if (areas.equal.empty()) return {};
     const core::contact::EqualAreas& e = areas.equal.front();
     Errors errors{energy::refusal("step " + std::to_string(t),
@@ -188,6 +189,7 @@ Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t,
     indefinite_.reset();
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_areas(trajectory, t, step); !errors.empty()) return errors;
+    ++counts_.factorisations;
     if (!saddle_) {
         if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
     } else {
@@ -202,6 +204,7 @@ Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t,
 // Rounding leaves a part that grows with the stiffness of contact; a singular matrix leaves all of the right-hand side, or no number.
 StepSolver::Solution StepSolver::solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
     constexpr double solved = 1e-2;
+    ++counts_.solves;
     Solution out = solve_once(step, rhs, of_rows);
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
         std::vector<Vector6> y(dofs_.index.size(), Vector6::Zero());
@@ -249,6 +252,8 @@ VectorX StepSolver::multipliers(const LinearisedStep& step) {
         weight.diagonal[i] = to_tangent.transpose() * mass * to_tangent;
     }
     for (core::kinematics::OffDiagonalBlock& b : weight.off_diagonal) b.block.setZero();
+    ++counts_.factorisations;
+    ++counts_.solves;
     saddle_->factorise(weight, step.rows);
     return saddle_->solve(-core::solver::gather(dofs_, step.derivatives.gradient), VectorX::Zero(step.rows.count())).multipliers;
 }
@@ -306,9 +311,11 @@ void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::
         ends_.push_back({std::move(points), known_});
         return;
     }
-    core::contact::ContactSet contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
-    ends_.push_back({std::move(points),
-                     std::make_shared<const contact::LaggedContacts>(contact::LaggedContacts{std::move(poses), std::move(contacts)})});
+    const core::contact::Candidates candidates = core::contact::find_candidates(model, poses, 0);
+    contact::LaggedContacts at{std::move(poses), {}, {}};
+    at.contacts = core::contact::find_contacts(model, candidates, at.poses);
+    if (model.area_weighted) at.areas = contact_areas(model, candidates, at.poses);
+    ends_.push_back({std::move(points), std::make_shared<const contact::LaggedContacts>(std::move(at))});
 }
 
 LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
@@ -323,6 +330,7 @@ LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
     if (step.lag)
         step.problem.friction = core::contact::lag_friction(model, step.lag->contacts, step.lag->poses, problem_.barrier,
                                                             problem_.slip_reference, problem_.slip_time);
+    solver.count_assembly();
     step.derivatives =
         core::energy::chart_derivatives(step.problem, step.points, step.poses, step.contacts, core::contact::HessianKind::exact);
     if (!model.mechanism.rows.empty()) add_rows(solver, step);

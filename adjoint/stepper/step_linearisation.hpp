@@ -31,12 +31,21 @@ struct LinearisedStep {
     energy::StepEnd end() const { return {{problem, poses, contacts, core::contact::HessianKind::exact}, lag.get()}; }
 };
 
+/// What a sweep has done so far.
+struct SweepCounts {
+    int assemblies = 0;      ///< of a true Hessian
+    int factorisations = 0;  ///< of a step's matrix; of a saddle system that of the masses, for the multipliers, too
+    int solves = 0;          ///< of all right-hand sides at once; refinement counts with its solve
+};
+
 /// The system of one step: H over the free degrees of freedom, or [H C^T; C 0] where there are rows.
 class StepSolver {
 public:
     explicit StepSolver(const core::model::Model& model);
 
     const core::solver::FreeDofs& dofs() const { return dofs_; }
+    const SweepCounts& counts() const { return counts_; }
+    void count_assembly() { ++counts_.assemblies; }
 
     /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
     /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
@@ -71,6 +80,7 @@ private:
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     core::solver::FreeDofs dofs_;
+    mutable SweepCounts counts_;
     core::solver::LinearSolver linear_;
     std::optional<core::constraint::SaddleSolver> saddle_;
     std::shared_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> indefinite_;  ///< where H is not positive definite on the rows
@@ -91,15 +101,15 @@ struct SweepHistory {
 };
 SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1]; friction left out.
+/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1].
 core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                      const SweepHistory& history);
 
-/// The rounds of friction of step t: each a solve of its own, with the normal forces and tangents of where the one before ended, the first
-/// with those of the step's start. Without friction there is one.
+/// The rounds of friction of step t, which leads from trajectory.poses[t] to poses[t + 1]: each a solve of its own, with the normal forces
+/// and tangents of where the one before ended, the first with those of the step's start. Without friction there is one.
 class StepRounds {
 public:
-    /// @param known  contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
+    /// @param known   contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
     StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
                std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
@@ -108,8 +118,8 @@ public:
     /// Quasi-static steps with friction: one round, whose lag is that of its own end (solver/newton.hpp).
     bool is_fixed_point() const { return is_fixed_point_; }
 
-    double slip_time() const { return problem_.slip_time; }
-    double weight() const { return problem_.weight; }
+    /// What all of them minimise, without friction.
+    const core::energy::StepProblem& problem() const { return problem_; }
 
     /// Contacts where friction was taken from for the first round (null without friction), and at the step's end.
     const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
@@ -131,14 +141,14 @@ private:
     bool is_fixed_point_ = false;
 };
 
-/// The last round of step t.
+/// The last round of that step.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const SweepHistory& history, StepSolver& solver);
 
-/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy: friction with an area-weighted barrier), bodies
-/// whose mass is not that of their mesh and density, scripts of poses, with friction a motion that changes within a step (all unsupported);
-/// with friction a trajectory that does not hold where its rounds ended (inconsistent); a step that turns a body by a full revolution or
-/// more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
+/// density, scripts of poses, with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not
+/// hold where its rounds ended, or in which they have not settled (inconsistent); a step that turns a body by a full revolution or more,
+/// where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

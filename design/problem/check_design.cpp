@@ -59,13 +59,6 @@ public:
 private:
     // What is not differentiated of joints and springs: refused, never left out.
     void check_joints() {
-        for (const core::model::Body& body : model_.bodies) {
-            const Matrix4 solid = body.density * core::geometry::solid_moments(body.mesh.vertices, body.mesh.triangles);
-            if (body.type != core::scene::BodyType::dynamic_body || (body.moments - solid).norm() <= 1e-9 * solid.norm()) continue;
-            add(ErrorCode::unsupported, "body `" + body.name + "`",
-                "beside joints and springs a body's mass must be that of a solid of its density: that of wires, shells, points and meshes "
-                "with openings cannot be differentiated");
-        }
         const auto& terms = model_.mechanism.terms;
         const auto is_stop = [](const model::MeasureTerm& term) { return term.kind == model::LawKind::stop; };
         if (model_.area_weighted && std::any_of(terms.begin(), terms.end(), is_stop))

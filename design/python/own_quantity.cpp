@@ -7,6 +7,7 @@
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
@@ -203,6 +204,10 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
                          q.attr("effort_dimension").cast<Dimension>()};
         return std::make_shared<JointLoad>(std::move(of), over());
     }
+    if (is("ContactForce")) {
+        ContactForce::Of of{body(), q.attr("other").cast<std::optional<int>>(), q.attr("axis").cast<Vector3>()};
+        return std::make_shared<ContactForce>(of, over());
+    }
     if (is("Energy")) return std::make_shared<Energy>(q.attr("kind").cast<EnergyKind>(), over());
     return nullptr;
 }
@@ -235,6 +240,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         return record_class("MarkerPath")(q->body(), q->point(), q->targets(), q->times());
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
         return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
+    if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))
+        return record_class("ContactForce")(q->of().body, q->of().other, q->over(), q->of().axis);
     if (const auto* q = dynamic_cast<const Energy*>(quantity.get())) return record_class("Energy")(q->kind(), q->over());
     return py::cast(OpaqueQuantity{quantity});
 }

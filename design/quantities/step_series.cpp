@@ -57,12 +57,16 @@ void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, doubl
     add_series_seeds(simulated, weights, seeds);
 }
 
+Errors StepSeries::check_steps(int steps) {
+    if (steps >= 1) return {};
+    return {{ErrorCode::out_of_range, "", "what a step reports needs a step"}};
+}
+
 Errors StepSeries::check(const core::model::Model& model, int steps) const {
-    Errors errors;
-    if (steps < 1) errors.push_back({ErrorCode::out_of_range, "", "what a step reports needs a step"});
+    Errors errors = check_steps(steps);
     const core::scene::Integrator integrator = model.integrator;
     if (integrator != core::scene::Integrator::implicit_euler && integrator != core::scene::Integrator::quasi_static)
-        errors.push_back({ErrorCode::unsupported, "", "what steps of bdf2 and newmark report is no quantity of a design yet"});
+        errors.push_back({ErrorCode::unsupported, "", "this is no quantity of steps of bdf2 and newmark yet"});
     return errors;
 }
 

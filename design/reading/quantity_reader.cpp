@@ -6,6 +6,7 @@
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
@@ -143,6 +144,19 @@ std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const Re
     return std::make_shared<quantities::JointLoad>(of, over);
 }
 
+std::shared_ptr<const Quantity> read_contact_force(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto other = node["of"].exists() ? context.body(node["of"]) : std::nullopt;
+    const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
+    const quantities::Over over = read_over(node["over"]);
+    if (!body || !axis || (node["of"].exists() && !other)) return nullptr;
+    if (other == body) {
+        node.fail(ErrorCode::inconsistent, "a force of contact is between two bodies; `body` and `of` are the same");
+        return nullptr;
+    }
+    return std::make_shared<quantities::ContactForce>(quantities::ContactForce::Of{*body, other, *axis}, over);
+}
+
 std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadContext&) {
     static const std::vector<std::string_view> names{"kinetic", "potential", "spring", "total"};
     const auto name = node.require("of").choice(names);
@@ -169,6 +183,9 @@ std::string mass_name(const JsonNode& node) {
 std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
 std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
 std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
+std::string contact_force_name(const JsonNode& node) {
+    return "contact_force " + text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : "");
+}
 std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
 
 }  // namespace
@@ -213,6 +230,12 @@ const std::vector<QuantityType>& quantity_table() {
          motor_effort_name,
          "N m or N",
          "torque, or force, of a motor of angle, travel or speed"},
+        {"contact_force",
+         {"body", "of", "axis", "over"},
+         read_contact_force,
+         contact_force_name,
+         "N",
+         "resultant force of contact on a body, `of` another or of all, at the steps' ends: along an `axis`, else its magnitude"},
         {"energy", {"of", "over"}, read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"}};
     return table;
 }

@@ -51,6 +51,7 @@ from .design import (
     Bounds,
     Clearance,
     Constraint,
+    ContactForce,
     Design,
     DesignFile,
     Energy,

@@ -173,6 +173,16 @@ class JointLoad(Record):
 
 
 @dataclasses.dataclass(eq=False)
+class ContactForce(Record):
+    """Resultant force of contact on a body at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
+
+    body: int
+    other: Optional[int] = None
+    over: str = "end"
+    axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
+
+
+@dataclasses.dataclass(eq=False)
 class Energy(Record):
     """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
@@ -180,7 +190,7 @@ class Energy(Record):
     over: str = "end"
 
 
-AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, Energy, "_fettle.OpaqueQuantity"]
+AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, ContactForce, Energy, "_fettle.OpaqueQuantity"]
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 

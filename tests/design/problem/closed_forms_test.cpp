@@ -6,6 +6,7 @@
 
 #include "fettle/core/contact/barrier.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
 
@@ -36,6 +37,40 @@ private:
     Vector3 arm(const Simulated& s) const { return point_ - s.model.bodies[body_].reference_point; }
     size_t body_;
     Vector3 point_, along_;
+};
+
+// Where the first body's reference point comes down to z = 0: on along the parabola through the last two steps.
+class Landing : public Quantity {
+public:
+    Dimension dimension() const override { return Dimension::length; }
+    Measurement value(const Simulated& s) const override { return exact(fall(s).range); }
+    void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
+        const Fall f = fall(s);
+        const double h = s.model.timestep, steep = -s.model.gravity.z() * f.time - f.up;  // dtime = (dz + time dup)/steep
+        const double by_z = f.forwards / steep, by_up = by_z * f.time;
+        auto& bar = seeds.trajectory_bar.pose_bar;
+        const size_t last = bar.size() - 1;
+        bar[last][0](0, 3) += scale * (1 + f.time / h);
+        bar[last - 1][0](0, 3) -= scale * f.time / h;
+        bar[last][0](2, 3) += scale * (by_z + by_up / h);
+        bar[last - 1][0](2, 3) -= scale * by_up / h;
+    }
+
+private:
+    struct Fall {
+        double forwards = 0, up = 0, time = 0, range = 0;
+    };
+    static Fall fall(const Simulated& s) {
+        const double h = s.model.timestep, g = -s.model.gravity.z();
+        const auto& poses = s.trajectory.poses;
+        const Vector3 end = poses.back()[0].position, moved = end - poses[poses.size() - 2][0].position;
+        Fall f;
+        f.forwards = moved.x() / h;
+        f.up = moved.z() / h - 0.5 * g * h;
+        f.time = (f.up + std::sqrt(f.up * f.up + 2 * g * end.z())) / g;
+        f.range = end.x() + f.forwards * f.time;
+        return f;
+    }
 };
 
 Parameter parameter(const std::string& name, double value, Move move) {
@@ -111,6 +146,108 @@ Design block_on_plate(double weight, double mu, double h, int steps) {
 }
 
 }  // namespace
+
+TEST_CASE("closed form: the range of a throw in speed and angle", "[throw]") {
+    constexpr double speed = 4, angle = 0.7, h = 0.01;
+    const auto thrown = [&](core::scene::Integrator integrator, double step) {
+        Design design;
+        design.scene = scene_of({bar("stone", 0.1)}, step);
+        design.scene.integrator = integrator;
+        design.scene.gravity = Vector3(0, 0, -gravity);
+        design.scene.bodies[0].linear_velocity = speed * Vector3(std::cos(angle), 0, std::sin(angle));
+        design.scene.bodies[0].reference_point = Vector3(0.05, 0, 0);
+        design.scene.bodies[0].pose.position = Vector3(-0.05, 0, 0);
+        design.steps = static_cast<int>(std::lround(0.4 / step));
+        design.parameters = {parameter("forwards", speed * std::cos(angle), along({.target = MoveTarget::velocity, .body = 0}, x_axis)),
+                             parameter("upwards", speed * std::sin(angle), along({.target = MoveTarget::velocity, .body = 0}, z_axis))};
+        return evaluated(std::move(design), {std::make_shared<Landing>()});
+    };
+    const double range = speed * speed * std::sin(2 * angle) / gravity, by_speed = 2 * range / speed,
+                 by_angle = 2 * speed * speed * std::cos(2 * angle) / gravity;
+    const auto errors_of = [&](const DesignEvaluation& at) {
+        const Vector2 direction(std::cos(angle), std::sin(angle)), across(-std::sin(angle), std::cos(angle));
+        return Vector3(at.constraints[0].value - range, at.jacobian.row(0).dot(direction) - by_speed,
+                       at.jacobian.row(0).dot(speed * across) - by_angle);
+    };
+    CHECK(errors_of(thrown(core::scene::Integrator::newmark, h)).norm() < 1e-9);  // whose free fall is exact
+    const Vector3 coarse = errors_of(thrown(core::scene::Integrator::implicit_euler, h)),
+                  fine = errors_of(thrown(core::scene::Integrator::implicit_euler, h / 2));
+    for (int k = 0; k < 3; ++k) {
+        CAPTURE(k, coarse[k], fine[k]);
+        CHECK(std::abs(fine[k]) < 0.02);
+        CHECK(coarse[k] / fine[k] == Approx(2).epsilon(0.05));
+    }
+}
+
+TEST_CASE("closed form: a double pendulum keeps its energy, which follows gravity and density", "[joints]") {
+    const auto swung = [](double h) {
+        Design design;
+        design.scene =
+            scene_of({bar("upper", 0.3, Vector3::Zero(), Vector3(0, 0.4, 0)),
+                      bar("lower", 0.2, core::kinematics::rotation(Vector3(0, 0.4, 0)) * Vector3(0.3, 0, 0), Vector3(0, -0.5, 0))},
+                     h);
+        design.scene.gravity = Vector3(0, 0, -gravity);
+        design.steps = static_cast<int>(std::lround(0.4 / h));
+        design.scene.mechanism.joints = {
+            joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis}),
+            joint("elbow", JointKind::revolute, {"upper", Vector3(0.3, 0, 0), y_axis}, {"lower", Vector3::Zero(), y_axis})};
+        design.parameters = {parameter("gravity", -gravity, along({.target = MoveTarget::gravity}, z_axis)),
+                             parameter("density", 1000, {.target = MoveTarget::density, .body = 1})};
+        const auto energy = std::make_shared<quantities::Energy>(quantities::EnergyKind::total, quantities::Over::end);
+        return evaluated(std::move(design), {energy});
+    };
+    // At the start: both at rest, their centres at these heights.
+    const double a = 0.4, area = 0.02 * 0.02, upper = -0.15 * std::sin(a), lower = -0.3 * std::sin(a) + 0.1 * std::sin(0.5);
+    const double moment = 1000 * area * (0.3 * upper + 0.2 * lower);
+    const Vector3 exact(gravity * moment, -moment, gravity * area * 0.2 * lower);
+    const auto errors_of = [&](double h) {
+        const DesignEvaluation at = swung(h);
+        return Vector3((Vector3(at.constraints[0].value, at.jacobian(0, 0), at.jacobian(0, 1)) - exact).cwiseQuotient(exact));
+    };
+    const Vector3 coarse = errors_of(0.002), fine = errors_of(0.001);
+    for (int k = 0; k < 3; ++k) {
+        CAPTURE(k, coarse[k], fine[k]);
+        CHECK(std::abs(fine[k]) < 0.05);
+        CHECK(std::abs(coarse[k] / fine[k] - 2) < 0.1);
+        CHECK(std::abs(2 * fine[k] - coarse[k]) < 5e-4);  // extrapolated to no step
+    }
+}
+
+TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]") {
+    // x_1, x_2, v_1, v_2 at the start; where the one that is struck is after a second: x_1 + v_1 and the bodies' length.
+    const auto struck = [](double dhat, double h) {
+        Design design;
+        design.scene = scene_of({bar("first", 0.1, Vector3(-0.4, 0, 0)), bar("second", 0.1)}, h);
+        design.scene.integrator = core::scene::Integrator::newmark;
+        for (core::scene::Body& body : design.scene.bodies) {
+            body.group = -1;
+            for (const int dof : {1, 2, 3, 4, 5}) body.prescribed[static_cast<size_t>(dof)] = core::scene::MotionCurve{};
+        }
+        design.scene.bodies[0].linear_velocity = Vector3(1, 0, 0);
+        design.scene.dhat = dhat;
+        design.scene.kappa = 10 / dhat / dhat;  // stops the one on the other well within dhat
+        design.steps = static_cast<int>(std::lround(1 / h));
+        for (const MoveTarget target : {MoveTarget::position, MoveTarget::velocity})
+            for (const int body : {0, 1}) {
+                const bool is_place = target == MoveTarget::position;
+                const double value = body == 1 ? 0 : is_place ? -0.4 : 1;
+                design.parameters.push_back(
+                    parameter(std::to_string(design.parameters.size()), value, along({.target = target, .body = body}, x_axis)));
+                design.parameters.back().lower = value - 1;
+                design.parameters.back().upper = value + 1;
+            }
+        const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
+        Eigen::Matrix<double, 5, 1> out;
+        out << at.constraints[0].value, at.jacobian.row(0).transpose();
+        return out;
+    };
+    const Eigen::Matrix<double, 5, 1> exact = (Eigen::Matrix<double, 5, 1>() << -0.4 + 1 + 0.1, 1, 0, 1, 0).finished();
+    const Eigen::Matrix<double, 5, 1> coarse = struck(8e-3, 4e-4) - exact, fine = struck(4e-3, 2e-4) - exact;
+    CAPTURE(coarse.transpose(), fine.transpose());
+    // What the impact takes its time for is of the size of dhat, and so is its derivative.
+    CHECK(fine.lpNorm<Eigen::Infinity>() < 0.02);
+    for (int k = 0; k < 5; ++k) CHECK(std::abs(fine[k]) < 0.65 * std::abs(coarse[k]) + 1e-4);
+}
 
 TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[joints]") {
     constexpr double h = 0.01, stiffness = 30, start = 0.05;

@@ -88,6 +88,22 @@ LOADS = [
 ]
 
 
+def test_forces_of_contact_have_a_class(tmp_path):
+    text = json.loads((EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text())
+    names = [body["name"] for body in json.loads((EXAMPLES / "slider_crank" / "slider_crank.scene.json").read_text())["bodies"]]
+    text["scene"] = str(EXAMPLES / "slider_crank" / "slider_crank.scene.json")
+    text["objective"] = [{"type": "contact_force", "body": names[1], "over": "mean"},
+                         {"type": "contact_force", "body": names[1], "of": names[0], "axis": [0, 0, 1]}]
+    path = tmp_path / "forces.design.json"
+    path.write_text(json.dumps(text))
+    design = fettle.read_design(str(path)).design
+    whole, part = (term.quantity for term in design.objective)
+    assert whole == fettle.ContactForce(1, None, "mean")
+    assert part == fettle.ContactForce(1, 0, axis=np.array([0, 0, 1]))
+    assert pickle.loads(pickle.dumps(design)) == design
+    assert _fettle.as_library_has_it(design) == design
+
+
 def test_loads_and_energies_have_classes(tmp_path):
     """Each kind of a file arrives as its class, pickles, and measures the same bits as when Python was not asked."""
     text = json.loads((EXAMPLES / "path_line" / "path_line.design.json").read_text())

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
@@ -202,6 +203,91 @@ TEST_CASE("joint loads, efforts and energies have the derivatives of their diffe
             }
         }
     }
+}
+
+// A block falls onto a plate and another block onto it, damped; with the three integrators that count rates.
+Design falling_blocks(core::scene::Integrator integrator) {
+    core::scene::Body plate = bar("plate", 1), lower = bar("lower", 1), upper = bar("upper", 1);
+    plate.mesh = tests::support::box_mesh({-0.2, -0.2, -0.1}, {0.2, 0.2, 0});
+    plate.type = core::scene::BodyType::static_body;
+    for (auto& dof : plate.prescribed) dof = core::scene::MotionCurve{};
+    lower.mesh = tests::support::box_mesh({-0.05, -0.04, 0}, {0.05, 0.04, 0.06});
+    lower.pose = {core::kinematics::rotation({0.01, 0.02, 0.3}), {0, 0, 0.002}};
+    upper.mesh = tests::support::box_mesh({-0.03, -0.03, 0}, {0.04, 0.03, 0.05});
+    upper.pose = {core::kinematics::rotation({-0.02, 0.01, 0.9}), {0.005, 0, 0.0645}};
+    Design design;
+    design.scene = scene_of({plate, lower, upper}, 0.005);
+    for (core::scene::Body& body : design.scene.bodies) body.group = -1;
+    design.scene.integrator = integrator;
+    design.scene.gravity = Vector3(0.3, 0, -9.81);
+    design.scene.dhat = 2e-3;
+    design.scene.kappa = 2e4;
+    design.scene.contact_damping_time = 2e-3;
+    design.scene.friction.mu = 0;
+    design.steps = 8;
+    add_parameter(design, {.target = MoveTarget::gravity, .direction = z_axis, .position_offset = Vector3(0.3, 0, -9.81)});
+    add_parameter(design, {.target = MoveTarget::density, .body = 2, .scale = 300, .offset = 1000});
+    add_parameter(design,
+                  {.target = MoveTarget::position, .body = 1, .scale = 1e-4, .direction = z_axis, .position_offset = lower.pose.position});
+    add_parameter(design, {.target = MoveTarget::turn, .body = 2, .scale = 1e-2, .direction = x_axis});
+    add_parameter(design, {.target = MoveTarget::velocity, .body = 1, .scale = 0.01, .direction = Vector3(0, 0.6, 0.8)});
+    using Of = ContactForce::Of;
+    const std::vector<std::pair<Of, Over>> asked{{Of{1, 0, z_axis}, Over::mean},
+                                                 {Of{2, std::nullopt, Vector3::Zero()}, Over::sum},
+                                                 {Of{0, 1, Vector3::Zero()}, Over::largest},
+                                                 {Of{1, std::nullopt, Vector3(0, 0.6, 0.8)}, Over::mean}};
+    for (const auto& [of, over] : asked)
+        design.constraints.push_back({"force " + std::to_string(design.constraints.size()), {}, std::make_shared<ContactForce>(of, over)});
+    return design;
+}
+
+TEST_CASE("forces of contact are those reported, with the derivatives of their differences", "[contact]") {
+    using core::scene::Integrator;
+    for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2, Integrator::newmark}) {
+        CAPTURE(static_cast<int>(integrator));
+        auto problem = DesignProblem::create(falling_blocks(integrator));
+        if (!problem) UNSCOPED_INFO(problem.errors()[0].message);
+        REQUIRE(problem);
+        const VectorX start = VectorX::Zero(problem->parameter_count());
+        const problem::DesignEvaluation at = problem->evaluate(start);
+        INFO(at.reason);
+        REQUIRE(at.usable);
+        const auto values = [&](const VectorX& p) {
+            const problem::DesignEvaluation there = problem->evaluate(p, {false, {}, {}});
+            REQUIRE(there.usable);
+            VectorX out(static_cast<Eigen::Index>(there.constraints.size()));
+            for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = there.constraints[static_cast<size_t>(i)].value;
+            return out;
+        };
+        CHECK(values(start).cwiseAbs().minCoeff() > 1e-3);
+        for (Eigen::Index k = 0; k < start.size(); ++k) {
+            VectorX least = VectorX::Constant(at.jacobian.rows(), INFINITY);
+            for (const double s : {1e-2, 3e-3, 1e-3, 3e-4}) {
+                VectorX step = VectorX::Zero(start.size());
+                step[k] = s;
+                const VectorX coarse = (values(step) - values(-step)) / (2 * s), fine = (values(0.5 * step) - values(-0.5 * step)) / s;
+                least = least.cwiseMin(((4 * fine - coarse) / 3 - at.jacobian.col(k)).cwiseAbs());
+            }
+            for (Eigen::Index i = 0; i < least.size(); ++i) {
+                CAPTURE(i, k, at.jacobian(i, k), least[i]);
+                CHECK(least[i] <= 1e-5 * std::max(std::abs(at.jacobian(i, k)), 1e-3 * at.jacobian.row(i).lpNorm<Eigen::Infinity>()));
+            }
+        }
+    }
+}
+
+TEST_CASE("forces of contact that cannot be are refused by name", "[contact]") {
+    core::scene::Scene scene = falling_blocks(core::scene::Integrator::implicit_euler).scene;
+    const auto message = [&](const ContactForce::Of& of) {
+        const Errors errors = ContactForce(of, Over::end).check(built(scene), 3);
+        return errors.empty() ? std::string() : errors[0].message;
+    };
+    CHECK(message({1, 2, Vector3::Zero()}).empty());
+    CHECK_FALSE(message({3, 1, Vector3::Zero()}).empty());
+    scene.bodies[1].group = scene.bodies[2].group = 4;
+    CHECK(message({1, 2, Vector3::Zero()}).find("never collide") != std::string::npos);
+    scene.friction.mu = 0.3;
+    CHECK(message({1, std::nullopt, Vector3::Zero()}).find("friction acts between \"lower\" and \"plate\"") != std::string::npos);
 }
 
 TEST_CASE("quantities of steps that cannot be are refused by name", "[joints]") {

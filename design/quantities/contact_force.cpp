@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/contact_force.hpp"
+
+#include "fettle/adjoint/stepper/contact_forces.hpp"
+
+namespace fettle::design::quantities {
+
+using description::Seeds;
+using description::Simulated;
+
+std::vector<double> ContactForce::series(const Simulated& s) const {
+    std::vector<double> out;
+    for (const Vector3& force : adjoint::stepper::contact_forces(s.model, s.trajectory, {of_.body, of_.other}))
+        out.push_back(of_.axis.isZero(0) ? force.norm() : of_.axis.dot(force));
+    return out;
+}
+
+void ContactForce::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
+    std::vector<Vector3> along(weights.size(), of_.axis);
+    if (of_.axis.isZero(0)) {
+        const std::vector<Vector3> forces = adjoint::stepper::contact_forces(s.model, s.trajectory, {of_.body, of_.other});
+        for (size_t t = 0; t < along.size(); ++t) along[t] = forces[t].isZero(0) ? Vector3(Vector3::Zero()) : forces[t].normalized();
+    }
+    for (size_t t = 0; t < along.size(); ++t) along[t] *= weights[t];
+    adjoint::stepper::add_contact_force_seeds(s.model, s.trajectory, {of_.body, of_.other}, along, seeds);
+}
+
+Errors ContactForce::check(const core::model::Model& model, int steps) const {
+    Errors errors = check_steps(steps);
+    for (const int body : {of_.body, of_.other.value_or(of_.body)})
+        for (const core::base::Error& error : description::check_body(model, body)) errors.push_back(error);
+    if (!errors.empty()) return errors;
+    bool touches = false;
+    for (int other = 0; other < static_cast<int>(model.bodies.size()); ++other) {
+        if ((of_.other && other != *of_.other) || !may_collide(model, of_.body, other)) continue;
+        touches = true;
+        if (model.friction.rounds == 0 || !(friction_coefficient(model, of_.body, other) > 0)) continue;
+        errors.push_back({ErrorCode::unsupported, "",
+                          "friction acts between \"" + model.bodies[static_cast<size_t>(of_.body)].name + "\" and \"" +
+                              model.bodies[static_cast<size_t>(other)].name +
+                              "\": a force of contact is a quantity of a design without friction only"});
+        return errors;
+    }
+    if (!touches)
+        errors.push_back({ErrorCode::inconsistent, "",
+                          "\"" + model.bodies[static_cast<size_t>(of_.body)].name +
+                              (of_.other ? "\" and \"" + model.bodies[static_cast<size_t>(*of_.other)].name + "\" never collide"
+                                         : std::string("\" collides with nothing"))});
+    return errors;
+}
+
+}  // namespace fettle::design::quantities

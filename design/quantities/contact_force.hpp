@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// The resultant force of contact on a body at each step's end, of one other body or of all: barrier and damping
+/// (adjoint/stepper/contact_forces.hpp). With every integrator. Refused where friction acts between them: its share hangs on rounds within
+/// the step.
+#pragma once
+
+#include <optional>
+
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+class ContactForce : public StepSeries {
+public:
+    struct Of {
+        int body = 0;                    ///< what the force acts on
+        std::optional<int> other;        ///< what presses; nullopt: all
+        Vector3 axis = Vector3::Zero();  ///< the component along this unit vector, world; 0: the magnitude
+    };
+    ContactForce(const Of& of, Over over) : StepSeries(over), of_(of) {}
+
+    const Of& of() const { return of_; }
+    Dimension dimension() const override { return Dimension::force; }
+    /// A body that is not there, the same twice, two that never touch, friction between them.
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    Of of_;
+};
+
+}  // namespace fettle::design::quantities
