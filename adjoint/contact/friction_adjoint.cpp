@@ -30,6 +30,7 @@ struct Lagged {
     Vector3 cross_1 = Vector3::Zero(), cross_2 = Vector3::Zero();  // dc/de1, dc/de2
     std::array<Vector3, 2> r{};                                    // r_a
     Matrix2 l = Matrix2::Identity();                               // K = l l^T
+    const std::vector<core::contact::AreaShare>* of_weight = nullptr;
 };
 
 void find_free_directions(Lagged& g) {
@@ -197,12 +198,14 @@ Matrix34 motion_of(const Vector6& lambda, const Matrix3& rotation) {
 // Calls visit(list, lagged, sliding) for each contact that has friction.
 template <class Visit>
 void for_each_contact(const FrictionAtPose& at, const Visit& visit) {
+    std::size_t place = 0;  // in the order of all contacts
     for (const BodyPairContacts& list : at.lag.contacts.pairs) {
         const double mu = friction_coefficient(at.model, list.first, list.second);
-        if (!(mu > 0)) continue;
         for (const ContactPair& pair : list.contacts) {
-            if (!(normal_force(pair, at.parameters) > 0)) continue;
-            const Lagged g = lagged(at, list, pair);
+            const std::size_t here = place++;
+            if (!(mu > 0) || !(normal_force(pair, at.parameters) > 0)) continue;
+            Lagged g = lagged(at, list, pair);
+            if (at.model.area_weighted) g.of_weight = &at.lag.areas.shares[here];
             visit(list, g, sliding(at, list, g, mu));
         }
     }
@@ -226,6 +229,7 @@ void subtract_friction_adjoint(const FrictionAtPose& at, const std::vector<std::
                 slide.moved_first.leftCols<3>().transpose() * moved_bar + v_first.leftCols<3>().transpose() * slide.force();
             lag_bar.point_second =
                 -(slide.moved_second.leftCols<3>().transpose() * moved_bar + v_second.leftCols<3>().transpose() * slide.force());
+            if (g.of_weight != nullptr) add_weight_gradient(*g.of_weight, -lag_bar.force * g.force / g.pair.weight, bar.areas_bar[s]);
             const VertexBars vertices = lag_adjoint(g, lag_bar);
             for (int i = 0; i < 4; ++i) {
                 const auto body = static_cast<std::size_t>(g.body[i]);
@@ -248,7 +252,8 @@ void add_friction_tangent(const FrictionAtPose& at, const FrictionTangent& dot, 
             X_dot[i] = direction.bodies[body].vertices_dot.col(g.pair.vertex[i]);
             x_dot[i] = dot.lag_poses_dot[body] * g.X[i].homogeneous() + at.lag.poses[body].rotation * X_dot[i];
         }
-        const LagParts change = lag_tangent(g, x_dot, X_dot);
+        LagParts change = lag_tangent(g, x_dot, X_dot);
+        if (g.of_weight != nullptr) change.force += weight_tangent(*g.of_weight, dot.areas_dot) * g.force / g.pair.weight;
         const Eigen::Vector4d first = g.point_first.homogeneous(), second = g.point_second.homogeneous();
         const Vector3 moved_dot = (dot.poses_dot[list.first] - dot.slip_reference_dot[list.first]) * first -
                                   (dot.poses_dot[list.second] - dot.slip_reference_dot[list.second]) * second +

@@ -11,7 +11,8 @@
 ///   A_a . dx = r_a . sum w_i dx_i + r . sum w'_a,i dx_i,   K dbeta = -A . dx,   dw_i = sum_a w'_a,i dbeta_a,
 ///   dp_a = sum (w_i dX_i + dw_i X_i),   dn = (1 - n n^T) (sum w_i dx_i + sum_a r_a dbeta_a) / d,
 ///   lambda = -2 factor w m(c, eps) b'(d^2 - dmin^2) d.
-/// A contact's multiplicity w is constant. Derivatives are those of the features that were closest.
+/// A contact's weight w is a multiplicity, which is constant, or follows from the areas (area_weights_adjoint.hpp): dlambda/dw = lambda/w.
+/// Derivatives are those of the features that were closest.
 #pragma once
 
 #include <vector>
@@ -24,6 +25,7 @@ namespace fettle::adjoint::contact {
 struct LaggedContacts {
     std::vector<core::kinematics::Pose> poses;
     core::contact::ContactSet contacts;
+    core::contact::ContactAreas areas;  ///< of the contacts, if the barrier is area-weighted
 };
 
 /// Friction with that lag, acting at other poses.
@@ -40,7 +42,8 @@ struct FrictionAtPose {
 struct FrictionAdjoint {
     std::vector<std::vector<Matrix34>>& slip_reference_bar;
     std::vector<std::vector<Matrix34>>& lag_poses_bar;
-    std::vector<ModelGradient>& model_bar;  ///< vertices and coefficients
+    std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted
+    std::vector<ModelGradient>& model_bar;            ///< vertices and coefficients
 };
 
 /// Subtracts dr/d(lag, slip references, vertices, coefficients) for every seed s, with the motion lambda[s][body] = (dq, phi).
@@ -51,6 +54,7 @@ struct FrictionTangent {
     const std::vector<Matrix34>& poses_dot;
     const std::vector<Matrix34>& slip_reference_dot;
     const std::vector<Matrix34>& lag_poses_dot;
+    const std::vector<AreaChange>& areas_dot;
 };
 
 /// Adds dE/dP (3 x 4 per body) of friction and its change along these and `direction`.

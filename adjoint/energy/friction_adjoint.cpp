@@ -9,22 +9,19 @@ contact::FrictionAtPose friction_at(const StepEnd& at) {
     return {*problem.model, *at.lag, at.poses, problem.slip_reference, problem.barrier, problem.friction.slip_bound};
 }
 
-Errors check_friction(const core::model::Model& model) {
-    if (!model.area_weighted || !has_friction(model)) return {};
-    Errors errors{refusal("friction", "friction beside the area-weighted barrier")};
-    errors.back().message += "; switch `area_weighted` off";
-    return errors;
-}
+Errors check_friction(const core::model::Model&) { return {}; }
 
 void subtract_reverse_of_friction(const StepEnd& at, const std::vector<std::vector<Vector6>>& motion, StepGradient& step_bar,
                                   std::vector<ModelGradient>& model_bar) {
     if (at.lag == nullptr) return;
-    contact::subtract_friction_adjoint(friction_at(at), motion, {step_bar.slip_reference_bar, step_bar.lag_poses_bar, model_bar});
+    contact::subtract_friction_adjoint(friction_at(at), motion,
+                                       {step_bar.slip_reference_bar, step_bar.lag_poses_bar, step_bar.areas_bar, model_bar});
 }
 
 void add_tangent_of_friction(const StepEnd& at, const StepTangent& step, const ModelTangent& direction, contact::PoseGradientTangent& out) {
     if (at.lag == nullptr) return;
-    contact::add_friction_tangent(friction_at(at), {step.poses_dot, step.slip_reference_dot, step.lag_poses_dot}, direction, out);
+    contact::add_friction_tangent(friction_at(at), {step.poses_dot, step.slip_reference_dot, step.lag_poses_dot, step.areas_dot}, direction,
+                                  out);
 }
 
 }  // namespace

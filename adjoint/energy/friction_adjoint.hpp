@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Friction (core/energy/friction.hpp) in what a solve holds constant: adjoint/contact does the work. Refused beside an area-weighted
-/// barrier, whose normal forces hang on the areas too.
+/// Friction (core/energy/friction.hpp) in what a solve holds constant: adjoint/contact does the work.
 #pragma once
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"

@@ -42,8 +42,7 @@ public:
         end_.assign(seeds.size(), std::vector<Matrix34>(bodies, Matrix34::Zero()));
         start_ = before_ = end_;
         velocity_end_ = velocity_start_ = velocity_before_ = acceleration_end_ = acceleration_start_ = end_;
-        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = step_bar_.lag_poses_bar = end_;
-        step_bar_.start_bar = step_bar_.before_bar = end_;
+        step_bar_.pose_hat_bar = step_bar_.slip_reference_bar = step_bar_.start_bar = step_bar_.before_bar = step_bar_.lag_poses_bar = end_;
         step_bar_.moments_bar.assign(seeds.size(), std::vector<Matrix4>(bodies, Matrix4::Zero()));
         step_bar_.areas_bar.resize(seeds.size());
         for (auto& of_seed : step_bar_.areas_bar)
@@ -150,15 +149,16 @@ private:
 
     // Through the rounds of friction, last to first: each hands back what it owes to where the one before ended.
     Errors step_back(int t) {
-        const StepRounds rounds(model_, trajectory_, t, history_);
+        const StepRounds rounds(model_, trajectory_, t, history_, std::move(known_));
+        known_ = rounds.at_start();
         for (auto* bars : {&step_bar_.pose_hat_bar, &step_bar_.slip_reference_bar, &step_bar_.start_bar, &step_bar_.before_bar})
             set_zero(*bars);
-        if (is_newmark()) rates_back(t);
         for (int round = rounds.count(); round > 0; --round) {
             const bool is_last = round == rounds.count();
             const LinearisedStep step = rounds.linearise(round, solver_);
             if (Errors errors = solver_.factorise(trajectory_, t, step); !errors.empty()) return errors;
             if (is_last && is_bdf2()) velocity_back(step);
+            if (is_last && is_newmark()) rates_back(t);
             if (!round_back(t, step, is_last)) return StepSolver::unsolved(trajectory_, t);
             if (rounds.is_fixed_point()) {
                 if (Errors errors = fixed_point_back(t, step); !errors.empty()) return errors;
@@ -169,17 +169,22 @@ private:
                 add_lag_to_start();
             }
         }
+        start_back(t, rounds.problem());
+        return {};
+    }
+
+    // What the step's constants follow from.
+    void start_back(int t, const core::energy::StepProblem& problem) {
         for (std::size_t s = 0; s < seeds_.size(); ++s)
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 start_[s][i] += step_bar_.start_bar[s][i];
                 if (is_bdf2())
-                    bdf2_back(t, s, i, rounds.problem().slip_time);
+                    bdf2_back(t, s, i, problem.slip_time);
                 else if (is_newmark())
-                    newmark_back(s, i, rounds.problem().weight);
+                    newmark_back(s, i, problem.weight);
                 else
                     pose_hat_back(t, s, i);
             }
-        return {};
     }
 
     // One solve, from end_ to lag_poses_bar and the step's constants.
@@ -369,9 +374,10 @@ private:
     std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]
     std::vector<std::vector<Matrix34>> velocity_end_, velocity_start_, velocity_before_;  // the same of V (BDF2, Newmark)
     std::vector<std::vector<Matrix34>> acceleration_end_, acceleration_start_;            // of A (Newmark)
-    energy::StepGradient step_bar_;  // the constants' of the step at hand, the lag's of the round; the moments' and areas' of all
+    energy::StepGradient step_bar_;  // of the step at hand, the lag's of the round; moments' and areas' of all
     std::vector<std::vector<Vector6>> y_bar_, lambda_, motion_;
-    std::vector<VectorX> mu_;  // [seed]: adjoint variable of the rows
+    std::shared_ptr<const contact::LaggedContacts> known_;  // with friction: at the start of the step that was gone through last
+    std::vector<VectorX> mu_;                               // [seed]: adjoint variable of the rows
     std::vector<Matrix3> left_jacobian_;
 };
 

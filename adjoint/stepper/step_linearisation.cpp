@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -155,7 +156,8 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
 // Of an area-weighted barrier.
 Errors StepSolver::check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     const core::model::Model& model = *step.problem.model;
-    const core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
+    core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
+    if (areas.equal.empty() && step.lag) areas = step.lag->areas;
     if (areas.equal.empty()) return {};
     const core::contact::EqualAreas& e = areas.equal.front();
     Errors errors{energy::refusal("step " + std::to_string(t),
@@ -179,7 +181,8 @@ Errors StepSolver::unsolved(const core::stepper::Trajectory& trajectory, int t) 
 Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t) {
     const double time = trajectory.time_start + t * trajectory.timestep;
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
-             "the step at t = " + std::to_string(time) + " s has no derivative: friction jams, its normal forces hang on themselves"}};
+             "the step at t = " + std::to_string(time) +
+                 " s has no derivative: friction jams, its normal forces hang on themselves and do not settle"}};
 }
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
@@ -282,8 +285,9 @@ core::energy::StepProblem problem_at(const core::model::Model& model, const core
     return problem;
 }
 
-StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history)
-    : problem_(problem_at(model, trajectory, t, history)) {
+StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
+                       std::shared_ptr<const contact::LaggedContacts> known)
+    : problem_(problem_at(model, trajectory, t, history)), known_(std::move(known)) {
     const core::stepper::TrajectoryStep& step = trajectory.steps[t];
     const bool frictional = energy::has_friction(model);
     is_fixed_point_ = frictional && model.integrator == core::scene::Integrator::quasi_static;
@@ -300,9 +304,18 @@ StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Tra
 
 void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses) {
     const core::model::Model& model = *problem_.model;
-    core::contact::ContactSet contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
-    ends_.push_back({std::move(points),
-                     std::make_shared<const contact::LaggedContacts>(contact::LaggedContacts{std::move(poses), std::move(contacts)})});
+    const auto same = [](const core::kinematics::Pose& a, const core::kinematics::Pose& b) {
+        return a.position == b.position && a.rotation == b.rotation;
+    };
+    if (known_ && std::equal(poses.begin(), poses.end(), known_->poses.begin(), known_->poses.end(), same)) {
+        ends_.push_back({std::move(points), known_});
+        return;
+    }
+    const core::contact::Candidates candidates = core::contact::find_candidates(model, poses, 0);
+    contact::LaggedContacts at{std::move(poses), {}, {}};
+    at.contacts = core::contact::find_contacts(model, candidates, at.poses);
+    if (model.area_weighted) at.areas = contact_areas(model, candidates, at.poses);
+    ends_.push_back({std::move(points), std::make_shared<const contact::LaggedContacts>(std::move(at))});
 }
 
 LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
@@ -332,6 +345,16 @@ LinearisedStep linearise_step(const core::model::Model& model, const core::stepp
 
 namespace {
 
+bool agree(const core::model::Model& model, const std::vector<core::kinematics::ChartPoint>& a,
+           const std::vector<core::kinematics::ChartPoint>& b) {
+    constexpr double settled = 1e-9;  // of the scene's size
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double turned = model.bodies[i].radius * (a[i].rotation_vector - b[i].rotation_vector).norm();
+        if (!((a[i].position - b[i].position).norm() + turned <= settled * model.diagonal)) return false;
+    }
+    return true;
+}
+
 // One step says enough.
 Errors check_friction_rounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     if (!energy::has_friction(model)) return {};
@@ -341,6 +364,9 @@ Errors check_friction_rounds(const core::model::Model& model, const core::steppe
             return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
                      "the trajectory does not hold where its rounds of friction ended: only one that is in memory, and was simulated for "
                      "gradients, does"}};
+        const bool is_quasi_static = model.integrator == core::scene::Integrator::quasi_static;
+        if (is_quasi_static && step.friction_rounds.size() > 1 && !agree(model, step.friction_rounds.front(), step.friction_rounds.back()))
+            return StepSolver::unsettled(trajectory, static_cast<int>(t));
         if (step.fractions.empty()) continue;
         Errors errors{energy::refusal("step " + std::to_string(t), "friction in a step in which a prescribed motion changes")};
         errors.back().message += " yet; let tables and stops fall on whole steps";

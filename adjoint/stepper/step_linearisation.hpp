@@ -65,8 +65,8 @@ public:
     /// Of the whole step, where a solution is none.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
-    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that `most_repeats` solves leave more than
-    /// `repeated` of what they had at first.
+    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that the simulation's rounds have not settled, or
+    /// `most_repeats` solves leave more than `repeated` of what they had at first.
     static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;
@@ -101,23 +101,29 @@ struct SweepHistory {
 };
 SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1]; without friction.
+/// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1].
 core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                      const SweepHistory& history);
 
-/// The rounds of friction of step t: each a solve of its own, with the normal forces and tangents of where the one before ended, the first
-/// with those of the step's start. Without friction there is one.
+/// The rounds of friction of step t, which leads from trajectory.poses[t] to poses[t + 1]: each a solve of its own, with the normal forces
+/// and tangents of where the one before ended, the first with those of the step's start. Without friction there is one.
 class StepRounds {
 public:
-    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history);
+    /// @param known   contacts at the step's start or end, where they are known: those of the step before or after; else they are found.
+    StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
+               std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
     int count() const { return static_cast<int>(ends_.size()) - 1; }
 
     /// Quasi-static steps with friction: one round, whose lag is that of its own end (solver/newton.hpp).
     bool is_fixed_point() const { return is_fixed_point_; }
 
-    /// What all rounds have in common.
+    /// What all of them minimise, without friction.
     const core::energy::StepProblem& problem() const { return problem_; }
+
+    /// Contacts where friction was taken from for the first round (null without friction), and at the step's end.
+    const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
+    const std::shared_ptr<const contact::LaggedContacts>& at_end() const { return ends_.back().at; }
 
     /// @param round  1 .. count(); the last is the step's end.
     LinearisedStep linearise(int round, StepSolver& solver) const;
@@ -130,18 +136,19 @@ private:
     void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses);
 
     core::energy::StepProblem problem_;
+    std::shared_ptr<const contact::LaggedContacts> known_;
     std::vector<End> ends_;  // the first is where friction was taken from for the first round; empty without friction
     bool is_fixed_point_ = false;
 };
 
-/// The last round of step t.
+/// The last round of that step.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const SweepHistory& history, StepSolver& solver);
 
-/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy: friction beside the area-weighted barrier), bodies
-/// whose mass is not that of their mesh and density, scripts of poses, with friction a motion that changes within a step (all unsupported);
-/// with friction a trajectory that does not hold where its rounds ended (inconsistent); a step that turns a body by a full revolution or
-/// more, where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
+/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
+/// density, scripts of poses, with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not
+/// hold where its rounds ended, or in which they have not settled (inconsistent); a step that turns a body by a full revolution or more,
+/// where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

@@ -172,7 +172,8 @@ private:
     };
 
     Errors step(int t) {
-        const StepRounds rounds(model_, trajectory_, t, history_);
+        const StepRounds rounds(model_, trajectory_, t, history_, std::move(known_));
+        known_ = rounds.at_end();
         StepChange change;
         for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
             change.pose_hat_dot.push_back(pose_hat_change(t, i));
@@ -284,7 +285,8 @@ private:
     std::vector<Matrix34> accelerations_dot_;                         // Newmark
     std::vector<std::vector<Vector6>> out_;
     std::vector<VectorX> multipliers_;
-    VectorX multiplier_dot_;  // of the round at hand
+    VectorX multiplier_dot_;                                // of the round at hand
+    std::shared_ptr<const contact::LaggedContacts> known_;  // at the end of the step before
 };
 
 }  // namespace

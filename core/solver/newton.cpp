@@ -34,7 +34,8 @@ constexpr int stagnant_iterations = 12;        // without a smaller residual, wh
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
 constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
-constexpr double settled_motion = 1e-13;     // of the scene's size: ends of rounds that agree to rounding
+constexpr int most_settling_rounds = 100;    // when they are to agree to rounding, for a gradient
+constexpr double settled_motion = 1e-13;     // of the scene's size: that
 constexpr double friction_resolution = 0.1;  // of eps_v
 constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjoint's accuracy
 
@@ -63,7 +64,7 @@ public:
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
-            if (frictional_ && options_.keep_rounds) result_.round_ends.push_back(at_.points);
+            if (frictional_ && options_.keep_rounds) keep_round();
         } while (frictional_ && another_round());
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
@@ -140,11 +141,17 @@ private:
     }
 
     // The first lag of a cautious step is that of a point on the way, which is no solution of anything: a derivative is that of normal
-    // forces which are those of the end. (Where they never agree the balance tells, with those of the end.)
+    // forces which are those of the end. Then the last two ends tell whether they are.
     bool is_fixed_point() const {
         const auto& ends = result_.round_ends;
-        return result_.friction_rounds >= most_friction_rounds ||
-               (ends.size() > 1 && is_within(ends[ends.size() - 2], settled_motion * model_.diagonal));
+        return result_.friction_rounds >= most_settling_rounds ||
+               (ends.size() > 1 && is_within(ends.front(), settled_motion * model_.diagonal));
+    }
+
+    void keep_round() {
+        auto& ends = result_.round_ends;
+        ends.push_back(at_.points);
+        if (options_.caution > 0 && ends.size() > 2) ends.erase(ends.begin());
     }
 
     bool is_within(const std::vector<ChartPoint>& end, double enough) const {

@@ -28,7 +28,7 @@ enum class NewtonStatus { converged, blocked, not_held, not_converged, interrupt
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
     int max_iterations = 3000;
-    bool keep_rounds = false;  ///< of friction: where each one ends. With caution they go on until the ends agree to rounding
+    bool keep_rounds = false;  ///< of friction: where each one ends. With caution they go on until the ends of two agree to rounding
     bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level: "converged" has at most 1e-8
     double caution =
         0;  ///< > 0: begin with this shift of the Hessian in units of the inertia, and let it fall as steps do what they promise

@@ -17,8 +17,8 @@ namespace fettle::core::stepper {
 struct TrajectoryStep {
     std::vector<std::vector<kinematics::ChartPoint>> nodes;  ///< [node][body]
     std::vector<double> fractions{};                         ///< [node], 0 to 1, never falling; empty: evenly, k/(number of segments)
-    /// [round][body]: where each round of friction ended, the last at the step's end. Kept by simulations for gradients of scenes with
-    /// friction (the adjoint goes back through the rounds), and in memory only; empty: not kept.
+    /// [round][body]: where each round of friction ended, the last at the step's end; of a quasi-static step the last two. Kept by
+    /// simulations for gradients of scenes with friction (the adjoint goes back through the rounds), and in memory only; empty: not kept.
     std::vector<std::vector<kinematics::ChartPoint>> friction_rounds{};
 };
 

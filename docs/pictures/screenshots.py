@@ -12,8 +12,6 @@ import sys
 import tempfile
 import zlib
 
-import numpy as np
-
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path.insert(0, str(ROOT / "tests/design/report"))
@@ -62,6 +60,8 @@ SHOTS = {
 
 def with_palette(page, png):
     """The picture with its 256 most frequent colours, the others as the nearest of them: a third of the bytes. The browser decodes it."""
+    import numpy as np  # here, so that what pictures there are can be asked without it
+
     width, height, text = page.value(f"""(async () => {{
         const image = new Image(); image.src = "data:image/png;base64,{base64.b64encode(png).decode()}"; await image.decode();
         const canvas = document.createElement("canvas"); canvas.width = image.width; canvas.height = image.height;

@@ -102,6 +102,7 @@ Vector6 lag_gradient(const Matrix34& bar, const Matrix3& rotation) {
 
 struct Bars {
     std::vector<std::vector<Matrix34>> slip{{2, Matrix34::Zero()}}, lag{{2, Matrix34::Zero()}};
+    std::vector<std::vector<AreaChange>> areas;
     std::vector<ModelGradient> model;
 };
 
@@ -125,7 +126,7 @@ double forward_along(const Scene& scene, const FrictionAtPose& at, const VectorX
     }
     direction.friction_dot[{0, 1}] = d[mu_at];
     PoseGradientTangent out{{2, Matrix34::Zero()}, {2, Matrix34::Zero()}};
-    add_friction_tangent(at, {{2, Matrix34::Zero()}, slip_dot, lag_dot}, direction, out);
+    add_friction_tangent(at, {{2, Matrix34::Zero()}, slip_dot, lag_dot, {}}, direction, out);
     double sum = 0;
     for (std::size_t k = 0; k < 2; ++k) sum += out.dot[k].cwiseProduct(matrix_of(motion[k], scene.poses[k].rotation)).sum();
     return sum;
@@ -147,14 +148,14 @@ Kinds check_scene(const Scene& scene) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto number = [&] { return uniform(random); };
-    const LaggedContacts lag{scene.lag_poses, contacts_of(scene.model, scene.lag_poses)};
+    const LaggedContacts lag{scene.lag_poses, contacts_of(scene.model, scene.lag_poses), {}};
     const core::contact::BarrierParameters parameters = scene.parameters();
     const FrictionAtPose at{scene.model, lag, scene.poses, scene.slip_reference, parameters, scene.model.friction.eps_v * scene.slip_time};
     std::vector<Vector6> motion(2);
     for (Vector6& m : motion) m << 0.05 * Vector3::NullaryExpr(number), Vector3::NullaryExpr(number);
     Bars bars;
     bars.model = {zero_model_gradient(scene.model, 0)};
-    subtract_friction_adjoint(at, {motion}, {bars.slip, bars.lag, bars.model});
+    subtract_friction_adjoint(at, {motion}, {bars.slip, bars.lag, bars.areas, bars.model});
     const VectorX gradient = flat(scene, bars), zero = VectorX::Zero(size);
     const auto value = [&](const VectorX& d) { return VectorX::Constant(1, residual_along(moved(scene, d), motion)); };
     for (const auto& [first, count] : {std::pair{vertices_at, lag_at}, {lag_at, slip_at}, {slip_at, mu_at}, {mu_at, size}}) {
@@ -191,13 +192,13 @@ TEST_CASE("friction follows what it was taken from: at rest", "[adjoint][contact
     Scene scene = two_boxes({0.4, 0.5, 0.3}, -0.06, 0.03, 0);
     scene.poses = scene.lag_poses;
     for (std::size_t k = 0; k < 2; ++k) scene.slip_reference[k] = pose_matrix(scene.poses[k]);
-    const LaggedContacts lag{scene.lag_poses, contacts_of(scene.model, scene.lag_poses)};
+    const LaggedContacts lag{scene.lag_poses, contacts_of(scene.model, scene.lag_poses), {}};
     const core::contact::BarrierParameters parameters = scene.parameters();
     const std::vector<Vector6> motion{Vector6::Constant(0.1), Vector6::Constant(-0.2)};
     Bars bars;
     bars.model = {zero_model_gradient(scene.model, 0)};
     subtract_friction_adjoint({scene.model, lag, scene.poses, scene.slip_reference, parameters, 1e-3}, {motion},
-                              {bars.slip, bars.lag, bars.model});
+                              {bars.slip, bars.lag, bars.areas, bars.model});
     const VectorX gradient = flat(scene, bars);
     CHECK(gradient.segment(lag_at, slip_at - lag_at).norm() == 0);  // no force: what it would be of changes nothing
     CHECK(gradient[mu_at] == 0);

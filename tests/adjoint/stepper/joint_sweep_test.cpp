@@ -178,7 +178,8 @@ std::vector<SweepScene> joint_scenes() {
             slider_crank(),
             wheels(),
             wheels(Integrator::bdf2),
-            hinged_contact()};
+            hinged_contact(),
+            rubbed(hinged_contact())};
 }
 
 core::stepper::Trajectory trajectory_of(const SweepScene& scene) { return run(scene.model, scene.steps, true).trajectory; }

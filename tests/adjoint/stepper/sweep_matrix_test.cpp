@@ -141,7 +141,7 @@ struct Rubbing {
     int rounds;
 };
 constexpr std::array rubbings{Rubbing{Integrator::implicit_euler, 0, 1e-3, 1}, Rubbing{Integrator::implicit_euler, 5e-4, 0.5, 3},
-                              Rubbing{Integrator::bdf2, 0, 0.5, 2}, Rubbing{Integrator::newmark, 0, 0.5, 1},
+                              Rubbing{Integrator::bdf2, 0, 0.5, 2}, Rubbing{Integrator::newmark, 5e-4, 0.02, 2},
                               Rubbing{Integrator::quasi_static, 0, 0.02, 1}};
 
 SweepScene scene_of(Sort sort, const Rubbing& rubbing) {
@@ -172,12 +172,14 @@ void damp(SweepScene& scene) {
     scene.model.contact_damping_time = 2e-3;
 }
 
-// Areas of contacts' elements in their weights, with and without damping.
+// Areas of contacts' elements in their weights, with and without damping, and with friction.
 std::vector<SweepScene> area_weighted_table() {
     std::vector<SweepScene> out;
     for (const Sort sort : {Sort::face, Sort::corner_of_triangle, Sort::crossing_edges, Sort::parallel_edges})
         for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark, Integrator::quasi_static}) {
             out.push_back(scene_of(sort, integrator, 0));
+            weigh_by_area(out.back());
+            out.push_back(scene_of(sort, Rubbing{integrator, 0, 0.2, 2}));
             weigh_by_area(out.back());
             if (integrator == Integrator::quasi_static) continue;
             out.push_back(out.back());

@@ -127,6 +127,20 @@ def test_loads_and_energies_have_classes(tmp_path):
     assert all(term.value != 0 for term in at.terms[:1] + at.terms[2:])
 
 
+def test_given_inertia_reaches_the_model():
+    moments = np.diag([3e-6, 4e-6, 5e-6])
+    body = fettle.Body("cube", mesh=box(0.01, 0.01, 0.01), inertial=fettle.Inertial(0.3, [1e-3, 0, 0], moments))
+    scene = fettle.Scene(bodies=[body])
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert np.array_equal(_fettle.scene_round_trip(scene).bodies[0].inertial.inertia, moments)
+    model = fettle.build_model(scene)
+    assert model.mass(0) == 0.3
+    assert np.array_equal(model.reference_points[0], [1e-3, 0, 0])
+    body.inertial.inertia = np.diag([3e-6, 4e-6, 8e-6])
+    with pytest.raises(fettle.Error, match="sum of the other two"):
+        fettle.build_model(scene)
+
+
 def test_wrong_members_are_told_by_name():
     body = fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))
     body.density = "heavy"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Moves of joints, springs, motors, loads, gravity and turns as a design file writes them.
+// Moves of joints, springs, motors, loads, gravity, friction and turns as a design file writes them.
 #include "fettle/design/reading/mechanism_move_reader.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,6 +18,8 @@ using description::MoveTarget;
 
 const char* scene = R"({
   "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.1,
+  "materials": { "steel": { "mu": 0.2 }, "brass": {} },
+  "friction": { "mu": 0.3, "pairs": [{ "a": "steel", "b": "brass", "mu": 0.1 }] },
   "bodies": [
     { "name": "arm", "density": 1000, "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 4, "size_z": 4 } } },
     { "name": "rack", "density": 1000, "position": [50, 0, 0],
@@ -83,6 +85,13 @@ TEST_CASE("moves of a mechanism: what they move, and in which unit") {
     CHECK((value.target == MoveTarget::curve_value && value.entry == 1));
     CHECK(read(R"({ "load": "pull", "force": [0, 1, 0] })", "N").target == MoveTarget::load_force);
     CHECK(read(R"({ "gravity": [0, 0, -1] })", "m/s^2").target == MoveTarget::gravity);
+    const Move pair = read(R"({ "materials": ["brass", "steel"], "mu": true, "scale": 0.5, "offset": 0.1 })", "1");
+    CHECK((pair.target == MoveTarget::pair_mu && pair.materials == std::vector<std::string>{"brass", "steel"}));
+    CHECK((pair.scale == 0.5 && pair.offset == 0.1));
+    CHECK(read(R"({ "material": "steel", "mu": true })", "1").target == MoveTarget::material_mu);
+    const Move own = read(R"({ "body": "rack", "mu": true })", "1");
+    CHECK((own.target == MoveTarget::body_mu && own.body == 1));
+    CHECK(read(R"({ "mu": true })", "1").target == MoveTarget::default_mu);
     const Move turn = read(R"({ "body": "rack", "turn": [1, 0, 0] })", "deg");
     CHECK((turn.target == MoveTarget::turn && turn.body == 1 && turn.scale == 1));
     CHECK(read(R"({ "body": "arm", "velocity": [1, 0, 0] })", "mm/s").target == MoveTarget::velocity);
@@ -96,6 +105,10 @@ TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong
           std::pair(refused(R"({ "joint": "pinion", "point_a": [1, 0, 0] })", "mm"), "`pinion` has no point"),
           std::pair(refused(R"({ "spring": "across", "point_a": [1, 0, 0], "rest": true })", "mm"), "says one thing"),
           std::pair(refused(R"({ "motor": "push", "value": 2 })", "Nm"), "no such value"),
+          std::pair(refused(R"({ "material": "brass", "mu": true })", "1"), "`brass` has no `mu`"),
+          std::pair(refused(R"({ "materials": ["steel"], "mu": true })", "1"), "two materials"),
+          std::pair(refused(R"({ "body": "arm", "material": "steel", "mu": true })", "1"), "says whose `mu`"),
+          std::pair(refused(R"({ "mu": true })", "mm"), "not a measure of what it moves"),
           std::pair(refused(R"({ "load": "pull", "force": [0, 0, 0] })", "N"), "this moves nothing"),
           std::pair(refused(R"({ "load": "pull", "force": [0, 1, 0], "offset": [1, 0, 0] })", "N"), "coefficient is 0")}) {
         CAPTURE(message);

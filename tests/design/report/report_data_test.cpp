@@ -329,6 +329,13 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(judged["margins"].is_null());  // as assembled
     CHECK(Json::parse(contents(fit + "/result.json"))["pairs"][0]["lower"] == Json(cleared.json()["pairs"][0]["lower"]));
 
+    // Of its own motion nothing is taken away but the answer; of another one everything is.
+    CHECK(run("clearance " + out + "/trajectory.json --no-report --out " + out).code <= 2);
+    CHECK_FALSE(std::filesystem::exists(out + "/report.html"));
+    for (const char* name : {"/motion.glb", "/steps.csv", "/trajectory.json"}) CHECK(std::filesystem::exists(out + name));
+    CHECK(run("clearance " + scene + " --motion --steps 7 --no-report --out " + out).code <= 2);
+    for (const char* name : {"/motion.glb", "/steps.csv"}) CHECK_FALSE(std::filesystem::exists(out + name));
+
     REQUIRE(run("simulate " + scene + " --steps 2 --no-report --out " + folder.file("bare")).code == 0);
     CHECK_FALSE(std::filesystem::exists(folder.file("bare") + "/report.html"));
     CHECK(run("report " + folder.file("nothing") + " --json").code == 3);
