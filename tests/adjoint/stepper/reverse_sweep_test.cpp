@@ -85,6 +85,23 @@ TEST_CASE("backwards and forwards agree", "[adjoint][stepper]") {
     }
 }
 
+TEST_CASE("where rounds of friction ended is kept for gradients alone", "[adjoint][stepper]") {
+    const SweepScene scene = rubbed(stack());
+    core::stepper::SimulationOptions options;
+    options.steps = 4;
+    for (const auto& step : core::stepper::simulate(scene.model, options).trajectory.steps) CHECK(step.friction_rounds.empty());
+    options.for_gradient = true;
+    const core::stepper::Simulation done = core::stepper::simulate(scene.model, options);
+    for (std::size_t t = 0; t < done.trajectory.steps.size(); ++t) {
+        const auto& rounds = done.trajectory.steps[t].friction_rounds;
+        REQUIRE(static_cast<int>(rounds.size()) == done.report.steps[t].friction_rounds);
+        for (std::size_t i = 0; i < scene.model.bodies.size(); ++i)
+            CHECK(rounds.back()[i].position == done.trajectory.poses[t + 1][i].position);
+    }
+    CHECK(done.report.steps.back().friction_rounds == 2);
+    for (const auto& step : core::stepper::simulate(stack().model, options).trajectory.steps) CHECK(step.friction_rounds.empty());
+}
+
 TEST_CASE("many seeds give what each gives alone", "[adjoint][stepper]") {
     const SweepScene scene = tilting_motor();
     const core::stepper::Trajectory trajectory = trajectory_of(scene);
