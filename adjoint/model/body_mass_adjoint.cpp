@@ -12,9 +12,8 @@ namespace fettle::adjoint::model {
 namespace {
 
 using core::model::Body;
+using core::model::least_inertia;
 using core::scene::MassKind;
-
-constexpr double least_inertia = 1e-8;  // as core/model/body_mass.cpp
 
 // What wires and points get so that they resist being turned about every axis.
 struct AddedInertia {
@@ -24,8 +23,8 @@ struct AddedInertia {
     Eigen::Vector4d first;       // M e4 without it
     Vector3 longest;             // u
 
-    AddedInertia(const Body& body, MassKind kind, double dhat, const Matrix4& unit_moments) {
-        if (kind != MassKind::length && kind != MassKind::vertex) return;
+    AddedInertia(const Body& body, double dhat, const Matrix4& unit_moments) {
+        if (body.mass_kind != MassKind::length && body.mass_kind != MassKind::vertex) return;
         const Matrix4 moments = body.density * unit_moments;
         first = moments.col(3);
         mass = first[3];
@@ -57,21 +56,16 @@ double isotropic(const Matrix4& moments) { return moments.topLeftCorner<3, 3>().
 
 }  // namespace
 
-std::optional<MassKind> mass_kind_of(const Body& body, double dhat) {
-    for (const MassKind kind : {MassKind::volume, MassKind::area, MassKind::length, MassKind::vertex}) {
-        const Matrix4 unit = core::scene::unit_moments(body.mesh, kind);
-        if (!(unit(3, 3) != 0) && body.density != 0) continue;
-        const Matrix4 moments = mass_moments(body, kind, dhat, unit);
-        if ((body.moments - moments).norm() <= 1e-9 * moments.norm()) return kind;
-    }
-    return std::nullopt;
+bool has_moments_of_mesh(const Body& body, double dhat) {
+    const Matrix4 moments = mass_moments(body, dhat);
+    return (body.moments - moments).norm() <= 1e-9 * moments.norm();
 }
 
 Errors check_masses(const core::model::Model& model) {
     Errors errors;
     for (const Body& body : model.bodies) {
         const bool is_held = std::all_of(body.prescribed.begin(), body.prescribed.end(), [](const auto& dof) { return dof.has_value(); });
-        if (is_held || body.given_mass || mass_kind_of(body, model.dhat)) continue;
+        if (is_held || body.given_mass || has_moments_of_mesh(body, model.dhat)) continue;
         errors.push_back({core::base::ErrorCode::unsupported, body.name,
                           "'" + body.name + "' cannot be differentiated: its mass is not that of its mesh and density"});
     }
@@ -80,26 +74,24 @@ Errors check_masses(const core::model::Model& model) {
 
 void mass_moments_adjoint(const Body& body, double dhat, const Matrix4& moments_bar, BodyGradient& bar) {
     if (body.given_mass || moments_bar.isZero(0)) return;
-    const std::optional<MassKind> kind = mass_kind_of(body, dhat);
-    FETTLE_ASSERT(kind.has_value(), "the body's moments are those of its mesh");
-    const Matrix4 unit = core::scene::unit_moments(body.mesh, *kind);
+    FETTLE_ASSERT(has_moments_of_mesh(body, dhat), "the body's moments are those of its mesh");
+    const Matrix4 unit = core::scene::unit_moments(body.mesh, body.mass_kind);
     Matrix4 plain_bar = moments_bar;
-    const AddedInertia added(body, *kind, dhat, unit);
+    const AddedInertia added(body, dhat, unit);
     if (added.is_any) {
         const double lacking_bar = 0.5 * isotropic(moments_bar);
         plain_bar += lacking_bar * added.moments_gradient();
         if (added.farthest >= 0) bar.vertices_bar.col(added.farthest) += lacking_bar * added.vertex_gradient(body);
     }
     bar.density_bar += plain_bar.cwiseProduct(unit).sum();
-    scene::unit_moments_adjoint(body.mesh, *kind, body.density * plain_bar, bar.vertices_bar);
+    scene::unit_moments_adjoint(body.mesh, body.mass_kind, body.density * plain_bar, bar.vertices_bar);
 }
 
 Matrix4 mass_moments_tangent(const Body& body, double dhat, const BodyTangent& dot) {
-    const std::optional<MassKind> kind = body.given_mass ? std::nullopt : mass_kind_of(body, dhat);
-    if (!kind) return Matrix4::Zero();
-    const Matrix4 unit = core::scene::unit_moments(body.mesh, *kind);
-    Matrix4 out = dot.density_dot * unit + body.density * scene::unit_moments_tangent(body.mesh, *kind, dot.vertices_dot);
-    const AddedInertia added(body, *kind, dhat, unit);
+    if (body.given_mass || !has_moments_of_mesh(body, dhat)) return Matrix4::Zero();
+    const Matrix4 unit = core::scene::unit_moments(body.mesh, body.mass_kind);
+    Matrix4 out = dot.density_dot * unit + body.density * scene::unit_moments_tangent(body.mesh, body.mass_kind, dot.vertices_dot);
+    const AddedInertia added(body, dhat, unit);
     if (!added.is_any) return out;
     double lacking_dot = added.moments_gradient().cwiseProduct(out).sum();
     if (added.farthest >= 0) lacking_dot += added.vertex_gradient(body).dot(dot.vertices_dot.col(added.farthest));

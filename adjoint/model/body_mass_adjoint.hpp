@@ -3,25 +3,21 @@
 ///   M = density U(X) + 1/2 max(lacking, 0) diag(1, 1, 1, 0),   lacking = 1e-8 m r^2 - (s_1 + s_2)
 /// with U the moments of density 1 by the body's MassKind, and of wires and points s_1 <= s_2 the smaller eigenvalues of the central second
 /// moments C, whose sum changes by tr(dC) - u . dC u, u of the largest; r is |X| of the vertex farthest away (of several the first).
-/// A model's body does not say its MassKind: it is the one that its moments are of. A given mass hangs on neither.
+/// A given mass hangs on neither.
 #pragma once
-
-#include <optional>
 
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
 
 namespace fettle::adjoint::model {
 
-/// The first kind of which the body's moments are, to 1e-9; nullopt: they are from elsewhere.
-std::optional<core::scene::MassKind> mass_kind_of(const core::model::Body& body, double dhat);
+/// The body's moments are those of its mesh, density and MassKind, to 1e-9: not from elsewhere.
+bool has_moments_of_mesh(const core::model::Body& body, double dhat);
 
 /// Bodies that move freely whose moments are none of their mesh and density (unsupported).
 Errors check_masses(const core::model::Model& model);
 
-/// Adds to the body's vertices_bar and density_bar. Contract: mass_kind_of knows the body's kind, its mass is given, or `moments_bar` is
-/// zero.
+/// Adds to the body's vertices_bar and density_bar. Contract: has_moments_of_mesh, or its mass is given, or `moments_bar` is zero.
 void mass_moments_adjoint(const core::model::Body& body, double dhat, const Matrix4& moments_bar, BodyGradient& bar);
 
 /// Change of the moments along the body's vertices_dot and density_dot; zero where the mass is given, or the moments are from elsewhere.

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/model/build_friction_adjoint.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace fettle::adjoint::model {
 namespace {
-
-// Of the pair of materials that says it; -1: none does.
-int listed_pair(const core::scene::Scene& scene, const core::scene::Body& a, const core::scene::Body& b) {
-    if (a.material.empty() || b.material.empty()) return -1;
-    const auto& pairs = scene.friction.pairs;
-    const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const core::scene::Friction::Pair& pair) {
-        return std::minmax(pair.material_a, pair.material_b) == std::minmax(a.material, b.material);
-    });
-    return found == pairs.end() ? -1 : static_cast<int>(found - pairs.begin());
-}
 
 // What a body's own coefficient is, and where its derivative goes.
 struct Own {
@@ -39,7 +28,7 @@ SceneFrictionGradient build_friction_adjoint(const core::scene::Scene& scene, co
     out.bodies.assign(scene.bodies.size(), 0);
     for (const auto& [pair, bar] : gradient) {
         const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-        if (const int listed = listed_pair(scene, scene.bodies[a], scene.bodies[b]); listed >= 0) {
+        if (const int listed = scene.friction.pair_of(scene.bodies[a].material, scene.bodies[b].material); listed >= 0) {
             out.pairs[static_cast<std::size_t>(listed)] += bar;
             continue;
         }

@@ -8,12 +8,6 @@
 #include "fettle/core/geometry/mass_moments.hpp"
 
 namespace fettle::core::model {
-namespace {
-
-constexpr double least_inertia = 1e-8;  ///< of a wire or points, about any axis, in mass times radius squared
-
-}  // namespace
-
 std::optional<Vector3> BodyMeasure::centre() const {
     if (!closed_enough) return std::nullopt;
     const Vector3 centre = unit_moments.col(3).head<3>() / unit_moments(3, 3);
@@ -35,13 +29,11 @@ Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& meas
     return 0.5 * (body.mesh.vertices.rowwise().minCoeff() + body.mesh.vertices.rowwise().maxCoeff());
 }
 
-Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat) {
-    return mass_moments(body, kind, dhat, scene::unit_moments(body.mesh, kind));
-}
+Matrix4 mass_moments(const Body& body, double dhat) { return mass_moments(body, dhat, scene::unit_moments(body.mesh, body.mass_kind)); }
 
-Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat, const Matrix4& unit_moments) {
+Matrix4 mass_moments(const Body& body, double dhat, const Matrix4& unit_moments) {
     Matrix4 moments = body.density * unit_moments;
-    if (kind != scene::MassKind::length && kind != scene::MassKind::vertex) return moments;
+    if (body.mass_kind != scene::MassKind::length && body.mass_kind != scene::MassKind::vertex) return moments;
     const double mass = moments(3, 3);
     const Vector3 first = moments.col(3).head<3>();
     const Matrix3 central = moments.topLeftCorner<3, 3>() - first * first.transpose() / mass;

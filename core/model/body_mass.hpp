@@ -25,11 +25,15 @@ BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind);
 /// one per volume) the middle of its box. [m], in the file's frame.
 Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure);
 
-/// M of a body whose mesh is relative to the reference point and whose radius is known. A straight wire does not resist being turned about
-/// itself, nor a point about anything, so that the Newton matrix would be singular: see build_model.hpp. @param dhat  [m]
-Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat);
+/// Of a wire or points, about any axis, in mass times radius squared.
+inline constexpr double least_inertia = 1e-8;
+
+/// M of a body by its mass_kind and density, whose mesh is relative to the reference point and whose radius is known. A straight wire does
+/// not resist being turned about itself, nor a point about anything, so that the Newton matrix would be singular: see build_model.hpp.
+/// @param dhat  [m]
+Matrix4 mass_moments(const Body& body, double dhat);
 
 /// The same from what its mesh has with a density of 1, which bodies of one mesh have in common.
-Matrix4 mass_moments(const Body& body, scene::MassKind kind, double dhat, const Matrix4& unit_moments);
+Matrix4 mass_moments(const Body& body, double dhat, const Matrix4& unit_moments);
 
 }  // namespace fettle::core::model

@@ -40,6 +40,7 @@ Body build_body(const scene::Body& from, const Vector3& reference_point) {
     body.type = from.type;
     body.reference_point = reference_point;
     body.density = from.density;
+    body.mass_kind = from.mass_kind;
     if (from.inertial) body.given_mass = from.inertial->mass;
     body.mesh = from.mesh;
     body.mesh.vertices.colwise() -= reference_point;
@@ -83,10 +84,9 @@ void add_masses(const scene::Scene& scene, Model& model) {
             body.moments = scene::moments_about(*scene.bodies[i].inertial, body.reference_point);
             continue;
         }
-        const scene::MassKind kind = scene.bodies[i].mass_kind;
-        const auto [entry, fresh] = unit_moments.try_emplace({body.hierarchy.get(), kind});
-        if (fresh) entry->second = scene::unit_moments(body.mesh, kind);
-        body.moments = mass_moments(body, kind, model.dhat, entry->second);
+        const auto [entry, fresh] = unit_moments.try_emplace({body.hierarchy.get(), body.mass_kind});
+        if (fresh) entry->second = scene::unit_moments(body.mesh, body.mass_kind);
+        body.moments = mass_moments(body, model.dhat, entry->second);
     }
 }
 
@@ -107,11 +107,7 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
     friction.mu = MatrixX::Zero(count, count);
     if (from.rounds == 0) return friction;
     const auto coefficient = [&](const std::pair<std::string, double>& a, const std::pair<std::string, double>& b) {
-        for (const auto& pair : from.pairs) {
-            const bool listed =
-                (pair.material_a == a.first && pair.material_b == b.first) || (pair.material_a == b.first && pair.material_b == a.first);
-            if (listed && !a.first.empty() && !b.first.empty()) return pair.mu;
-        }
+        if (const int listed = from.pair_of(a.first, b.first); listed >= 0) return from.pairs[static_cast<std::size_t>(listed)].mu;
         return a.second == b.second ? a.second : std::sqrt(a.second) * std::sqrt(b.second);
     };
     for (const auto& [a, row] : rows) {

@@ -25,7 +25,8 @@ struct Body {
     scene::BodyType type = scene::BodyType::dynamic_body;
     geometry::Mesh mesh;                        ///< vertices relative to c [m]
     Vector3 reference_point = Vector3::Zero();  ///< c in the file's frame [m]
-    double density = 0;
+    double density = 0;                         ///< per what `mass_kind` says
+    scene::MassKind mass_kind = scene::MassKind::volume;
     std::optional<double> given_mass;            ///< [kg], of a body whose mass and inertia are given: they follow from no mesh and density
     Matrix4 moments = Matrix4::Zero();           ///< M = integral of rho [X;1][X;1]^T [kg m^2, kg m, kg]; zero if not dynamic
     kinematics::Pose pose_start;                 ///< of the reference point's frame

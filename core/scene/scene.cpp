@@ -36,6 +36,14 @@ double diagonal_of(const Scene& scene, const Counts& counts) {
 
 }  // namespace
 
+int Friction::pair_of(const std::string& material_a, const std::string& material_b) const {
+    if (material_a.empty() || material_b.empty()) return -1;
+    const auto wanted = std::minmax(material_a, material_b);
+    const auto found =
+        std::find_if(pairs.begin(), pairs.end(), [&](const Pair& pair) { return std::minmax(pair.material_a, pair.material_b) == wanted; });
+    return found == pairs.end() ? -1 : static_cast<int>(found - pairs.begin());
+}
+
 double motion_value(const MotionCurve& curve, double time) {
     FETTLE_ASSERT(curve.times.size() == curve.values.size(), "a motion table needs one value per time");
     const double reached = curve.stop_time ? std::min(time, *curve.stop_time) : time;

@@ -51,7 +51,10 @@ const std::vector<std::string_view> body_keys{"name",
 // A part that a program makes: what runs it.
 MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
     MeshProgram program;
-    for (const files::JsonNode& word : node["program"].elements()) program.command.push_back(word.string().value_or(""));
+    const files::JsonNode command = node["program"];
+    for (const files::JsonNode& word : command.elements()) program.command.push_back(word.string().value_or(""));
+    if (command.is_array() && (program.command.empty() || program.command.front().empty()))
+        command.fail(ErrorCode::out_of_range, "a program's command is wanted: its name, then its arguments");
     program.directory = std::filesystem::path(scene).parent_path().string();
     program.format = node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or(program.format);
     program.unit = unit;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/scene/scene_reader.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
@@ -96,10 +95,7 @@ private:
         const auto a = read_material_name(node.require("a"), densities_), b = read_material_name(node.require("b"), densities_);
         const auto mu = node.require("mu").number(files::not_negative);
         if (!a || !b || !mu) return;
-        for (const auto& pair : scene_.friction.pairs) {
-            if (std::minmax(pair.material_a, pair.material_b) != std::minmax(*a, *b)) continue;
-            node.fail(ErrorCode::inconsistent, "`" + *a + "` and `" + *b + "` are listed already");
-        }
+        if (scene_.friction.pair_of(*a, *b) >= 0) node.fail(ErrorCode::inconsistent, "`" + *a + "` and `" + *b + "` are listed already");
         scene_.friction.pairs.push_back({*a, *b, *mu});
     }
 

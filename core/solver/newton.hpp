@@ -2,11 +2,12 @@
 /// Projected Newton for one time step, with curved CCD in its line search: every accepted point, and the path to it, is free of
 /// intersections. docs/method.md section 6.
 ///
-/// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution. Each iteration moves them by what remains,
-/// and the free ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact
-/// stops larger ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and
-/// Wright, Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere,
-/// shifted by a multiple of the inertia where that is not definite either: a matrix of finite numbers is always factorised.
+/// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution, or to 1e-9 of the scene's size where
+/// contact leaves no more (they stall, or what remains is all the gap there is). Each iteration moves them by what remains, and the free
+/// ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact stops larger
+/// ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and Wright,
+/// Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere, shifted
+/// by a multiple of the inertia where that is not definite either: a matrix of finite numbers is always factorised.
 ///
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
 /// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from

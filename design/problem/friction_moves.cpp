@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/problem/friction_moves.hpp"
 
-#include <algorithm>
-
 #include "fettle/core/base/contract.hpp"
 
 namespace fettle::design::problem {
@@ -13,14 +11,7 @@ using core::scene::Scene;
 using description::Move;
 using description::MoveTarget;
 
-// -1: the materials are not listed together.
-int pair_index(const Scene& scene, const Move& move) {
-    const auto& pairs = scene.friction.pairs;
-    const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const core::scene::Friction::Pair& pair) {
-        return std::minmax(pair.material_a, pair.material_b) == std::minmax(move.materials[0], move.materials[1]);
-    });
-    return found == pairs.end() ? -1 : static_cast<int>(found - pairs.begin());
-}
+int pair_index(const Scene& scene, const Move& move) { return scene.friction.pair_of(move.materials[0], move.materials[1]); }
 
 double coefficient_of(const Move& move, const Scene& scene) {
     switch (move.target) {

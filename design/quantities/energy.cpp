@@ -175,7 +175,8 @@ Errors Energy::check(const core::model::Model& model, int steps) const {
     if (kind_ == EnergyKind::kinetic && model.integrator == core::scene::Integrator::quasi_static)
         errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation knows no velocities, so no kinetic energy"});
     for (const Body& body : model.bodies) {
-        if (kind_ == EnergyKind::spring || !has_mass(body) || body.given_mass || adjoint::model::mass_kind_of(body, model.dhat)) continue;
+        if (kind_ == EnergyKind::spring || !has_mass(body) || body.given_mass || adjoint::model::has_moments_of_mesh(body, model.dhat))
+            continue;
         errors.push_back(
             {ErrorCode::unsupported, "",
              "the mass of body \"" + body.name + "\" is not that of its mesh and density: its energy cannot be differentiated"});

@@ -236,7 +236,8 @@ std::vector<SweepScene> masses_table() {
             tests::support::refresh(body);
             const double mass = 0.7;
             body.density = mass / core::scene::unit_moments(body.mesh, kind)(3, 3);
-            body.moments = core::model::mass_moments(body, kind, scene.model.dhat);
+            body.mass_kind = kind;
+            body.moments = core::model::mass_moments(body, scene.model.dhat);
             body.force = {2, 1, -3};
             if (integrator == Integrator::quasi_static) scene.model.proximal_weight = core::model::choose_proximal_weight(scene.model);
             if (kind == MassKind::volume && integrator == Integrator::newmark) {  // as a file gives it

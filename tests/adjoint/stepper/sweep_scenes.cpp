@@ -232,9 +232,9 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
         body.pose_start.rotation = core::kinematics::rotation(s * dot.pose_start_dot.tail<3>()) * body.pose_start.rotation;
         support::refresh(body);
         if (body.given_mass) body.moments = scene.model.bodies[i].moments;
-        if (const auto kind = fettle::adjoint::model::mass_kind_of(scene.model.bodies[i], model.dhat);
-            kind && !body.given_mass && scene.model.bodies[i].moments(3, 3) != 0)
-            body.moments = core::model::mass_moments(body, *kind, model.dhat);
+        if (!body.given_mass && scene.model.bodies[i].moments(3, 3) != 0 &&
+            fettle::adjoint::model::has_moments_of_mesh(scene.model.bodies[i], model.dhat))
+            body.moments = core::model::mass_moments(body, model.dhat);
         for (int k = 0; k < 6; ++k) {
             if (is_free(body, k)) continue;
             core::scene::MotionCurve curve;
