@@ -4,97 +4,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <limits>
-#include <nlohmann/json.hpp>
-
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/model/model.hpp"
 
 namespace fettle::design::cli {
-
-using core::clearance::PairClearance;
-using core::clearance::PairStatus;
-using Json = nlohmann::ordered_json;
-
-Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
-Json pair_json(const PairClearance& pair, const std::vector<std::string>& names) {
-    Json json;
-    json["a"] = names[static_cast<size_t>(pair.a)];
-    json["b"] = names[static_cast<size_t>(pair.b)];
-    json["minimum"] = pair.minimum;
-    json["lower"] = pair.lower;
-    json["upper"] = pair.upper;
-    json["status"] = core::clearance::to_string(pair.status);
-    json["time"] = pair.witness.time;
-    json["point_a"] = vector_json(pair.witness.point_a);
-    json["point_b"] = vector_json(pair.witness.point_b);
-    return json;
-}
-
-PairStatus overall_status(const std::vector<PairClearance>& pairs) {
-    PairStatus status = PairStatus::clear;
-    for (const PairClearance& pair : pairs) {
-        if (pair.status == PairStatus::violated) return PairStatus::violated;
-        if (pair.status == PairStatus::undecided) status = PairStatus::undecided;
-    }
-    return status;
-}
-
-Json clearance_json(const std::vector<PairClearance>& pairs, const std::vector<std::string>& names) {
-    Json json;
-    double minimum = std::numeric_limits<double>::infinity(), least = minimum;
-    json["status"] = core::clearance::to_string(overall_status(pairs));
-    Json list = Json::array();
-    for (const PairClearance& pair : pairs) {
-        minimum = std::min(minimum, pair.minimum);
-        least = std::min(least, pair.lower);
-        list.push_back(pair_json(pair, names));
-    }
-    json["minimum"] = pairs.empty() ? Json() : Json(minimum);
-    json["least"] = pairs.empty() ? Json() : Json(least);
-    json["pairs"] = list;
-    return json;
-}
-
-Json parameters_json(const description::Design& design, const VectorX& values) {
-    Json json = Json::object();
-    for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = description::from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
-    }
-    return json;
-}
-
-Json units_json(const description::Design& design) {
-    Json json = Json::object();
-    for (const description::Parameter& parameter : design.parameters) json[parameter.name] = parameter.unit.name;
-    return json;
-}
-
-Json gradient_json(const description::Design& design, const VectorX& gradient) {
-    Json json = Json::object();
-    for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = gradient[static_cast<Eigen::Index>(k)] * to_si(1, design.parameters[k].unit);
-    }
-    return json;
-}
-
-Json relations_json(const description::Design& design, const optimisers::Rows& relations) {
-    Json list = Json::array();
-    for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
-        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
-        list.push_back({{"name", relation.name},
-                        {"value", relations.values[i]},
-                        {"lower", relation.bounds.lower},
-                        {"upper", relation.bounds.upper},
-                        {"met", description::violation(relation, relations.values[i]) <= 0},
-                        {"gradient", gradient_json(design, relations.jacobian.row(i).transpose())}});
-    }
-    return list;
-}
 
 std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console) {
     std::string text;
@@ -107,19 +20,6 @@ std::string relations_text(const description::Design& design, const optimisers::
                 console.coloured(met ? "met" : "VIOLATED", met) + "\n";
     }
     return text;
-}
-
-std::vector<std::string> body_names(const core::model::Model& model) {
-    std::vector<std::string> names;
-    for (const core::model::Body& body : model.bodies) names.push_back(body.name);
-    return names;
-}
-
-std::string unit_name(double length_unit) {
-    for (const char* name : {"um", "mm", "cm", "m", "in", "ft"}) {
-        if (core::base::metres_per_unit(name).value() == length_unit) return name;
-    }
-    return "m";
 }
 
 long peak_memory_bytes() {

@@ -2,45 +2,16 @@
 /// Parts of answers that several commands share. All numbers SI unless a key says otherwise.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/clearance/clearance.hpp"
 #include "fettle/design/cli/console.hpp"
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/optimisers/problem.hpp"
 
 namespace fettle::design::cli {
 
-nlohmann::ordered_json vector_json(const Vector3& v);
-
-/// {a, b, minimum, lower, upper, status, time, point_a, point_b}
-nlohmann::ordered_json pair_json(const core::clearance::PairClearance& pair, const std::vector<std::string>& body_names);
-
-/// violated if one is; else undecided if one is; else clear.
-core::clearance::PairStatus overall_status(const std::vector<core::clearance::PairClearance>& pairs);
-
-/// {minimum, least, status, pairs}: the (smallest) required minimum, and the smallest proven bound.
-nlohmann::ordered_json clearance_json(const std::vector<core::clearance::PairClearance>& pairs, const std::vector<std::string>& body_names);
-
-/// Values by parameter name, in the parameters' own units.
-nlohmann::ordered_json parameters_json(const description::Design& design, const VectorX& values);
-/// Unit by parameter name.
-nlohmann::ordered_json units_json(const description::Design& design);
-/// Derivatives by parameter name, per unit of the parameter as the file has it.
-nlohmann::ordered_json gradient_json(const description::Design& design, const VectorX& gradient);
-
-/// Per relation {name, value, lower, upper, met, gradient}: SI, bounds null where there is none, gradients as gradient_json.
-nlohmann::ordered_json relations_json(const description::Design& design, const optimisers::Rows& relations);
 /// A line per relation, for people.
 std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console);
-
-std::vector<std::string> body_names(const core::model::Model& model);
-
-/// The unit that `length_unit` [m] is: "mm"; "m" if it is none that we know.
-std::string unit_name(double length_unit);
 
 /// Largest resident memory of this process so far [bytes].
 long peak_memory_bytes();

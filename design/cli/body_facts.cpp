@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 
 namespace fettle::design::cli {
@@ -78,7 +79,7 @@ Json parts_json(const core::model::Model& model) {
 }
 
 std::string parts_text(const core::model::Model& model) {
-    const std::string unit = unit_name(model.length_unit);
+    const std::string unit = answers::unit_name(model.length_unit);
     const double per_metre = 1 / core::base::metres_per_unit(unit).value();
     std::size_t widest = 4;
     for (const Body& body : model.bodies) widest = std::max(widest, std::min<std::size_t>(body.name.size(), 32));

@@ -9,7 +9,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_folder.hpp"
 #include "fettle/design/cli/clearance_ranges.hpp"
@@ -201,7 +201,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     if (baseline) compare_with(*std::move(baseline), report);
-    const std::string unit = unit_name(subject->model.length_unit);
+    const std::string unit = answers::unit_name(subject->model.length_unit);
     Errors errors;
     if (!options.csv.empty()) errors = core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
     if (errors.empty() && !options.certificate.empty()) errors = write_proof(options.certificate, certificate, *subject);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/report_made.hpp"
 
@@ -33,17 +34,17 @@ Errors write_folder(const ClearanceFolder& folder, report::Motion motion, const 
     const std::filesystem::path file = std::filesystem::path(folder.out) / "trajectory.json";
     std::error_code ignored;
     if (std::filesystem::equivalent(folder.judged, file, ignored)) {
-        forget_answer(folder.out);
+        answers::forget_answer(folder.out);
     } else {
         const Result<std::string> kept = keep_longer_run(file, motion.trajectory.steps.size());
         if (!kept) return kept.errors();
         if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-        forget_motion(folder.out);
+        answers::forget_motion(folder.out);
         const Errors errors = core::records::write_trajectory(file, motion.trajectory, motion.model, motion.scene_path);
         if (!errors.empty()) return errors;
     }
     answer["out"] = folder.out;
-    if (const Errors errors = write_result(folder.out, answer, common); !errors.empty()) return errors;
+    if (const Errors errors = answers::write_result(folder.out, answer, common.command); !errors.empty()) return errors;
     if (!folder.no_report) leave_report(folder.out, common, console, answer, told, std::move(motion));
     return {};
 }

@@ -13,6 +13,7 @@
 #include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -138,8 +139,8 @@ Json pose_at(const Model& model, const JointRanges& ranges, const RangeClearance
     const core::kinematics::Pose pose = pose_at_witness(model, ranges, pair, body);
     const Vector3 place = core::kinematics::world_position(pose, -model.bodies[static_cast<size_t>(body)].reference_point);
     Json rotation = Json::array();
-    for (int row = 0; row < 3; ++row) rotation.push_back(vector_json(pose.rotation.row(row).transpose()));
-    return {{"position", vector_json(place)}, {"rotation", rotation}};
+    for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
+    return {{"position", answers::vector_json(place)}, {"rotation", rotation}};
 }
 
 Json feature_json(core::clearance::Primitive kind, int index) {
@@ -169,8 +170,8 @@ Json row_json(const RangeRow& row, const Model& model, const JointRanges& ranges
     add_change(json, row.change);
     if (!measured) return json;
     json["gap"] = least.upper - least.lower;
-    json["point_a"] = vector_json(least.witness.point_a);
-    json["point_b"] = vector_json(least.witness.point_b);
+    json["point_a"] = answers::vector_json(least.witness.point_a);
+    json["point_b"] = answers::vector_json(least.witness.point_b);
     json["pose_a"] = pose_at(model, ranges, least, least.a);
     json["pose_b"] = pose_at(model, ranges, least, least.b);
     json["witness"] = {{"feature_a", feature_json(least.witness.kind_a, least.witness.primitive_a)},
@@ -258,7 +259,7 @@ std::string explained_row(const RangeRow& row, const Model& model, const JointRa
 }
 
 std::string ranges_text(const RangeReport& report, const Model& model, const JointRanges& ranges, int explain, const Console& console) {
-    const std::string unit = unit_name(model.length_unit);
+    const std::string unit = answers::unit_name(model.length_unit);
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(report.tolerance / model.length_unit) - 1e-9)), 0, 9);
     const RoundedLengths lengths(unit, decimals);
     size_t width = 4;
@@ -343,7 +344,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
     report.tolerance = certify.tolerance;
     if (question.baseline) compare_with(*std::move(question.baseline), report);
     if (!question.csv.empty()) {
-        const std::string table = ranges_csv(report, *ranges, unit_name(loaded->model.length_unit));
+        const std::string table = ranges_csv(report, *ranges, answers::unit_name(loaded->model.length_unit));
         if (const Errors errors = core::files::write_file_atomically(question.csv, table); !errors.empty())
             return console.input_errors(errors);
     }

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/design/cli/answers.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 
 namespace fettle::design::cli {
 
@@ -100,8 +100,8 @@ double share(const ReportedPair& pair) {
 
 Json pose_json(const core::kinematics::Pose& pose) {
     Json rotation = Json::array();
-    for (int row = 0; row < 3; ++row) rotation.push_back(vector_json(pose.rotation.row(row).transpose()));
-    return {{"position", vector_json(pose.position)}, {"rotation", rotation}};
+    for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
+    return {{"position", answers::vector_json(pose.position)}, {"rotation", rotation}};
 }
 
 const char* word(core::clearance::Primitive primitive) {
@@ -113,8 +113,8 @@ Json witness_json(const Witness& w) {
     Json json{{"time", w.time}, {"step", w.step}, {"segment", w.segment}, {"s", w.s}};
     json["feature_a"] = {{"kind", word(w.kind_a)}, {"index", w.primitive_a}};
     json["feature_b"] = {{"kind", word(w.kind_b)}, {"index", w.primitive_b}};
-    json["point_a"] = vector_json(w.point_a);
-    json["point_b"] = vector_json(w.point_b);
+    json["point_a"] = answers::vector_json(w.point_a);
+    json["point_b"] = answers::vector_json(w.point_b);
     return json;
 }
 
@@ -122,8 +122,8 @@ Json witness_json(const Witness& w) {
 void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
     const PairClearance& least = pair.least;
     json["time"] = least.is_clash() ? least.clash_time : least.witness.time;
-    json["point_a"] = vector_json(least.witness.point_a);
-    json["point_b"] = vector_json(least.witness.point_b);
+    json["point_a"] = answers::vector_json(least.witness.point_a);
+    json["point_b"] = answers::vector_json(least.witness.point_b);
     json["gap"] = least.upper - least.lower;
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
@@ -262,7 +262,7 @@ void compare_with(Baseline baseline, ClearanceReport& report) {
 }
 
 Json report_json(const ClearanceReport& report, const Subject& subject) {
-    const std::vector<std::string> names = body_names(subject.model);
+    const std::vector<std::string> names = answers::body_names(subject.model);
     double minimum = std::numeric_limits<double>::infinity(), least = minimum;
     Json list = Json::array();
     int unmeasured = 0;

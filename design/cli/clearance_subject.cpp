@@ -14,6 +14,7 @@
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step_count.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
@@ -76,7 +77,7 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
             formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
                       "goes round an "
                       "axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
-                      read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, unit_name(unit_length).c_str()));
+                      read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, answers::unit_name(unit_length).c_str()));
     }
     return {};
 }
@@ -99,7 +100,7 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
     subject.notes.push_back(
         formatted("--kinematic: joints and motors are met at every node, each step in %d; between nodes, where bounds are "
                   "of the path as stored, joints part by at most %.2g %s",
-                  followed->parts, followed->joint_gap / unit, unit_name(unit).c_str()));
+                  followed->parts, followed->joint_gap / unit, answers::unit_name(unit).c_str()));
     mark_as_scripted(subject);
     return {};
 }

@@ -9,6 +9,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
@@ -131,7 +132,8 @@ Instant instant_of(const DrawArguments& options, const Subject& subject) {
 
 exports::PictureMarker marker_of(const PairClearance& pair, const core::model::Model& model) {
     const auto name = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].name; };
-    const std::string distance = pair.is_clash() ? "clash" : core::base::format_length(pair.upper, unit_name(model.length_unit), 3);
+    const std::string distance =
+        pair.is_clash() ? "clash" : core::base::format_length(pair.upper, answers::unit_name(model.length_unit), 3);
     return {pair.witness.point_a, pair.witness.point_b, name(pair.a) + ":" + name(pair.b) + " " + distance};
 }
 
@@ -162,7 +164,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
               {"width", size->first}, {"height", size->second}, {"worst", nullptr}};
     std::string text = options.out + ": " + picture_options.title + "\n";
     if (instant.worst) {
-        json["worst"] = pair_json(*instant.worst, body_names(shown->subject.model));
+        json["worst"] = answers::pair_json(*instant.worst, answers::body_names(shown->subject.model));
         text += "nearest: " + marker_of(*instant.worst, shown->subject.model).text + "\n";
     }
     console.result(json, text);

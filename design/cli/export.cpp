@@ -11,6 +11,7 @@
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
@@ -94,8 +95,8 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
 Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::FileSink& sink) {
     const std::string name = plan.one_file ? plan.stem + ".csv" : "poses.csv";
     const fs::path temporary = plan.folder / name;
-    Errors errors =
-        core::records::write_poses(temporary, shown.subject.trajectory, shown.subject.model, unit_name(shown.subject.model.length_unit));
+    Errors errors = core::records::write_poses(temporary, shown.subject.trajectory, shown.subject.model,
+                                               answers::unit_name(shown.subject.model.length_unit));
     if (!errors.empty()) return errors;
     const Result<std::string> written = core::files::read_file(temporary);
     if (!written) return written.errors();
@@ -134,7 +135,8 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
 
 /// Of a scene alone: trajectories have no joints.
 int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
-    const Result<core::scene::Scene> scene = core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs));
+    const Result<core::scene::Scene> scene =
+        core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!scene) return console.input_errors(scene.errors());
     core::model::BuildOptions build;
     build.check_start = false;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/problem/design_problem.hpp"
@@ -49,8 +50,8 @@ const problem::Tie* tie_of(const DesignEvaluation& evaluation, bool of_objective
 void add_tie(const Design& design, const problem::Tie* tie, Json& entry) {
     if (tie == nullptr) return;
     entry["ties"] = {{"witnesses", tie->branches},
-                     {"gradient_least", gradient_json(design, tie->least)},
-                     {"gradient_greatest", gradient_json(design, tie->greatest)}};
+                     {"gradient_least", answers::gradient_json(design, tie->least)},
+                     {"gradient_greatest", answers::gradient_json(design, tie->greatest)}};
 }
 
 // @param unit  That the quantity is counted in.
@@ -72,8 +73,8 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     Json json;
     json["status"] = "ok";
     json["objective"] = evaluation.objective;
-    json["gradient"] = gradient_json(design, evaluation.gradient);
-    json["units"] = units_json(design);
+    json["gradient"] = answers::gradient_json(design, evaluation.gradient);
+    json["units"] = answers::units_json(design);
     Json terms = Json::array();
     for (size_t k = 0; k < design.objective.size(); ++k) {
         terms.push_back({{"name", design.objective[k].name}, {"weight", design.objective[k].weight}, {"value", evaluation.terms[k].value}});
@@ -90,12 +91,12 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         entry["certified_lower"] = measured.lower;
         entry["met"] = description::violation(constraint.bounds, measured) <= 0;
         if (!measured.fault.empty()) entry["fault"] = measured.fault;
-        entry["gradient"] = gradient_json(design, evaluation.jacobian.row(static_cast<Eigen::Index>(i)).transpose());
+        entry["gradient"] = answers::gradient_json(design, evaluation.jacobian.row(static_cast<Eigen::Index>(i)).transpose());
         add_tie(design, tie_of(evaluation, false, i), entry);
         list.push_back(std::move(entry));
     }
     json["constraints"] = list;
-    json["relations"] = relations_json(design, evaluation.relations);
+    json["relations"] = answers::relations_json(design, evaluation.relations);
     json["forward_seconds"] = evaluation.forward_seconds;
     json["backward_seconds"] = evaluation.backward_seconds;
     return json;

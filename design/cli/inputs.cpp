@@ -53,10 +53,6 @@ Errors foreign_error(const std::string& path) {
     return {{ErrorCode::unsupported, path, what + "; " + read_here}};
 }
 
-reading::Programs programs_of(const CommonOptions& common) {
-    return common.allow_programs ? reading::Programs::allowed : reading::Programs::refused;
-}
-
 /// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
 Errors strict_faults(const std::string& scene_path, const CommonOptions& common) {
     core::scene::ReadOptions options = reading::scene_read_options(common.mesh_dirs, programs_of(common));
@@ -102,6 +98,10 @@ Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& com
 }
 
 }  // namespace
+
+reading::Programs programs_of(const CommonOptions& common) {
+    return common.allow_programs ? reading::Programs::allowed : reading::Programs::refused;
+}
 
 FileKind file_kind(const std::string& path) {
     if (is_mesh_extension(extension_of(path))) return FileKind::mesh;

@@ -14,6 +14,9 @@
 
 namespace fettle::design::cli {
 
+/// As the user allows.
+reading::Programs programs_of(const CommonOptions& common);
+
 enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/answers/optimise_json.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
@@ -53,7 +55,7 @@ struct Run {
     const DesignProblem& problem;
     const CommonOptions& common;
     Console& console;
-    RunFacts facts;
+    answers::RunFacts facts;
 };
 
 // One run, told. @param rows  the runs from all starts, of which this one is the best, replayed; empty: there is no other.
@@ -71,19 +73,19 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
     if (!done) return console.input_errors(done.errors());
     const OptimiseOutcome& outcome = done->outcome;
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
-    forget_motion(folder.directory);
+    answers::forget_motion(folder.directory);
     if (outcome.final.usable) {
-        const Errors unwritten = write_animation(folder.directory, *outcome.final.model, outcome.final.simulation.trajectory);
+        const Errors unwritten = answers::write_animation(folder.directory, *outcome.final.model, outcome.final.simulation.trajectory);
         if (!unwritten.empty()) return console.input_errors(unwritten);
     }
-    Json json = outcome_json(run.problem, outcome, run.facts);
+    Json json = answers::outcome_json(run.problem, outcome, run.facts);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
     if (!rows.empty()) {
         json["starts"] = starts_json(rows);
         told = "best of " + std::to_string(rows.size()) + " starts, seed " + std::to_string(run.facts.seed) + ":\n" + told +
                "all starts:\n" + starts_text(rows);
     }
-    const Errors errors = write_result(folder.directory, json, run.common);
+    const Errors errors = answers::write_result(folder.directory, json, run.common.command);
     if (!errors.empty()) return console.input_errors(errors);
     if (!run.options.no_report) leave_report(folder.directory, run.common, console, json, told);
     if (outcome.report.status == OptimiserStatus::interrupted)

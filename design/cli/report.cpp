@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/report/report_folder.hpp"
@@ -19,6 +20,7 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
     report::ReportOptions options;
     options.out = arguments.out;
     options.mesh_dirs = common.mesh_dirs;
+    options.programs = programs_of(common);
     options.should_stop = interrupted;
     if (!arguments.out.empty()) {
         const Errors errors = try_output_file(arguments.out);

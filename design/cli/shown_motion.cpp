@@ -52,7 +52,7 @@ void take_gravity(const CommonOptions& common, Subject& subject) {
     std::error_code code;
     if (subject.source != SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
     if (file_kind(subject.scene_path) != FileKind::scene) return;
-    const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs));
+    const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (scene) subject.model.gravity = scene->gravity;
 }
 

@@ -13,6 +13,8 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
+#include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -41,9 +43,9 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
     for (size_t i = 0; i < model.bodies.size(); ++i) {
         const core::kinematics::Pose& pose = trajectory.poses.back()[i];
         Json rotation = Json::array();
-        for (int row = 0; row < 3; ++row) rotation.push_back(vector_json(pose.rotation.row(row).transpose()));
+        for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
         list.push_back({{"name", model.bodies[i].name},
-                        {"position", vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point))},
+                        {"position", answers::vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point))},
                         {"rotation", rotation}});
     }
     return list;
@@ -55,7 +57,7 @@ Json joints_at_end(const core::model::Model& model, const Simulation& simulation
     if (simulation.outputs.empty()) return list;
     for (const core::stepper::JointForce& f : simulation.outputs.back().joints) {
         const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
-        Json entry{{"name", joint.name}, {"force", vector_json(f.force)}, {"torque", vector_json(f.torque)}};
+        Json entry{{"name", joint.name}, {"force", answers::vector_json(f.force)}, {"torque", answers::vector_json(f.torque)}};
         if (joint.is_motor) entry["effort"] = f.effort;
         list.push_back(entry);
     }
@@ -97,7 +99,7 @@ Errors write_motion(const SimulateArguments& options, const core::model::Model& 
                     const Simulation& earlier, const std::string& scene_path, Console& console) {
     const std::filesystem::path folder = options.out;
     std::vector<std::pair<std::string, std::string>> tables;
-    const std::vector<std::string> names = body_names(model);
+    const std::vector<std::string> names = answers::body_names(model);
     for (const auto& [name, text] : {std::pair{"steps.csv", core::records::steps_csv(simulation)},
                                      {"contacts.csv", core::records::contacts_csv(simulation, names)},
                                      {"drives.csv", core::records::drives_csv(simulation, names)},
@@ -107,13 +109,13 @@ Errors write_motion(const SimulateArguments& options, const core::model::Model& 
     const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", simulation.trajectory.steps.size());
     if (!kept) return kept.errors();
     if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-    forget_motion(options.out);  // what is there speaks of another motion from here on
+    answers::forget_motion(options.out);  // what is there speaks of another motion from here on
     Errors errors =
         core::records::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
     for (const auto& [name, text] : tables) {
         if (errors.empty()) errors = core::files::write_file_atomically(folder / name, text);
     }
-    if (errors.empty()) errors = write_animation(options.out, model, simulation.trajectory);
+    if (errors.empty()) errors = answers::write_animation(options.out, model, simulation.trajectory);
     return errors;
 }
 
@@ -200,7 +202,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     Errors errors;
     if (writes_out) errors = write_motion(options, model, simulation, earlier, run.loaded.scene_path, console);
     if (errors.empty() && !options.poses.empty())
-        errors = core::records::write_poses(options.poses, simulation.trajectory, model, unit_name(model.length_unit));
+        errors = core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit));
     if (!errors.empty()) return console.input_errors(errors);
     if (run.growing) run.growing->remove();
     console.narrate("certifying the path");
@@ -222,7 +224,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     std::string told = answer_text(outcome, simulation, proof, writes_out ? options.out : "", console);
     if (writes_out) {
         json["out"] = options.out;
-        errors = write_result(options.out, json, common);
+        errors = answers::write_result(options.out, json, common.command);
         if (!errors.empty()) return console.input_errors(errors);
         if (!options.no_report)
             leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory, run.loaded.scene_path});

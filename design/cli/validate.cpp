@@ -10,6 +10,7 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/body_facts.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -95,12 +96,12 @@ Verdict validate_model(const std::string& path, const CommonOptions& common) {
     verdict.warnings = loaded->warnings;
     const std::vector<std::string> doubts = doubts_of(loaded->model);
     verdict.warnings.insert(verdict.warnings.end(), doubts.begin(), doubts.end());
-    verdict.facts["bodies"] = body_names(loaded->model);
+    verdict.facts["bodies"] = answers::body_names(loaded->model);
     verdict.facts["parts"] = parts_json(loaded->model);
     verdict.text = parts_text(loaded->model);
     if (loaded->problem == nullptr) return verdict;
     const description::Design& design = loaded->problem->design();
-    verdict.facts["parameters"] = parameters_json(design, description::values_of(design.parameters));
+    verdict.facts["parameters"] = answers::parameters_json(design, description::values_of(design.parameters));
     Json names = Json::array();
     for (const auto& constraint : design.constraints) names.push_back(constraint.name);
     verdict.facts["constraints"] = names;

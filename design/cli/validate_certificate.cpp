@@ -12,6 +12,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -100,7 +101,7 @@ Json claims_json(const Checked& certificate, const Model& model, const std::opti
 }
 
 std::string claims_text(const Json& claims, const Checked& certificate) {
-    const RoundedLengths lengths(unit_name(certificate.length_unit));
+    const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
     std::string text;
     const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
     for (const Json& pair : claims) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "fettle/design/answers/optimise_json.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/studies_records.hpp"
 #include "fettle/design/python/watch.hpp"
+#include "fettle/design/report/report_folder.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
 
@@ -64,19 +67,37 @@ OptimiseOutcome optimise_design(const DesignProblem& problem, const std::string&
 
 struct FileArguments {
     std::string directory;
-    bool resume = false;
+    bool resume = false, report = true;
+    reading::Programs programs = reading::Programs::refused;
     std::optional<int> max_evaluations;
     studies::OptimiseOptions options;
 };
+
+// As `fettle optimise` leaves its folder.
+void leave_results(const DesignProblem& problem, const OptimiseOutcome& outcome, const FileArguments& arguments,
+                   const std::function<bool()>& should_stop) {
+    const std::string& folder = arguments.directory;
+    answers::forget_motion(folder);
+    if (outcome.final.usable) raise_if_any(answers::write_animation(folder, *outcome.final.model, outcome.final.simulation.trajectory));
+    const answers::RunFacts facts{folder, arguments.options.seed, false};
+    raise_if_any(answers::write_result(folder, answers::outcome_json(problem, outcome, facts), "fettle.optimise_file, Python"));
+    if (!arguments.report) return;
+    report::ReportOptions options;
+    options.programs = arguments.programs;
+    options.should_stop = should_stop;
+    value_or_raise(report::write_report(folder, std::move(options)));
+}
 
 OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments, const py::object& progress) {
     if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
     const auto run = [&](const studies::OptimiseOptions& all) {
         const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));
         const studies::RunFolder folder{arguments.directory, arguments.resume};
-        return value_or_raise(studies::optimise_file(file, problem, folder, all)).outcome;
+        OptimiseOutcome outcome = value_or_raise(studies::optimise_file(file, problem, folder, all)).outcome;
+        leave_results(problem, outcome, arguments, all.should_stop);
+        return outcome;
     };
-    return optimise(std::move(arguments.options), progress, run);
+    return optimise(arguments.options, progress, run);
 }
 
 }  // namespace
@@ -90,17 +111,19 @@ void bind_studies(py::module_& module) {
     module.def(
         "optimise_file",
         [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::uint64_t seed,
-           const std::optional<int>& max_evaluations, bool allow_programs, const py::object& progress) {
-            FileArguments arguments{out, resume, max_evaluations, {}};
+           const std::optional<int>& max_evaluations, bool allow_programs, bool report, const py::object& progress) {
+            const auto programs = allow_programs ? reading::Programs::allowed : reading::Programs::refused;
+            FileArguments arguments{out, resume, report, programs, max_evaluations, {}};
             arguments.options.optimiser = optimiser;
             arguments.options.seed = seed;
-            return optimise_file(
-                value_or_raise(reading::read_design(path, {{}, allow_programs ? reading::Programs::allowed : reading::Programs::refused})),
-                std::move(arguments), progress);
+            return optimise_file(value_or_raise(reading::read_design(path, {{}, programs})), std::move(arguments), progress);
         },
         py::arg("path"), py::arg("out"), py::arg("resume") = false, py::arg("optimiser") = "", py::arg("seed") = 0,
-        py::arg("max_evaluations") = py::none(), py::arg("allow_programs") = false, py::arg("progress") = py::none(),
-        "Optimises a *.design.json into a folder: history, final design, trajectory; resume goes on with what is there.");
+        py::arg("max_evaluations") = py::none(), py::arg("allow_programs") = false, py::arg("report") = true,
+        py::arg("progress") = py::none(),
+        "Optimises a *.design.json into a folder, as `fettle optimise` does: history, final design, trajectory, motion.glb, result.json "
+        "and "
+        "report.html; resume goes on with what is there.");
     module.def(
         "start_of_seed", [](const DesignProblem& problem, std::uint64_t seed) { return studies::start_of_seed(problem.design(), seed); },
         py::arg("problem"), py::arg("seed"), "(n) SI: where a run of that seed begins.");

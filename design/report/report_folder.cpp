@@ -158,7 +158,7 @@ public:
         source_.tables = source_.kind == ReportKind::simulate ? read_tables(folder_) : StepTables{};
         source_.name = name_of(scene_path_, folder_);
         if (!source_.tables.joints.empty() && !scene.empty()) {
-            const auto read = core::scene::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs));
+            const auto read = core::scene::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs, options_.programs));
             if (read) source_.linear = linear_motors(read->mechanism);
         }
         return {};
@@ -181,7 +181,8 @@ private:
     }
 
     Errors read_design() {
-        Result<reading::DesignFile> file = reading::read_design((folder_ / "design.final.json").string(), {options_.mesh_dirs});
+        Result<reading::DesignFile> file =
+            reading::read_design((folder_ / "design.final.json").string(), {options_.mesh_dirs, options_.programs});
         if (!file) return file.errors();
         source_.description = description_of(file->text);
         source_.gravity = file->design.scene.gravity;

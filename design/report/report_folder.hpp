@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/report/report_data.hpp"
 
 namespace fettle::design::report {
@@ -21,6 +22,7 @@ namespace fettle::design::report {
 struct ReportOptions {
     std::string out;                                           ///< file; empty: report.html in the folder
     std::vector<std::string> mesh_dirs;                        ///< also looked in for meshes
+    reading::Programs programs = reading::Programs::refused;   ///< may parts be made anew by the programs that the scene names?
     std::optional<Motion> motion;                              ///< of the folder's trajectory, if it is at hand
     std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
 };

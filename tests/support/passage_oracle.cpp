@@ -11,7 +11,7 @@ namespace {
 using core::contact::PairType;
 using core::contact::PairVertices;
 
-constexpr double rounding = 1e-13;  // of a dot product of three terms, relative to its factors' size
+constexpr double dot_rounding = 1e-13;  // of a dot product of three terms, relative to its factors' size
 
 /// Between closest points of two edges: alternating projections, enough for a guess of a separating direction.
 Vector3 edge_gap(const PairVertices& x) {
@@ -33,7 +33,7 @@ bool separates(const Vector3& direction, int split, const PairVertices& t0, cons
             double &low = i < split ? low_a : low_b, &high = i < split ? high_a : high_b;
             low = std::min(low, along), high = std::max(high, along);
         }
-    const double margin = apart * direction.norm() * (1 + rounding) + rounding * direction.cwiseAbs().maxCoeff() * size;
+    const double margin = apart * direction.norm() * (1 + dot_rounding) + dot_rounding * direction.cwiseAbs().maxCoeff() * size;
     return low_a > high_b + margin || low_b > high_a + margin;
 }
 

@@ -28,6 +28,8 @@ from ._fettle import (
     certify_clearance,
     check_gradients,
     design_text,
+    draw_picture,
+    export_files,
     follow_scripts,
     from_si,
     generators,
@@ -45,6 +47,7 @@ from ._fettle import (
     simulate,
     start_of_seed,
     to_si,
+    write_report,
     write_trajectory,
 )
 from .design import (

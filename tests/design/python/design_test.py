@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Designs in memory with a shape and a quantity of one's own: evaluated, audited, optimised, used by SciPy."""
+import json
 import pickle
 import threading
 
@@ -252,7 +253,12 @@ def test_a_file_is_optimised_into_a_folder(tmp_path):
     file = fettle.read_design(str(path))
     outcome = fettle.optimise_file(str(path), str(tmp_path / "out"), max_evaluations=6)
     assert 0 < outcome.report.evaluations < 12
-    assert (tmp_path / "out" / "history.jsonl").exists()
+    for left in ("history.jsonl", "motion.glb", "result.json", "report.html"):
+        assert (tmp_path / "out" / left).stat().st_size > 0, left
+    told = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert told["evaluations"] == outcome.report.evaluations and told["command"].startswith("fettle.optimise_file")
+    assert fettle.write_report(str(tmp_path / "out"), str(tmp_path / "again.html")) == str(tmp_path / "again.html")
+    assert "<html" in (tmp_path / "again.html").read_text()
     final = fettle.read_design(str(tmp_path / "out" / "design.final.json"))
     assert [p.name for p in final.design.parameters] == [p.name for p in file.design.parameters]
     again = fettle.optimise_file(str(path), str(tmp_path / "out"), resume=True, max_evaluations=6)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Parts from functions and programs that make meshes: derivatives from rebuilt ones; the hinge of OpenSCAD."""
+import json
 import pickle
 import shutil
 
@@ -64,15 +65,19 @@ def test_programs_run_only_when_they_are_allowed():
 
 @pytest.mark.programs
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="Debian's openscad is not installed")
-def test_the_hinge_of_openscad_is_tuned_under_certified_clearance():
-    file = fettle.read_design(str(HINGE / "openscad_hinge.design.json"), allow_programs=True)
+def test_the_hinge_of_openscad_is_tuned_under_certified_clearance(tmp_path):
+    path = str(HINGE / "openscad_hinge.design.json")
+    file = fettle.read_design(path, allow_programs=True)
     assert sum("vertex by vertex" in warning or "normal velocity" in warning for warning in file.warnings) == 3
     assert isinstance(file.design.shapes[0], fettle.ProgramShape)
     assert pickle.loads(pickle.dumps(file)) == file
-    problem = fettle.DesignProblem(file.design)
-    assert problem.evaluate(problem.values).violation > 0
-    outcome = fettle.optimise(problem)
+    outcome = fettle.optimise_file(path, str(tmp_path), allow_programs=True)
     assert outcome.report.feasible, outcome.limits
     (pair,) = [m.clearance for m in outcome.final.constraints if m.clearance]
     assert pair.lower >= 0.3e-3
     assert outcome.final.objective < outcome.objective_start or outcome.report.status == "optimal"
+    assert json.loads((tmp_path / "result.json").read_text())["constraint_violation_start"] > 0
+    # The design before is made anew for the report, by the programs.
+    assert (tmp_path / "trajectory.start.json").exists() and (tmp_path / "report.html").exists()
+    with pytest.raises(fettle.Error, match="--allow-programs"):
+        fettle.write_report(str(tmp_path))

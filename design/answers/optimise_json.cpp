@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/answers/optimise_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "fettle/design/answers/answer_json.hpp"
+
+namespace fettle::design::answers {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using description::Design;
+using problem::DesignEvaluation;
+using problem::DesignProblem;
+using studies::OptimiseOutcome;
+
+Json constraints_json(const Design& design, const DesignEvaluation& final) {
+    Json list = Json::array();
+    for (size_t i = 0; i < final.constraints.size(); ++i) {
+        const description::Constraint& constraint = design.constraints[i];
+        const description::Measurement& measured = final.constraints[i];
+        list.push_back({{"name", constraint.name},
+                        {"value", measured.value},
+                        {"lower", measured.lower},
+                        {"upper", measured.upper},
+                        {"met", description::violation(constraint.bounds, measured) <= 0}});
+        if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
+    }
+    return list;
+}
+
+Json terms_json(const Design& design, const DesignEvaluation& final) {
+    Json list = Json::array();
+    for (size_t k = 0; k < final.terms.size(); ++k) list.push_back({{"name", design.objective[k].name}, {"value", final.terms[k].value}});
+    return list;
+}
+
+// What the design measures by its own model and by its smoothest one, SI.
+Json measured_json(const std::string& name, const description::Measurement& own, const description::Measurement& other) {
+    return {{"name", name}, {"as_written", own.value}, {"play_taken_up", other.value}};
+}
+
+Json by_models_json(const Design& design, const OptimiseOutcome& outcome) {
+    const DesignEvaluation &own = outcome.final, &other = outcome.play_taken_up;
+    if (!other.usable) return {};
+    Json terms = Json::array(), constraints = Json::array();
+    for (size_t k = 0; k < own.terms.size(); ++k) terms.push_back(measured_json(design.objective[k].name, own.terms[k], other.terms[k]));
+    for (size_t i = 0; i < own.constraints.size(); ++i)
+        constraints.push_back(measured_json(design.constraints[i].name, own.constraints[i], other.constraints[i]));
+    return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}};
+}
+
+Json stages_json(const optimisers::OptimiserReport& report) {
+    Json list = Json::array();
+    for (const optimisers::StageReport& stage : report.stages) {
+        list.push_back({{"model", stage.model.empty() ? "as written" : stage.model},
+                        {"evaluations", stage.evaluations},
+                        {"objective", stage.objective},
+                        {"constraint_violation", stage.violation},
+                        {"message", stage.message}});
+    }
+    return list;
+}
+
+Json optimality_json(const Design& design, const optimisers::Optimality& o) {
+    Json residual = Json::object(), held = Json::object(), improvable = Json::array();
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        residual[design.parameters[k].name] = o.residual[static_cast<Eigen::Index>(k)];
+        held[design.parameters[k].name] = optimisers::to_string(o.held[k]);
+    }
+    for (const int k : o.improvable) {
+        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        improvable.push_back({{"parameter", p.name}, {"step", description::from_si(o.step[k], p.unit)}});
+    }
+    Json multipliers = Json::object();
+    for (size_t i = 0; i < design.constraints.size(); ++i)
+        multipliers[design.constraints[i].name] = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
+    Json json{{"multipliers", multipliers}, {"predicted_gain", o.predicted_gain},
+              {"worth", o.worth},           {"radius", o.radius},
+              {"residual", residual},       {"held_by", held},
+              {"improvable", improvable},   {"noise_in_objective", o.noise_in_objective},
+              {"judged", o.judged}};
+    if (o.noise.size() > 0) {
+        json["noise"] = {{"objective", o.noise[0]}};
+        for (size_t i = 0; i < design.constraints.size(); ++i)
+            json["noise"][design.constraints[i].name] = o.noise[static_cast<Eigen::Index>(i) + 1] / design.constraints[i].bounds.unit;
+    }
+    json["rough"] = o.roughest < 0 ? Json() : o.roughest == 0 ? Json("objective") : Json(roughest_name(design, o));
+    return json;
+}
+
+// What a design is held by: an infeasible one by what limits it; else requirements that cost something, the dearest first, then bounds.
+std::vector<std::string> limited_by(const Design& design, const OptimiseOutcome& outcome) {
+    const optimisers::Optimality& o = outcome.report.optimality;
+    if (!outcome.report.feasible) return outcome.limits;
+    std::vector<std::string> names;
+    for (const Cost& cost : costs_of(design, o)) names.push_back(cost.requirement);
+    for (size_t k = 0; k < o.held.size(); ++k) {
+        if (o.held[k] != optimisers::Held::lower_bound && o.held[k] != optimisers::Held::upper_bound) continue;
+        names.push_back(design.parameters[k].name + " (" + optimisers::to_string(o.held[k]) + ")");
+    }
+    return names;
+}
+
+Json repair_json(const Design& design, const optimisers::OptimiserReport& report) {
+    Json changes = Json::object();
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        const description::Parameter& p = design.parameters[k];
+        changes[p.name] = description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit) - description::from_si(p.value, p.unit);
+    }
+    return {{"changes", changes}, {"distance", std::sqrt(report.best.objective)}};
+}
+
+}  // namespace
+
+std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o) {
+    std::vector<Cost> costs;
+    for (size_t i = 0; i < design.constraints.size() && o.step.size() > 0; ++i) {
+        const double y = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
+        if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({design.constraints[i].name, y});
+    }
+    std::stable_sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return std::abs(a.per_unit) > std::abs(b.per_unit); });
+    return costs;
+}
+
+std::string roughest_name(const Design& design, const optimisers::Optimality& o) {
+    const auto rough = static_cast<size_t>(std::max(0, o.roughest - 1));
+    return o.roughest == 0 || rough >= design.constraints.size() ? "the objective" : design.constraints[rough].name;
+}
+
+Json objective_json(const OptimiseOutcome& outcome, const RunFacts& run) {
+    if (!outcome.report.best.usable) return {};
+    return run.repair ? outcome.final.objective : outcome.report.best.objective;
+}
+
+Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, const RunFacts& run) {
+    const Design& design = problem.design();
+    const optimisers::OptimiserReport& report = outcome.report;
+    Json json;
+    json["status"] = optimisers::to_string(report.status);
+    json["message"] = report.message;
+    json["objective_start"] = outcome.objective_start ? Json(*outcome.objective_start) : Json();
+    json["objective"] = objective_json(outcome, run);
+    if (run.repair && report.best.usable) json["repair"] = repair_json(design, report);
+    json["seed"] = run.seed;
+    json["parameters_start"] = parameters_json(design, outcome.start);
+    json["parameters"] = parameters_json(design, report.point);
+    json["units"] = units_json(design);
+    json["evaluations"] = report.evaluations;
+    json["failed_evaluations"] = report.failures;
+    json["replayed_evaluations"] = outcome.replayed;
+    json["iterations"] = report.iterations;
+    json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
+    json["stages"] = stages_json(report);
+    json["by_models"] = by_models_json(design, outcome);
+    json["budget_spent"] = report.budget_spent;
+    json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
+    json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
+    json["terms"] = terms_json(design, outcome.final);
+    json["constraints"] = constraints_json(design, outcome.final);
+    json["relations"] = relations_json(design, outcome.final.relations);
+    std::vector<std::string> names;
+    for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
+    json["clearance"] = clearance_json(outcome.clearance, names);
+    json["unbuildable"] = outcome.unbuildable;
+    if (!outcome.limits.empty()) json["limits"] = outcome.limits;
+    json["limited_by"] = report.best.usable ? Json(limited_by(design, outcome)) : Json::array();
+    json["out"] = run.out;
+    return json;
+}
+
+}  // namespace fettle::design::answers
