@@ -20,7 +20,7 @@ public:
         find_near({model_, list, poses_, vertices}, near);
         std::vector<ContactPair> forward, backward;
         WeightParts forward_parts, backward_parts;
-        count_contacts(counted_sides(model_, list, poses_), near, forward, backward, &forward_parts, &backward_parts);
+        count_contacts(counted_sides(model_, list, poses_), near, forward, backward, {&forward_parts, &backward_parts});
         for (const WeightParts* parts : {&forward_parts, &backward_parts})
             for (const std::vector<WeightPart>& contact : *parts) {
                 out_.shares.emplace_back();

@@ -28,14 +28,30 @@ struct ListContacts {
     double least = std::numeric_limits<double>::infinity();  // squared distance
 };
 
-ListContacts contacts_of(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses,
-                         const WorldVertices& vertices) {
+ListContacts contacts_of(const NearAt& at, CountingPlan* plan) {
+    const BodyPairCandidates& list = at.list;
     ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
     if (list.empty()) return out;
     static thread_local NearPairs near;
-    out.least = find_near({model, list, poses, vertices}, near);
-    count_contacts(counted_sides(model, list, poses), near, out.forward.contacts, out.backward.contacts);
+    out.least = find_near(at, near);
+    count_contacts(counted_sides(at.model, list, at.poses), near, out.forward.contacts, out.backward.contacts, {nullptr, nullptr, plan});
     return out;
+}
+
+// A plan for each pair of the candidates: those that are known, and empty ones.
+void take_over(const Candidates& candidates, ContactPlans& plans) {
+    const auto is_of = [](const ContactPlans::OfPair& of, const BodyPairCandidates& pair) { return of.a == pair.a && of.b == pair.b; };
+    if (std::equal(plans.pairs.begin(), plans.pairs.end(), candidates.pairs.begin(), candidates.pairs.end(), is_of)) return;
+    std::vector<ContactPlans::OfPair> from = std::exchange(plans.pairs, {});
+    plans.pairs.reserve(candidates.pairs.size());
+    auto old = from.begin();
+    for (const BodyPairCandidates& pair : candidates.pairs) {
+        while (old != from.end() && std::pair(old->a, old->b) < std::pair(pair.a, pair.b)) ++old;
+        if (old != from.end() && is_of(*old, pair))
+            plans.pairs.push_back(std::move(*old++));
+        else
+            plans.pairs.push_back({pair.a, pair.b, {}});
+    }
 }
 
 // Of the contacts of one ordered pair of bodies.
@@ -54,11 +70,14 @@ constexpr int pairs_a_piece = 16;  // pairs of bodies that a thread takes at a t
 
 }  // namespace
 
-ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses) {
+ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses, ContactPlans* plans) {
     const int count = static_cast<int>(candidates.pairs.size());
+    if (plans != nullptr) take_over(candidates, *plans);
     std::vector<ListContacts> found(candidates.pairs.size());
     const WorldVertices vertices(model, candidates, poses);
-    base::parallel_for(count, pairs_a_piece, [&](int k) { found[k] = contacts_of(model, candidates.pairs[k], poses, vertices); });
+    base::parallel_for(count, pairs_a_piece, [&](int k) {
+        found[k] = contacts_of({model, candidates.pairs[k], poses, vertices}, plans == nullptr ? nullptr : &plans->pairs[k].plan);
+    });
     ContactSet set;
     double least = std::numeric_limits<double>::infinity();
     for (ListContacts& list : found) {

@@ -8,6 +8,7 @@
 #include "fettle/core/contact/barrier.hpp"
 #include "fettle/core/contact/candidates.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/contact/counted_contacts.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::contact {
@@ -24,9 +25,20 @@ struct ContactSet {
     double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
 
+/// How the contacts of each pair of bodies were counted last (counted_contacts.hpp).
+struct ContactPlans {
+    struct OfPair {
+        int a = 0, b = 0;
+        CountingPlan plan;
+    };
+    std::vector<OfPair> pairs;  ///< in the candidates' order
+};
+
 /// Contacts among the candidates at `poses`, plane faces counted once (counted_contacts.hpp). Pairs at or below dmin are contacts too, of
 /// no finite potential. Contract: candidates cover `poses`.
-ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+/// @param plans  of the same model before; they save time, and change no bit
+ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses,
+                         ContactPlans* plans = nullptr);
 
 /// Sum of the barrier potential over the contacts; infinity where a pair is at or below dmin, or its distance is not finite.
 double barrier_potential(const ContactSet& set, const BarrierParameters& parameters);

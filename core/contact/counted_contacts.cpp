@@ -22,9 +22,10 @@ struct Place {
     bool operator<(const Place& other) const { return first != other.first ? first < other.first : second < other.second; }
 };
 
-enum class Kind : int { of_first, of_edges, of_second };  // whose vertex
+using Contact = CountingPlan::Contact;
+using Kind = Contact::Kind;
 
-// What counts `weight` times: pair `pair`, as it is, or as the contact of its vertex `end`, or the other way round.
+// A contact-to-be, and its features.
 struct Entry {
     std::uint64_t kind_vertex, corners;
     std::uint64_t last_order;  // last corner, then where the entry stands among those with the same features
@@ -54,10 +55,25 @@ bool are_finite(const std::vector<ContactPair>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(), [](const ContactPair& pair) { return std::isfinite(pair.closest.distance_squared); });
 }
 
+// Surely farther from the segment than `distance`. Not so what is not a number.
+bool is_beyond(const Vector3& p, const Vector3& a, const Vector3& b, double distance) {
+    constexpr double margin = 1 + 1e-6;  // for rounding, here and in closest_points
+    const Vector3 e = b - a, w = p - a;
+    const double square = e.squaredNorm();
+    const double t = square > 0 ? std::clamp(w.dot(e) / square, 0.0, 1.0) : 0.0;
+    return (w - t * e).squaredNorm() > margin * (distance * distance);
+}
+
+// Which of a face's corners the vertex is; 0: none.
+int corner_of(const ContactPair& pair, int vertex) {
+    for (int k = 1; k < 4; ++k)
+        if (pair.vertex[k] == vertex) return k;
+    return 0;
+}
+
 class Counter {
 public:
-    // What `emit` leaves of its contacts' weights; null: nothing.
-    WeightParts *forward_parts = nullptr, *backward_parts = nullptr;
+    CountingNotes notes;
 
     void count(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
         if (!are_finite(near.on_second) || !are_finite(near.on_first) || !are_finite(near.edges)) {  // none may be lost
@@ -72,7 +88,9 @@ public:
             emit_elements(sides, sides.first, near.on_first, backward);
             return;
         }
+        if (notes.plan != nullptr && count_as_planned(sides, near, forward, backward)) return;
         entries_.clear();
+        is_repeatable_ = true;
         add_vertices(sides, sides.second, Kind::of_first, near.on_second);
         add_vertices(sides, sides.first, Kind::of_second, near.on_first);
         add_edges(near.edges);
@@ -80,6 +98,57 @@ public:
     }
 
 private:
+    // @return whether the plan held. If not, it has the key of what is near now, and nothing else.
+    bool count_as_planned(const CountedSides& sides, const NearPairs& near, std::vector<ContactPair>& forward,
+                          std::vector<ContactPair>& backward) {
+        CountingPlan& plan = *notes.plan;
+        find_key(near);
+        const auto still_absent = [&](const CountingPlan::Absent& absent) {
+            const auto& x = (absent.on_first ? near.on_first : near.on_second)[static_cast<std::size_t>(absent.pair)].x;
+            return is_beyond(x[0], x[static_cast<std::size_t>(absent.corners[0])], x[static_cast<std::size_t>(absent.corners[1])],
+                             sides.activation);
+        };
+        if (!plan.is_usable || key_ != plan.key || !std::all_of(plan.absent.begin(), plan.absent.end(), still_absent)) {
+            plan.is_usable = false;
+            plan.key = key_;
+            plan.contacts.clear();
+            plan.absent.clear();
+            return false;
+        }
+        for (const Contact& contact : plan.contacts) emit_contact(contact, near, forward, backward);
+        return true;
+    }
+
+    // All that the counting goes by, but where absent elements are.
+    void find_key(const NearPairs& near) {
+        key_.clear();
+        for (const std::vector<ContactPair>* pairs : {&near.on_second, &near.on_first}) {
+            key_.push_back(static_cast<int>(pairs->size()));
+            for (const ContactPair& pair : *pairs) {
+                const Feature feature = closest_feature(pair);
+                key_.insert(key_.end(), {pair.vertex[0], pair.face, feature[0], feature[1], feature[2]});
+            }
+        }
+        for (const ContactPair& pair : near.edges) {
+            const int end = closest_end(pair);
+            const Feature feature = end < 0 ? Feature{-1, -1, -1} : feature_opposite(pair, end);
+            key_.insert(key_.end(), {pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3], end, feature[0], feature[1]});
+        }
+    }
+
+    // The element has to be looked at again where the same pairs are near.
+    void note_absent(Kind kind, const Feature& element, const std::vector<ContactPair>& pairs, std::size_t first, std::size_t last) {
+        if (notes.plan == nullptr) return;
+        for (std::size_t k = first; k < last; ++k) {
+            const ContactPair& pair = pair_at(pairs, k);
+            const int a = corner_of(pair, element[0]), b = element[1] < 0 ? a : corner_of(pair, element[1]);
+            if (a == 0 || b == 0) continue;
+            notes.plan->absent.push_back({kind == Kind::of_second, order_[k].index, {a, b}});
+            return;
+        }
+        is_repeatable_ = false;
+    }
+
     void find_order(const std::vector<ContactPair>& pairs) {
         order_.clear();
         for (const ContactPair& pair : pairs) {
@@ -187,7 +256,11 @@ private:
                     continue;
                 }
                 const ContactPair pair = pair_with(faces, element, pair_at(pairs, first));
-                if (!(pair.closest.distance_squared < sides.activation * sides.activation)) continue;
+                if (!(pair.closest.distance_squared < sides.activation * sides.activation)) {
+                    note_absent(kind, element, pairs, first, last);
+                    continue;
+                }
+                is_repeatable_ = false;
                 add_entry(kind, vertex, closest_feature(pair), static_cast<int>(pairs.size()), -1, count_of(element) * weight);
                 pairs.push_back(pair);
             }
@@ -218,24 +291,32 @@ private:
             const std::size_t begin = std::exchange(first, last);
             if (weight == 0) continue;
             const Kind kind = static_cast<Kind>(entry.kind_vertex >> 32);
-            std::vector<ContactPair>& out = kind == Kind::of_second ? backward : forward;
-            out.push_back(contact_of(entry, kind, near));
-            out.back().weight = weight;
-            if (WeightParts* parts = kind == Kind::of_second ? backward_parts : forward_parts) {
+            const Contact contact{kind, entry.pair, entry.end, entry.swap, weight};
+            emit_contact(contact, near, forward, backward);
+            if (notes.plan != nullptr) notes.plan->contacts.push_back(contact);
+            if (WeightParts* parts = kind == Kind::of_second ? notes.backward_parts : notes.forward_parts) {
                 parts->emplace_back();
                 for (std::size_t k = begin; k < last; ++k) parts->back().push_back(part_of(entries_[k], kind, near));
             }
         }
+        if (notes.plan != nullptr) notes.plan->is_usable = is_repeatable_;
     }
 
-    static ContactPair contact_of(const Entry& entry, Kind kind, const NearPairs& near) {
-        const auto index = static_cast<std::size_t>(entry.pair);
-        if (kind == Kind::of_edges) return near.edges[index];
-        if (entry.end >= 0) return on_end(near.edges[index], entry.end);  // two vertices begin with that of the first body
-        const bool of_first = kind == Kind::of_first && !entry.swap;
+    static void emit_contact(const Contact& contact, const NearPairs& near, std::vector<ContactPair>& forward,
+                             std::vector<ContactPair>& backward) {
+        std::vector<ContactPair>& out = contact.kind == Kind::of_second ? backward : forward;
+        out.push_back(pair_of(contact, near));
+        out.back().weight = contact.weight;
+    }
+
+    static ContactPair pair_of(const Contact& contact, const NearPairs& near) {
+        const auto index = static_cast<std::size_t>(contact.pair);
+        if (contact.kind == Kind::of_edges) return near.edges[index];
+        if (contact.end >= 0) return on_end(near.edges[index], contact.end);  // two vertices begin with that of the first body
+        const bool of_first = contact.kind == Kind::of_first && !contact.swap;
         const ContactPair& pair = of_first ? near.on_second[index] : near.on_first[index];
         const ContactPair out = on_feature(pair, closest_feature(pair));
-        return entry.swap ? swapped(out) : out;
+        return contact.swap ? swapped(out) : out;
     }
 
     static WeightPart part_of(const Entry& entry, Kind kind, const NearPairs& near) {
@@ -249,6 +330,8 @@ private:
     std::vector<Place> order_;
     std::vector<Entry> entries_;
     std::vector<Feature> elements_, features_;
+    std::vector<int> key_;
+    bool is_repeatable_ = true;  // whatever was counted is of near pairs
 };
 
 // Of contacts that nothing was merged into.
@@ -262,14 +345,14 @@ void add_missing_parts(const std::vector<ContactPair>& contacts, bool of_second,
 }  // namespace
 
 void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward,
-                    WeightParts* forward_parts, WeightParts* backward_parts) {
+                    const CountingNotes& notes) {
+    if (near.on_second.empty() && near.on_first.empty() && near.edges.empty()) return;
     static thread_local Counter counter;
-    counter.forward_parts = forward_parts;
-    counter.backward_parts = backward_parts;
+    counter.notes = notes;
     counter.count(sides, near, forward, backward);
-    if (forward_parts == nullptr) return;
-    add_missing_parts(forward, false, *forward_parts);
-    add_missing_parts(backward, true, *backward_parts);
+    if (notes.forward_parts == nullptr) return;
+    add_missing_parts(forward, false, *notes.forward_parts);
+    add_missing_parts(backward, true, *notes.backward_parts);
 }
 
 }  // namespace fettle::core::contact

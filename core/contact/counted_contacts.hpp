@@ -55,12 +55,44 @@ struct WeightPart {
 /// [contact]: its weight is the sum of these.
 using WeightParts = std::vector<std::vector<WeightPart>>;
 
+/// How near pairs were counted. It holds, with the same bits, while the same pairs are near, in the same order, with the same closest
+/// features, and nothing flat has come near that was not: at rest that is always so, and most of the work of counting is finding it out
+/// anew.
+class CountingPlan {
+public:
+    /// What counts `weight` times: pair number `pair` of a list of NearPairs, as it is, or as the contact of its vertex `end`.
+    struct Contact {
+        enum class Kind : int { of_first, of_edges, of_second };  ///< whose vertex
+        Kind kind;
+        int pair, end;
+        bool swap;  ///< the other way round
+        double weight;
+    };
+    /// A flat element, by corners of a near pair's face, that was beyond the activation distance of that pair's vertex.
+    struct Absent {
+        bool on_first;  ///< the face is the first body's
+        int pair;
+        std::array<int, 2> corners;  ///< into ContactPair::x
+    };
+
+    bool is_usable = false;
+    std::vector<int> key;  ///< primitives and closest features of the near pairs
+    std::vector<Contact> contacts;
+    std::vector<Absent> absent;
+};
+
+/// What count_contacts tells beside the contacts, each if it is asked for.
+struct CountingNotes {
+    WeightParts *forward_parts = nullptr,
+                *backward_parts = nullptr;  ///< both or none: what weights are made of, appended contact by contact
+    CountingPlan* plan = nullptr;           ///< of the same two bodies and model before: used if it holds, else made anew
+};
+
 /// The order of what comes out depends on the primitives alone.
 /// @param near      used up
 /// @param forward   appended: contacts whose first primitive is on the first body; two vertices are here, and pairs of edges
 /// @param backward  appended: contacts whose first primitive is a vertex of the second
-/// @param forward_parts, backward_parts  both or none: what their weights are made of, appended contact by contact
 void count_contacts(const CountedSides& sides, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward,
-                    WeightParts* forward_parts = nullptr, WeightParts* backward_parts = nullptr);
+                    const CountingNotes& notes = {});
 
 }  // namespace fettle::core::contact

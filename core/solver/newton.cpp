@@ -89,7 +89,7 @@ private:
 
     void find_contacts(Iterate& at) {
         const auto span = workspace_.clock.charge(SolvePhase::contacts);
-        at.contacts = contact::find_contacts(model_, workspace_.candidates, at.poses);
+        at.contacts = contact::find_contacts(model_, workspace_.candidates, at.poses, &workspace_.contact_plans);
     }
 
     // Those of the step before, where it ended.

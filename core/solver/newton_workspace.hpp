@@ -33,10 +33,11 @@ struct KnownContacts {
 /// What is worth keeping from one solve to the next; the result does not depend on it.
 struct NewtonWorkspace {
     FreeDofs dofs;
-    LinearSolver linear;             ///< its symbolic factor
-    contact::Candidates candidates;  ///< near where the last solve ended
-    KnownContacts contacts;          ///< where the last step ended
-    std::optional<RowSystem> rows;   ///< of a model with joints or motors; its symbolic factor, and the last multipliers
+    LinearSolver linear;                  ///< its symbolic factor
+    contact::Candidates candidates;       ///< near where the last solve ended
+    contact::ContactPlans contact_plans;  ///< how their contacts were counted last
+    KnownContacts contacts;               ///< where the last step ended
+    std::optional<RowSystem> rows;        ///< of a model with joints or motors; its symbolic factor, and the last multipliers
     base::PhaseClock<SolvePhase> clock;
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {
         if (!model.mechanism.rows.empty()) rows.emplace(dofs);

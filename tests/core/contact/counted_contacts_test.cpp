@@ -213,6 +213,51 @@ TEST_CASE("contacts with the same closest features are one, of the same potentia
     CHECK(fewer > 100);
 }
 
+// Two boxes that stand on one another, cut into cells so that faces have flat edges and vertices, and wander.
+TEST_CASE("what is counted as planned has the bits of what is counted anew", "[counted_contacts]") {
+    model::Model model;
+    model.dhat = 0.1;
+    geometry::Mesh plate = square(3);
+    model.bodies = {make_body("plate", plate, {}, scene::BodyType::static_body),
+                    make_body("low", box_mesh(Vector3(0.1, 0.1, 0.05), Vector3(0.7, 0.8, 0.5)), {}),
+                    make_body("high", box_mesh(Vector3(0.1, 0.1, 0.55), Vector3(0.7, 0.8, 1)), {})};
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    ContactPlans plans;
+    int repeated = 0, anew = 0;
+    std::vector<Pose> poses(3);
+    for (int k = 0; k < 600; ++k) {
+        const double size = k % 10 == 0 ? 0.03 : 1e-7;  // now and then elsewhere, else about at rest
+        for (std::size_t b = 1; b < 3; ++b) {
+            const Vector3 shift(unit(random), unit(random), 0.5 * unit(random)), turn(unit(random), unit(random), unit(random));
+            const Pose base = k % 10 == 0 ? Pose{} : poses[b];
+            poses[b] = {make_pose(0.1 * size * turn, {}).rotation * base.rotation, base.position + size * shift};
+        }
+        if (k % 30 == 0) poses[1] = poses[2] = {};  // corners over corners, exactly
+        const Candidates candidates = find_candidates(model, poses, 0.01);
+        std::vector<std::vector<int>> keys;
+        for (const auto& of : plans.pairs) keys.push_back(of.plan.is_usable ? of.plan.key : std::vector<int>{-1});
+        const ContactSet with = find_contacts(model, candidates, poses, &plans), without = find_contacts(model, candidates, poses);
+        REQUIRE(with.count == without.count);
+        REQUIRE(with.pairs.size() == without.pairs.size());
+        for (std::size_t i = 0; i < plans.pairs.size() && i < keys.size(); ++i)
+            ++(plans.pairs[i].plan.is_usable && plans.pairs[i].plan.key == keys[i] ? repeated : anew);
+        for (std::size_t i = 0; i < with.pairs.size(); ++i) {
+            REQUIRE(with.pairs[i].contacts.size() == without.pairs[i].contacts.size());
+            for (std::size_t j = 0; j < with.pairs[i].contacts.size(); ++j) {
+                const ContactPair &p = with.pairs[i].contacts[j], &q = without.pairs[i].contacts[j];
+                CAPTURE(k, i, j);
+                CHECK((p.type == q.type && p.vertex == q.vertex && p.face == q.face && p.x == q.x));
+                CHECK((p.weight == q.weight && p.mollifier_eps == q.mollifier_eps));
+                CHECK((p.closest.weight == q.closest.weight && p.closest.difference == q.closest.difference));
+                CHECK((p.closest.free_count == q.closest.free_count && p.closest.free_weight == q.closest.free_weight));
+            }
+        }
+    }
+    CHECK(repeated > 200);
+    CHECK(anew > 50);
+}
+
 TEST_CASE("two boxes face to face: their diagonals do not matter", "[counted_contacts]") {
     const auto potential = [](bool other_cut) {
         geometry::Mesh box = box_mesh(Vector3::Constant(-0.5), Vector3::Constant(0.5));
