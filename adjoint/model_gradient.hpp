@@ -18,6 +18,12 @@ struct TrajectoryGradient {
     std::vector<std::vector<Matrix34>> pose_bar;
     /// [step]: derivative with respect to the multipliers of the step's rows (of the potential times its weight); empty: of none.
     std::vector<VectorX> multiplier_bar;
+    /// [step][body]: of Newmark's velocity Pdot at the step's end, entry by entry; empty: of none (others' velocities are differences of
+    /// poses: stepper/velocities.hpp).
+    std::vector<std::vector<Matrix34>> velocity_bar;
+    /// [step][body]: of the poses from which the step's last round of friction took its normal forces and tangents, entry by entry; empty:
+    /// of none.
+    std::vector<std::vector<Matrix34>> lag_bar;
 };
 TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
 
