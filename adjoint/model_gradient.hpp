@@ -60,6 +60,7 @@ struct ModelGradient {
     std::vector<BodyGradient> bodies;
     Vector3 gravity_bar = Vector3::Zero();
     FrictionGradient friction_bar;
+    double dmin_bar = 0;  ///< of the minimum separation; kappa is held
     MechanismGradient mechanism;
 };
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
@@ -89,6 +90,7 @@ struct ModelTangent {
     std::vector<BodyTangent> bodies;
     Vector3 gravity_dot = Vector3::Zero();
     FrictionGradient friction_dot;
+    double dmin_dot = 0;
     MechanismTangent mechanism;
 };
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps);

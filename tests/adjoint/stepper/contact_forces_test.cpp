@@ -44,9 +44,10 @@ std::vector<SweepScene> scenes() {
     out.back().model.kappa *= 1e3;
     out.push_back(rubbed(stack()));
     out.push_back(rubbed(stack()));
-    out.back().name += ", BDF2, damped contact";
+    out.back().name += ", BDF2, damped contact, dmin";
     out.back().model.integrator = Integrator::bdf2;
     out.back().model.contact_damping_time = 2e-3;
+    out.back().model.dmin = 0.1 * out.back().model.dhat;
     out.push_back(rubbed(stack()));
     out.back().name += ", Newmark, one round, area-weighted";
     out.back().model.integrator = Integrator::newmark;
