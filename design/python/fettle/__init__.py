@@ -59,6 +59,7 @@ from .design import (
     GeneratedPart,
     JointLoad,
     MarkerPath,
+    MarkerSpeed,
     Mass,
     MeshShape,
     Move,
