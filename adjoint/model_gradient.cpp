@@ -75,6 +75,7 @@ void add(ModelGradient& sum, const ModelGradient& part) {
             to.increment_bar[t] += from.increment_bar[t];
     }
     sum.gravity_bar += part.gravity_bar;
+    sum.dmin_bar += part.dmin_bar;
     for (const auto& [pair, bar] : part.friction_bar) sum.friction_bar[pair] += bar;
     add(sum.mechanism, part.mechanism);
 }

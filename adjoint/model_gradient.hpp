@@ -18,6 +18,12 @@ struct TrajectoryGradient {
     std::vector<std::vector<Matrix34>> pose_bar;
     /// [step]: derivative with respect to the multipliers of the step's rows (of the potential times its weight); empty: of none.
     std::vector<VectorX> multiplier_bar;
+    /// [step][body]: of Newmark's velocity Pdot at the step's end, entry by entry; empty: of none (others' velocities are differences of
+    /// poses: stepper/velocities.hpp).
+    std::vector<std::vector<Matrix34>> velocity_bar;
+    /// [step][body]: of the poses from which the step's last round of friction took its normal forces and tangents, entry by entry; empty:
+    /// of none.
+    std::vector<std::vector<Matrix34>> lag_bar;
 };
 TrajectoryGradient zero_trajectory_gradient(int steps, int bodies);
 
@@ -54,6 +60,7 @@ struct ModelGradient {
     std::vector<BodyGradient> bodies;
     Vector3 gravity_bar = Vector3::Zero();
     FrictionGradient friction_bar;
+    double dmin_bar = 0;  ///< of the minimum separation; kappa is held
     MechanismGradient mechanism;
 };
 ModelGradient zero_model_gradient(const core::model::Model& model, int steps);
@@ -83,6 +90,7 @@ struct ModelTangent {
     std::vector<BodyTangent> bodies;
     Vector3 gravity_dot = Vector3::Zero();
     FrictionGradient friction_dot;
+    double dmin_dot = 0;
     MechanismTangent mechanism;
 };
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps);

@@ -22,6 +22,8 @@ struct DampedPairSlopes {
     Four end_eps;             // d(dphi/dx)/deps at the end
     double closeness_by_eps;  // d(phi - phi_t0)/deps
     double weight;            // of the contact: in the stiffness
+    Four end_dmin;            // d(dphi/dx)/ddmin at the end
+    double slope_by_dmin;     // da/ddmin
 };
 
 double closeness_by_eps(const ContactPair& pair, const BarrierParameters& closeness) {
@@ -41,6 +43,11 @@ DampedPairSlopes slopes_of(const DampedContacts& at, const core::contact::BodyPa
     if (is_mollified(s.pair.end) || is_mollified(s.pair.start)) s.eps = mollifier_eps_gradient(s.X[0], s.X[1], s.X[2], s.X[3]);
     if (is_mollified(s.pair.end)) s.end_eps = pair_forces_eps_derivative(s.pair.end, closeness);
     s.closeness_by_eps = closeness_by_eps(s.pair.end, closeness) - closeness_by_eps(s.pair.start, closeness);
+    const double hat_slope = 2 * (closeness.activation - closeness.dmin) / closeness.gap_hat, slope = -2 * hat_slope;
+    s.end_dmin = pair_forces_dmin_derivative(s.pair.end, closeness, slope);
+    s.slope_by_dmin = (barrier_factor_slope(closeness) - slope) * s.pair.slope() +
+                      s.pair.stiffness * (pair_potential_dmin_derivative(s.pair.end, closeness, slope) -
+                                          pair_potential_dmin_derivative(s.pair.start, closeness, slope));
     return s;
 }
 
@@ -70,6 +77,7 @@ void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vecto
             const double along = p.pair.stiffness * dot(p.end, v);
             if (of_weight != nullptr) add_weight_gradient(*of_weight, -a * dot(p.end, v) / p.weight, to.areas_bar[s]);
             const double eps_bar = a * dot(p.end_eps, v) + along * p.closeness_by_eps;
+            to.model_bar[s].dmin_bar -= a * dot(p.end_dmin, v) + p.slope_by_dmin * dot(p.end, v);
             for (int i = 0; i < 4; ++i) {
                 const int body = p.body[i];
                 const Matrix3 &R = at.poses[body].rotation, R0 = at.damping.start[body].leftCols<3>();
@@ -94,11 +102,12 @@ void add_contact_damping_tangent(const DampedContacts& at, const DampingChanges&
         }
         const double eps_dot = dot(p.eps, X_dot), a = p.pair.slope();
         double a_dot = p.pair.stiffness * (dot(p.end, v) - dot(p.start, v_start) + p.closeness_by_eps * eps_dot);
+        a_dot += p.slope_by_dmin * direction.dmin_dot;
         if (of_weight != nullptr) a_dot += a * weight_tangent(*of_weight, dot_of.areas_dot) / p.weight;
         const Four change = pair_hessian_product(p.pair.end, at.damping.closeness, v);
         for (int i = 0; i < 4; ++i) {
             const int body = p.body[i];
-            const Vector3 force_dot = a_dot * p.end[i] + a * (change[i] + eps_dot * p.end_eps[i]);
+            const Vector3 force_dot = a_dot * p.end[i] + a * (change[i] + eps_dot * p.end_eps[i] + direction.dmin_dot * p.end_dmin[i]);
             out.value[body] += a * p.end[i] * p.X[i].homogeneous().transpose();
             out.dot[body] += force_dot * p.X[i].homogeneous().transpose();
             out.dot[body].leftCols<3>() += a * p.end[i] * X_dot[i].transpose();

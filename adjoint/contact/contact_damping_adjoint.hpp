@@ -25,7 +25,9 @@ struct DampedContacts {
 ///   vertices_bar -= dr/dX,  dr/dX_i = a R^T ((H v)_i - phi x f_i) + a sum_j (df_j/deps . v_j) deps/dX_i
 ///                                     + stiffness g (R^T f_i - R0^T f0_i + (dphi/deps - dphi_t0/deps) deps/dX_i),
 ///   start_bar[s][body] -= dr/dP0 = - stiffness g sum_i f0_i [X_i; 1]^T,
-/// and where stiffness is area-weighted, of each pair's weight w: weight_bar -= r/w.
+/// and where stiffness is area-weighted, of each pair's weight w: weight_bar -= r/w; and of the minimum separation, with
+/// stiffness'/stiffness = 2 g_hat'/g_hat - 2/(dmin + dhat), dmin_bar -= (stiffness' (phi - phi_t0) + stiffness (phi - phi_t0)') g + a sum
+/// df_i/ddmin . v_i.
 struct DampingGradients {
     std::vector<std::vector<Matrix34>>& start_bar;
     std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted

@@ -2,6 +2,7 @@
 #include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "fettle/core/base/contract.hpp"
 
@@ -34,6 +35,41 @@ double pair_potential_eps_derivative(const ContactPair& pair, const BarrierParam
     const double x = core::contact::edge_cross_squared(pair.x) / pair.mollifier_eps;
     const double b = core::contact::barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat).value;
     return p.factor * pair.weight * b * (-2 * x * (1 - x) / pair.mollifier_eps);
+}
+
+BarrierByDmin barrier_by_dmin(double distance_squared, const BarrierParameters& p, double slope) {
+    const double g = distance_squared - p.dmin * p.dmin, below = p.gap_hat - g;
+    if (!(below > 0)) return {};
+    const core::contact::ScalarDerivatives b = core::contact::barrier(g, p.gap_hat);
+    const double log_ratio = std::log(g / p.gap_hat), gap_dot = -2 * p.dmin, hat_dot = 2 * (p.activation - p.dmin);
+    const double value_hat = below * below / p.gap_hat - 2 * below * log_ratio;
+    const double first_hat = 2 * log_ratio - p.gap_hat / g + 1 - below * (2 / p.gap_hat + 1 / g);
+    return {p.factor * (slope * b.value + gap_dot * b.first + hat_dot * value_hat),
+            p.factor * (slope * b.first + gap_dot * b.second + hat_dot * first_hat)};
+}
+
+std::array<Vector3, 4> pair_forces_dmin_derivative(const ContactPair& pair, const BarrierParameters& p, double slope) {
+    const BarrierByDmin b = barrier_by_dmin(pair.closest.distance_squared, p, slope);
+    const bool mollified = is_mollified(pair);
+    const Vector3 e1 = pair.x[1] - pair.x[0], e2 = pair.x[3] - pair.x[2], n = e1.cross(e2);
+    const core::contact::ScalarDerivatives m =
+        mollified ? core::contact::edge_mollifier(n.squaredNorm(), pair.mollifier_eps) : core::contact::ScalarDerivatives{1, 0, 0};
+    std::array<Vector3, 4> out;
+    for (int i = 0; i < 4; ++i) out[i] = 2 * pair.weight * m.value * b.first * pair.closest.weight[i] * pair.closest.difference;
+    if (!mollified) return out;
+    const Vector3 c1 = 2 * e2.cross(n), c2 = 2 * n.cross(e1);
+    const double cross = pair.weight * b.value * m.first;
+    out[0] -= cross * c1;
+    out[1] += cross * c1;
+    out[2] -= cross * c2;
+    out[3] += cross * c2;
+    return out;
+}
+
+double pair_potential_dmin_derivative(const ContactPair& pair, const BarrierParameters& p, double slope) {
+    const double m =
+        is_mollified(pair) ? core::contact::edge_mollifier(core::contact::edge_cross_squared(pair.x), pair.mollifier_eps).value : 1;
+    return pair.weight * m * barrier_by_dmin(pair.closest.distance_squared, p, slope).value;
 }
 
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {

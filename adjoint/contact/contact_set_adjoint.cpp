@@ -35,7 +35,8 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
         for (const ContactPair& pair : list.contacts) {
             const std::vector<AreaShare>* of_weight = shares.next();
             const std::array<int, 4> body = bodies_of(list, pair);
-            const Four force = pair_forces(pair, at.parameters);
+            const Four force = pair_forces(pair, at.parameters),
+                       force_dmin = pair_forces_dmin_derivative(pair, at.parameters, barrier_factor_slope(at.parameters));
             const bool mollified = is_mollified(pair);
             Four force_eps, eps_gradient;
             if (mollified) {
@@ -50,6 +51,7 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
                     v[i] = motion.head<3>() + motion.tail<3>().cross(pair.x[i] - at.poses[body[i]].position);
                 }
                 if (of_weight != nullptr) add_weight_gradient(*of_weight, -dot(force, v) / pair.weight, areas_bar[s]);
+                model_bar[s].dmin_bar -= dot(force_dmin, v);
                 const Four change = pair_hessian_product(pair, at.parameters, v);
                 const double eps_bar = mollified ? dot(force_eps, v) : 0.0;
                 for (int i = 0; i < 4; ++i) {
@@ -80,6 +82,10 @@ void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Ma
                 const double eps_dot = dot(mollifier_eps_gradient(X[0], X[1], X[2], X[3]), X_dot);
                 const Four force_eps = pair_forces_eps_derivative(pair, at.parameters);
                 for (int i = 0; i < 4; ++i) force_dot[i] += eps_dot * force_eps[i];
+            }
+            if (direction.dmin_dot != 0) {
+                const Four force_dmin = pair_forces_dmin_derivative(pair, at.parameters, barrier_factor_slope(at.parameters));
+                for (int i = 0; i < 4; ++i) force_dot[i] += direction.dmin_dot * force_dmin[i];
             }
             const double weight_dot = of_weight == nullptr ? 0 : weight_tangent(*of_weight, areas_dot) / pair.weight;
             for (int i = 0; i < 4; ++i) {

@@ -21,7 +21,7 @@ struct ContactsAtPose {
     const core::contact::ContactAreas* areas = nullptr;  ///< of the same contacts, if the barrier is area-weighted
 };
 
-/// vertices_bar -= dr/dX for every seed s and body, with the motion lambda[s][body] = (dq, phi):
+/// vertices_bar -= dr/dX and dmin_bar -= dr/ddmin for every seed s and body, with the motion lambda[s][body] = (dq, phi):
 ///   v_i = lambda_q + phi x R X_i,   dr/dX_i = R^T ((H v)_i - phi x f_i) + sum_j (df_j/deps . v_j) deps/dX_i.
 /// Contacts are visited once, with all seeds inside.
 /// @param areas_bar  [seed][body]: the areas' part is subtracted; of no matter where nothing is area-weighted

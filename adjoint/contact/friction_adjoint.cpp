@@ -26,7 +26,7 @@ struct Lagged {
     Vector3 normal, point_first, point_second;
     double force = 0;        // lambda
     double by_distance = 0;  // its derivatives
-    double by_cross = 0, by_eps = 0;
+    double by_cross = 0, by_eps = 0, by_dmin = 0;
     Vector3 cross_1 = Vector3::Zero(), cross_2 = Vector3::Zero();  // dc/de1, dc/de2
     std::array<Vector3, 2> r{};                                    // r_a
     Matrix2 l = Matrix2::Identity();                               // K = l l^T
@@ -60,6 +60,7 @@ void find_force(const BarrierParameters& p, Lagged& g) {
         g.by_cross = scale * m.first * b.first * d;
         g.by_eps = scale * (-2 * x * (1 - x) / eps) * b.first * d;
     }
+    g.by_dmin = -2 * g.pair.weight * m.value * d * barrier_by_dmin(d * d, p, barrier_factor_slope(p)).first;
     g.force = scale * m.value * b.first * d;
     g.by_distance = scale * m.value * (2 * d * d * b.second + b.first);
 }
@@ -240,6 +241,7 @@ void subtract_friction_adjoint(const FrictionAtPose& at, const std::vector<std::
             bar.slip_reference_bar[s][list.first] += moved_bar * first.transpose();
             bar.slip_reference_bar[s][list.second] -= moved_bar * second.transpose();
             bar.model_bar[s].friction_bar[in_order(list)] -= g.force * rate;
+            bar.model_bar[s].dmin_bar -= lag_bar.force * g.by_dmin;
         }
     });
 }
@@ -253,6 +255,7 @@ void add_friction_tangent(const FrictionAtPose& at, const FrictionTangent& dot, 
             x_dot[i] = dot.lag_poses_dot[body] * g.X[i].homogeneous() + at.lag.poses[body].rotation * X_dot[i];
         }
         LagParts change = lag_tangent(g, x_dot, X_dot);
+        change.force += direction.dmin_dot * g.by_dmin;
         if (g.of_weight != nullptr) change.force += weight_tangent(*g.of_weight, dot.areas_dot) * g.force / g.pair.weight;
         const Eigen::Vector4d first = g.point_first.homogeneous(), second = g.point_second.homogeneous();
         const Vector3 moved_dot = (dot.poses_dot[list.first] - dot.slip_reference_dot[list.first]) * first -

@@ -10,7 +10,7 @@
 /// (geometry/distance.hpp):
 ///   A_a . dx = r_a . sum w_i dx_i + r . sum w'_a,i dx_i,   K dbeta = -A . dx,   dw_i = sum_a w'_a,i dbeta_a,
 ///   dp_a = sum (w_i dX_i + dw_i X_i),   dn = (1 - n n^T) (sum w_i dx_i + sum_a r_a dbeta_a) / d,
-///   lambda = -2 factor w m(c, eps) b'(d^2 - dmin^2) d.
+///   lambda = -2 factor w m(c, eps) b'(d^2 - dmin^2) d,   which hangs on dmin too (contact_pair_adjoint.hpp).
 /// A contact's weight w is a multiplicity, which is constant, or follows from the areas (area_weights_adjoint.hpp): dlambda/dw = lambda/w.
 /// Derivatives are those of the features that were closest.
 #pragma once
@@ -43,7 +43,7 @@ struct FrictionAdjoint {
     std::vector<std::vector<Matrix34>>& slip_reference_bar;
     std::vector<std::vector<Matrix34>>& lag_poses_bar;
     std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted
-    std::vector<ModelGradient>& model_bar;            ///< vertices and coefficients
+    std::vector<ModelGradient>& model_bar;            ///< vertices, coefficients, dmin
 };
 
 /// Subtracts dr/d(lag, slip references, vertices, coefficients) for every seed s, with the motion lambda[s][body] = (dq, phi).

@@ -248,7 +248,8 @@ NewmarkStepChange newmark_rates_adjoint(const NewmarkStep& s, const NewmarkRates
     return out;
 }
 
-Matrix34 start_acceleration_tangent(const Body& body, const Vector3& gravity, const StartChange& dot) {
+Matrix34 start_acceleration_tangent(const StartOf& at, const StartChange& dot) {
+    const Body& body = at.body;
     const Matrix3& R = body.pose_start.rotation;
     const bool is_damped = core::energy::is_damped(body);
     const Matrix4 damping = is_damped ? core::energy::damping_moments(body) : Matrix4(Matrix4::Zero());
@@ -257,11 +258,9 @@ Matrix34 start_acceleration_tangent(const Body& body, const Vector3& gravity, co
     const Vector3 omega = axial_vector(body.velocity_start.leftCols<3>() * R.transpose());
     const Vector3 omega_dot = axial_change(body.velocity_start.leftCols<3>(), R, dot.velocity.leftCols<3>(), dot.rotation);
     Matrix34 weight = Matrix34::Zero(), weight_dot = Matrix34::Zero();
-    weight.col(3) = gravity;
+    weight.col(3) = at.gravity;
     weight_dot.col(3) = dot.gravity;
-    Vector6 besides;
-    besides << body.force, body.torque;
-    const Vector6 loads = along_motions(weight * body.moments - body.velocity_start * damping, R) + besides;
+    const Vector6 loads = along_motions(weight * body.moments - body.velocity_start * damping, R) + at.loads;
     const Vector6 a = balance.accelerations(omega, loads, Vector6::Zero());
     const Matrix34 q = acceleration_of(R, omega, a);
     Matrix34 q_dot;
@@ -270,25 +269,24 @@ Matrix34 start_acceleration_tangent(const Body& body, const Vector3& gravity, co
     const Matrix34 g_dot =
         (weight_dot - q_dot) * body.moments + (weight - q) * dot.moments - dot.velocity * damping - body.velocity_start * damping_dot;
     Vector6 residual_dot = along_motions(g_dot, R);
-    residual_dot.head<3>() += dot.force;
-    residual_dot.tail<3>() += twice_axial(g.leftCols<3>() * dot.rotation.transpose()) + dot.torque;
+    residual_dot += dot.loads;
+    residual_dot.tail<3>() += twice_axial(g.leftCols<3>() * dot.rotation.transpose());
     const Vector6 a_dot = balance.solved(residual_dot);
     Matrix34 out;
     out << spin_change(omega, omega_dot, a_dot.tail<3>()) * R + spin_of(omega, a.tail<3>()) * dot.rotation, a_dot.head<3>();
     return out;
 }
 
-StartChange start_acceleration_adjoint(const Body& body, const Vector3& gravity, const Matrix34& bar) {
+StartChange start_acceleration_adjoint(const StartOf& at, const Matrix34& bar) {
+    const Body& body = at.body;
     const Matrix3& R = body.pose_start.rotation;
     const bool is_damped = core::energy::is_damped(body);
     const Matrix4 damping = is_damped ? core::energy::damping_moments(body) : Matrix4(Matrix4::Zero());
     const Balance balance(body, R);
     const Vector3 omega = axial_vector(body.velocity_start.leftCols<3>() * R.transpose());
     Matrix34 weight = Matrix34::Zero();
-    weight.col(3) = gravity;
-    Vector6 besides;
-    besides << body.force, body.torque;
-    const Vector6 loads = along_motions(weight * body.moments - body.velocity_start * damping, R) + besides;
+    weight.col(3) = at.gravity;
+    const Vector6 loads = along_motions(weight * body.moments - body.velocity_start * damping, R) + at.loads;
     const Vector6 a = balance.accelerations(omega, loads, Vector6::Zero());
     BalanceGradient sum;
     Vector6 a_bar = Vector6::Zero();
@@ -301,8 +299,7 @@ StartChange start_acceleration_adjoint(const Body& body, const Vector3& gravity,
     out.velocity = -v * damping;
     out.rotation = sum.rotation + g.rotation - cross_matrix(g.mu.tail<3>()).transpose() * (body.velocity_start * damping).leftCols<3>();
     out.gravity = g.numeric.col(3);
-    out.force = g.mu.head<3>();
-    out.torque = g.mu.tail<3>();
+    out.loads = g.mu;
     out.moments = g.moments;
     if (is_damped) {
         const Matrix4 m = v.transpose() * body.velocity_start;

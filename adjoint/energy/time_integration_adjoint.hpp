@@ -9,7 +9,8 @@
 /// (the first time h alpha_0), prescribed ones being N's own, and V' = [[omega] R', V e4 + h/2 (A e4 + a_q)] with the last omega, A' = Q.
 /// Backwards each solve takes one with the same matrix: mu = H^-1 a_bar, and r = <(N - Q) M, v>, v = [[mu_phi] R', mu_q], has the
 /// derivatives v M in N, - v M in Q, sym(v^T (N - Q)) in M, and through v in R'.
-/// The start's A is the same of N M = [0 | g] M - V C, C the damping's moments, and the loads f . mu_q + tau . mu_phi.
+/// The start's A is the same of N M = [0 | g] M - V C, C the damping's moments, and the loads f . mu_q + tau . mu_phi, whatever they follow
+/// from (start_history_adjoint.hpp).
 #pragma once
 
 #include <vector>
@@ -44,11 +45,18 @@ NewmarkStepChange newmark_rates_adjoint(const NewmarkStep& step, const NewmarkRa
 struct StartChange {
     Matrix34 velocity = Matrix34::Zero();  ///< Body::velocity_start
     Matrix3 rotation = Matrix3::Zero();    ///< of Body::pose_start
-    Vector3 gravity = Vector3::Zero(), force = Vector3::Zero(), torque = Vector3::Zero();
+    Vector3 gravity = Vector3::Zero();
+    Vector6 loads = Vector6::Zero();  ///< force and torque
     Matrix4 moments = Matrix4::Zero();
 };
-Matrix34 start_acceleration_tangent(const core::model::Body& body, const Vector3& gravity, const StartChange& dot);
-StartChange start_acceleration_adjoint(const core::model::Body& body, const Vector3& gravity, const Matrix34& bar);
+/// What a body's acceleration at the start is taken at.
+struct StartOf {
+    const core::model::Body& body;
+    Vector3 gravity;
+    Vector6 loads;
+};
+Matrix34 start_acceleration_tangent(const StartOf& at, const StartChange& dot);
+StartChange start_acceleration_adjoint(const StartOf& at, const Matrix34& bar);
 
 /// The chart's torque J_l(psi)^T tau, psi the axial vector of P_hat R^T (J_l^T: the left Jacobian's transpose).
 struct ChartTorqueChange {

@@ -4,7 +4,8 @@
 /// A frame's axes are, for an axis of length |a|, z = a/|a|, and across it
 ///   x = unit(e x z), y = z x x, e the world's axis least along z;   of end b, as far as the two axes are not across each other,
 ///   x = unit((1 - z z^T) R_b^T R_a x_a), y = z x x.
-/// Not here, for they are not differentiated: the stiffness of stops, and the radius by which stops and friction of angles are measured.
+/// Constants are the stiffness of stops, and the radius by which stops and friction of angles are measured (core/model/build_mechanism.hpp,
+/// TermScales).
 #pragma once
 
 #include <array>

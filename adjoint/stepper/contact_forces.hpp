@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// The resultant force of contact on a body at each step's end (core/energy/term_report.hpp, without friction), and its derivatives:
-///   F = - sum_i (f_i + a g_i) / weight   over the body's vertices in contact,
-/// f_i = d(barrier)/dx_i, a g_i the damping's. For a direction n, F . n is minus the contacts' part of the step's residual along the
-/// translation n of the body, over the weight, so that its derivative in poses is the contacts' Hessian along it, and that in the shapes
-/// what the sweeps use (adjoint/contact).
+/// The resultant force of contact on a body at each step's end (core/energy/term_report.hpp), friction included, and its derivatives:
+///   F = - sum_i (f_i + a g_i + t_i) / weight   over the body's vertices in contact,
+/// f_i = d(barrier)/dx_i, a g_i the damping's, t_i the friction's of the step's last round. For a direction n, F . n is minus the contacts'
+/// part of the step's residual along the translation n of the body, over the weight, so that its derivative in poses is the contacts'
+/// Hessian along it, and that in the shapes what the sweeps use (adjoint/contact). Friction's hangs on P_slip too, and on where the round
+/// before ended (TrajectoryGradient::lag_bar).
 #pragma once
 
 #include <optional>
@@ -19,11 +20,11 @@ struct ContactForceOf {
     std::optional<int> other;  ///< what presses; nullopt: all bodies
 };
 
-/// Per step, world [N].
+/// Per step, world [N]. Contract: with friction the trajectory holds where its rounds ended (simulated for_gradient).
 std::vector<Vector3> contact_forces(const core::model::Model& model, const core::stepper::Trajectory& trajectory, const ContactForceOf& of);
 
-/// Adds the seeds of sum_t weights[t] . F_t. Contract: no friction between these bodies; no equal areas of edges in an area-weighted
-/// barrier (the sweeps refuse those).
+/// Adds the seeds of sum_t weights[t] . F_t. Contract: as above; no equal areas of edges in an area-weighted barrier (the sweeps refuse
+/// those).
 void add_contact_force_seeds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, const ContactForceOf& of,
                              const std::vector<Vector3>& weights, Seeds& seeds);
 
@@ -32,7 +33,7 @@ struct TangentMotion {
     const ModelTangent& direction;
     const std::vector<std::vector<Vector6>>& poses_dot;
 };
-/// Per step, how F changes: of dE/dP and its change alone, without Hessians in (q, phi).
+/// Per step, how F changes: of dE/dP and its change alone, without Hessians in (q, phi). Contract: no friction between these bodies.
 std::vector<Vector3> contact_force_tangents(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                             const ContactForceOf& of, const TangentMotion& motion);
 

@@ -7,6 +7,7 @@
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
+#include "fettle/adjoint/energy/start_history_adjoint.hpp"
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
@@ -59,6 +60,7 @@ public:
         if (steps > 0) add_seeds(steps - 1, start_);
         for (int t = steps - 1; t >= 0; --t) {
             if (t > 0) add_seeds(t - 1, before_);
+            if (is_newmark()) add_seeds_of(t, &TrajectoryGradient::velocity_bar, velocity_end_);
             if (Errors errors = step_back(t); !errors.empty()) return errors;
             for (auto& bodies : end_)
                 for (Matrix34& p : bodies) p.setZero();
@@ -78,6 +80,15 @@ private:
     void add_seeds(int t, std::vector<std::vector<Matrix34>>& pose_bar) const {
         for (std::size_t s = 0; s < seeds_.size(); ++s)
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) pose_bar[s][i] += seeds_[s].pose_bar[t][i];
+    }
+
+    // Of the step, where there are any.
+    void add_seeds_of(int t, std::vector<std::vector<Matrix34>> TrajectoryGradient::*which, std::vector<std::vector<Matrix34>>& to) const {
+        for (std::size_t s = 0; s < seeds_.size(); ++s) {
+            const std::vector<std::vector<Matrix34>>& bar = seeds_[s].*which;
+            if (bar.empty() || bar[static_cast<std::size_t>(t)].empty()) continue;
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) to[s][i] += bar[static_cast<std::size_t>(t)][i];
+        }
     }
 
     bool is_bdf2() const { return model_.integrator == core::scene::Integrator::bdf2; }
@@ -160,6 +171,7 @@ private:
             if (is_last && is_bdf2()) velocity_back(step);
             if (is_last && is_newmark()) rates_back(t);
             if (!round_back(t, step, is_last)) return StepSolver::unsolved(trajectory_, t);
+            if (is_last && step.lag) add_seeds_of(t, &TrajectoryGradient::lag_bar, step_bar_.lag_poses_bar);
             if (rounds.is_fixed_point()) {
                 if (Errors errors = fixed_point_back(t, step); !errors.empty()) return errors;
             } else if (round > 1) {
@@ -335,28 +347,20 @@ private:
         out_[s].gravity_bar += weight * hat.col(3);
     }
 
-    // The first A follows from the start.
-    void newmark_start_back(std::size_t s, std::size_t i) {
-        const Body& body = model_.bodies[i];
-        BodyGradient& bar = out_[s].bodies[i];
-        bar.velocity_start_bar += velocity_end_[s][i];
-        if (!core::energy::has_free_dof(body)) return;
-        const energy::StartChange start = energy::start_acceleration_adjoint(body, model_.gravity, acceleration_end_[s][i]);
-        bar.velocity_start_bar += start.velocity;
-        end_[s][i].leftCols<3>() += start.rotation;
-        bar.force_bar += start.force;
-        bar.torque_bar += start.torque;
-        out_[s].gravity_bar += start.gravity;
-        step_bar_.moments_bar[s][i] += start.moments;
+    // V and A at the start.
+    void newmark_start_back() {
+        for (std::size_t s = 0; s < seeds_.size(); ++s)
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) out_[s].bodies[i].velocity_start_bar += velocity_end_[s][i];
+        energy::start_accelerations_adjoint(model_, acceleration_end_, {end_, step_bar_.moments_bar, out_});
     }
 
     // After the first step the swaps have left P_bar[0] in end_.
     void finish() {
+        if (is_newmark()) newmark_start_back();
         for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
             const Body& body = model_.bodies[i];
             for (std::size_t s = 0; s < seeds_.size(); ++s) {
                 BodyGradient& bar = out_[s].bodies[i];
-                if (is_newmark()) newmark_start_back(s, i);
                 bar.pose_start_bar = end_[s][i];
                 model::mass_moments_adjoint(body, model_.dhat, step_bar_.moments_bar[s][i], bar);
                 if (model_.area_weighted) contact::areas_adjoint(body.mesh, step_bar_.areas_bar[s][i], bar.vertices_bar);

@@ -5,13 +5,17 @@
 
 namespace fettle::adjoint::stepper {
 
-std::vector<VectorX> row_multipliers(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+std::vector<VectorX> row_multipliers(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                     std::vector<double>* weights) {
     std::vector<VectorX> out;
     if (model.mechanism.rows.empty()) return out;
     StepSolver solver(model);
     const SweepHistory history = sweep_history(model, trajectory);
-    for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
-        out.push_back(linearise_step(model, trajectory, static_cast<int>(t), history, solver).multipliers);
+    for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
+        LinearisedStep step = linearise_step(model, trajectory, static_cast<int>(t), history, solver);
+        out.push_back(std::move(step.multipliers));
+        if (weights != nullptr) weights->push_back(step.problem.weight);
+    }
     return out;
 }
 

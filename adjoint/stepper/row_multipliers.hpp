@@ -13,6 +13,8 @@ namespace fettle::adjoint::stepper {
 /// [step][row]: the multipliers m of C^T m = -g over what is free, g the gradient of the potential times its weight at the step's end. A
 /// row's force along its measure is -m / weight. Empty where the model has no rows.
 /// Contract: the trajectory is the model's, simulated for_gradient; as exact as its steps' residuals are small.
-std::vector<VectorX> row_multipliers(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+/// @param weights  optional: [step], the potential's weight, which is BDF2's own in its first step.
+std::vector<VectorX> row_multipliers(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                     std::vector<double>* weights = nullptr);
 
 }  // namespace fettle::adjoint::stepper

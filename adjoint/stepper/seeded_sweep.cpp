@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
 
+#include <algorithm>
+
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
 
 namespace fettle::adjoint::stepper {
 
 namespace {
 
+bool is_zero(const std::vector<Matrix34>& bars) {
+    return std::all_of(bars.begin(), bars.end(), [](const Matrix34& bar) { return bar.isZero(0); });
+}
+
 bool reaches_past_start(const TrajectoryGradient& seed) {
-    for (std::size_t t = 1; t < seed.pose_bar.size(); ++t) {
-        for (const Matrix34& bar : seed.pose_bar[t]) {
-            if (!bar.isZero(0)) return true;
-        }
-    }
+    for (std::size_t t = 1; t < seed.pose_bar.size(); ++t)
+        if (!is_zero(seed.pose_bar[t])) return true;
+    for (const auto* of_steps : {&seed.velocity_bar, &seed.lag_bar})
+        if (!std::all_of(of_steps->begin(), of_steps->end(), is_zero)) return true;
     for (const VectorX& bar : seed.multiplier_bar)
         if (bar.size() > 0 && !bar.isZero(0)) return true;
     return false;

@@ -9,6 +9,7 @@
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
 
 namespace fettle::adjoint::stepper {

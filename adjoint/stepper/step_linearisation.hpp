@@ -125,6 +125,9 @@ public:
     const std::shared_ptr<const contact::LaggedContacts>& at_start() const { return ends_.front().at; }
     const std::shared_ptr<const contact::LaggedContacts>& at_end() const { return ends_.back().at; }
 
+    /// What the last round took friction from; null without friction.
+    const std::shared_ptr<const contact::LaggedContacts>& last_lag() const { return ends_[ends_.size() - 2].at; }
+
     /// @param round  1 .. count(); the last is the step's end.
     LinearisedStep linearise(int round, StepSolver& solver) const;
 

@@ -7,6 +7,7 @@
 
 #include "fettle/adjoint/constraint/row_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
+#include "fettle/adjoint/energy/start_history_adjoint.hpp"
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
@@ -57,8 +58,8 @@ public:
             poses_dot_.push_back(matrix_of(dot.pose_start_dot, trajectory.poses[0][i].rotation));
             velocities_dot_.push_back(dot.velocity_start_dot);
             if (model.area_weighted) areas_dot_.push_back(contact::areas_tangent(body.mesh, dot.vertices_dot));
-            if (is_newmark()) accelerations_dot_.push_back(start_acceleration_dot(i));
         }
+        if (is_newmark()) accelerations_dot_ = energy::start_accelerations_tangent(model, {direction, poses_dot_, moments_dot_});
         poses_before_dot_ = poses_dot_;  // of no matter in the first step
         out_.push_back(tangents(0));
     }
@@ -116,21 +117,6 @@ private:
     }
 
     bool is_newmark() const { return model_.integrator == core::scene::Integrator::newmark; }
-
-    // Newmark's first A.
-    Matrix34 start_acceleration_dot(std::size_t i) const {
-        const Body& body = model_.bodies[i];
-        if (!core::energy::has_free_dof(body)) return Matrix34::Zero();
-        const BodyTangent& dot = direction_.bodies[i];
-        energy::StartChange change;
-        change.velocity = dot.velocity_start_dot;
-        change.rotation = poses_dot_[i].leftCols<3>();
-        change.gravity = direction_.gravity_dot;
-        change.force = dot.force_dot;
-        change.torque = dot.torque_dot;
-        change.moments = moments_dot_[i];
-        return start_acceleration_tangent(body, model_.gravity, change);
-    }
 
     // Of the constant that acts on theta as the body's torque.
     Vector3 torque_change(int t, std::size_t i, const LinearisedStep& step, const Matrix34& pose_hat_dot) const {

@@ -80,19 +80,6 @@ RigidRates newmark_rates(const model::Body& body, double h, const Matrix34& befo
     return out;
 }
 
-// Under gravity, the body's own loads and its damping.
-Matrix34 start_acceleration(const model::Model& model, const model::Body& body) {
-    const Matrix3& R = body.pose_start.rotation;
-    Matrix34 gravity = Matrix34::Zero();
-    gravity.col(3) = model.gravity;
-    Vector6 force = force_of(gravity, body.moments, R);
-    force.head<3>() += body.force;
-    force.tail<3>() += body.torque;
-    if (is_damped(body)) force -= force_of(body.velocity_start, damping_moments(body), R);
-    const Vector3 omega = axial(body.velocity_start.leftCols<3>() * R.transpose());
-    return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
-}
-
 // The chart's torque is J_l(theta)^-T of what is handed over, which turns it by half of the step's rotation: an error of first order. A
 // second-order integrator gets the torque turned back by the predicted rotation.
 Vector3 chart_torque(const model::Body& body, const Matrix3& R, const Matrix34& pose_hat) {
@@ -101,16 +88,15 @@ Vector3 chart_torque(const model::Body& body, const Matrix3& R, const Matrix34& 
 
 }  // namespace
 
-History start_history(const model::Model& model) {
-    History history;
-    history.angles = model.mechanism.angles_start;
-    for (const model::Body& body : model.bodies) {
-        history.poses.push_back(body.pose_start);
-        history.velocities.push_back(body.velocity_start);
-        if (model.integrator == Integrator::newmark)
-            history.accelerations.push_back(is_prescribed(body) ? Matrix34(Matrix34::Zero()) : start_acceleration(model, body));
-    }
-    return history;
+Matrix34 start_acceleration(const model::Body& body, const Vector3& gravity, const Vector6& loads) {
+    if (is_prescribed(body)) return Matrix34::Zero();
+    const Matrix3& R = body.pose_start.rotation;
+    Matrix34 weight = Matrix34::Zero();
+    weight.col(3) = gravity;
+    Vector6 force = force_of(weight, body.moments, R) + loads;
+    if (is_damped(body)) force -= force_of(body.velocity_start, damping_moments(body), R);
+    const Vector3 omega = axial(body.velocity_start.leftCols<3>() * R.transpose());
+    return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
 }
 
 IntegrationStep integration_step(const model::Model& model, const History& history) {

@@ -34,8 +34,9 @@ struct History {
     std::vector<double> angles{};             ///< of the mechanism's measures at P0, with their turns; empty: by half a turn
 };
 
-/// At the start of a simulation. Newmark's A0 is that of each body on its own, without contact.
-History start_history(const model::Model& model);
+/// Newmark's A0 of a body (start_history.hpp) under gravity, its own damping, and a force and torque about its reference point (world);
+/// prescribed coordinates have none, a body that is prescribed altogether has 0.
+Matrix34 start_acceleration(const model::Body& body, const Vector3& gravity, const Vector6& loads);
 
 struct IntegrationStep {
     std::vector<Matrix34> pose_hat;     ///< of dynamic steps gravity included, other loads not

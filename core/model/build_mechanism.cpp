@@ -39,11 +39,13 @@ Matrix3 axes_about(const Vector3& z) {
 
 class MechanismBuilder {
 public:
-    MechanismBuilder(const scene::Scene& scene, Model& model) : scene_(scene), model_(model), out_(model.mechanism) {
+    MechanismBuilder(const scene::Scene& scene, Model& model, const TermScales& scales)
+        : scene_(scene), model_(model), out_(model.mechanism), radii_(scales.radii) {
         for (std::size_t i = 0; i < model.bodies.size(); ++i) body_of_name_[model.bodies[i].name] = static_cast<int>(i);
+        for (std::size_t i = radii_.size(); i < model.bodies.size(); ++i) radii_.push_back(model.bodies[i].radius);
         Model plain = model;
         plain.area_weighted = false;
-        stop_stiffness_ = model.area_weighted ? choose_kappa(plain) : model.kappa;
+        stop_stiffness_ = scales.stop_stiffness ? *scales.stop_stiffness : model.area_weighted ? choose_kappa(plain) : model.kappa;
     }
 
     Errors build() {
@@ -150,6 +152,16 @@ private:
         return most;
     }
 
+    // Of a term.
+    double term_lever(const measure::Measure& m) const {
+        double most = model_.dhat;
+        for (const int frame : {m.a, m.b}) {
+            const int body = out_.set.frames[static_cast<std::size_t>(frame)].body;
+            if (body != measure::world) most = std::max(most, radii_[static_cast<std::size_t>(body)]);
+        }
+        return most;
+    }
+
     void add_joint(const scene::Joint& from) {
         if (!joint_of_name_.try_emplace(from.name, static_cast<int>(out_.joints.size())).second)
             return fail(ErrorCode::inconsistent, from.where, "another joint is called `" + from.name + "` already");
@@ -200,10 +212,12 @@ private:
             add_row(slide, 1, value_as_written(slide));
             out_.rows.back().parts.push_back({joint.coordinate, -from.pitch / (2 * std::numbers::pi)});
         }
-        if (joint.coordinate >= 0) add_forces(from.forces, joint.coordinate, turns(from.kind) ? lever(e.a, e.b) : 1, from.name);
+        if (joint.coordinate >= 0) add_forces(from.forces, joint.coordinate, from.name);
     }
 
-    void add_forces(const scene::CoordinateForces& from, int measure, double length, const std::string& name) {
+    void add_forces(const scene::CoordinateForces& from, int measure, const std::string& name) {
+        const Measure& m = out_.set.measures[static_cast<std::size_t>(measure)];
+        const double length = m.kind == MeasureKind::angle ? term_lever(m) : 1;
         const double start = value_as_written(measure);
         if (from.stiffness > 0) {
             const double rest = from.rest.value_or(start - from.preload / from.stiffness);
@@ -253,7 +267,7 @@ private:
     void add_spring(const scene::Spring& from) {
         if (!from.joint.empty()) {
             const Joint* joint = find_joint(from.joint, from.where);
-            if (joint) add_forces(from.forces, joint->coordinate, turns(joint->kind) ? lever(joint->a, joint->b) : 1, from.name);
+            if (joint) add_forces(from.forces, joint->coordinate, from.name);
             return;
         }
         const std::optional<Ends> ends = add_ends(from.a, from.b, from.where);
@@ -261,7 +275,7 @@ private:
         const int length = add_measure({MeasureKind::distance, ends->frame_a, ends->frame_b, 0, 0, {}});
         if (!(value_as_written(length) > 0))
             return fail(ErrorCode::out_of_range, from.where, "the ends of `" + from.name + "` are at one place: it has no direction");
-        add_forces(from.forces, length, 1, from.name);
+        add_forces(from.forces, length, from.name);
     }
 
     // Of a curve in one time step, while its table runs and after.
@@ -318,6 +332,7 @@ private:
     const scene::Scene& scene_;
     Model& model_;
     Mechanism& out_;
+    std::vector<double> radii_;
     double stop_stiffness_ = 0;
     Origin origin_;  // of what is being added
     std::map<std::string, int> body_of_name_, joint_of_name_;
@@ -326,9 +341,9 @@ private:
 
 }  // namespace
 
-Errors build_mechanism(const scene::Scene& scene, Model& model) {
+Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales) {
     if (scene.mechanism.empty()) return {};
-    if (Errors errors = MechanismBuilder(scene, model).build(); !errors.empty()) return errors;
+    if (Errors errors = MechanismBuilder(scene, model, scales).build(); !errors.empty()) return errors;
     if (model.integrator == scene::Integrator::newmark && !model.mechanism.rows.empty())
         return {{ErrorCode::unsupported, scene.path + "#/integrator",
                  "`newmark` lets joints oscillate; `implicit_euler`, `bdf2` and `quasi_static` can have them"}};

@@ -3,10 +3,20 @@
 /// put where their joints are met (constraint/assembly.hpp), and their velocities are made to agree. docs/method.md section 9.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
 
 namespace fettle::core::model {
+
+/// What terms take of the bodies besides their frames. A design's trials have those of the design as written, so that they are no hidden
+/// function of its parameters.
+struct TermScales {
+    std::optional<double> stop_stiffness;  ///< [N/m]; else kappa, of an area-weighted barrier what kappa would be without areas
+    std::vector<double> radii;             ///< per body [m]: the lever of angles in stops and friction; empty: the bodies' own
+};
 
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
 /// body that had to. Rows that follow from others are told in a warning and left out.
@@ -14,6 +24,6 @@ namespace fettle::core::model {
 /// Errors: names that are not there, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step
 /// (inconsistent, out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another;
 /// Newmark, which has no rows (unsupported).
-base::Errors build_mechanism(const scene::Scene& scene, Model& model);
+base::Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales = {});
 
 }  // namespace fettle::core::model

@@ -11,7 +11,6 @@
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/model/body_mass.hpp"
-#include "fettle/core/model/build_mechanism.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/model/start_check.hpp"
 
@@ -226,7 +225,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
         model.proximal_weight = options.proximal_weight ? *options.proximal_weight : choose_proximal_weight(model);
         warn_of_unused_rates(model);
     }
-    if (errors = build_mechanism(scene, model); !errors.empty()) return errors;
+    if (errors = build_mechanism(scene, model, options.term_scales); !errors.empty()) return errors;
     if (options.check_start) {
         StartReport start = report_start(model);
         errors = std::move(start.errors);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/model/build_mechanism.hpp"
 #include "fettle/core/model/choose_kappa.hpp"
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/model/model.hpp"
@@ -17,6 +18,7 @@ struct BuildOptions {
     std::vector<Vector3> reference_points;  ///< one per body, from the first design; empty: centres of mass of this one
     std::optional<double> kappa;            ///< overrides the scene's
     std::optional<double> proximal_weight;  ///< of quasi-static steps, from the first design; default: choose_proximal_weight's
+    TermScales term_scales;                 ///< of joints and springs, from the first design
     bool check_meshes = true;               ///< by each body's MeshPolicy (a design's trial checks its own)
     bool check_start = true;                ///< refuse bodies that intersect at the start (a clearance report tells of them instead)
 };

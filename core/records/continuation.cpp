@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 
 namespace fettle::core::records {

@@ -12,6 +12,7 @@ bool is_vector(MoveTarget target) {
         case MoveTarget::velocity:
         case MoveTarget::angular_velocity:
         case MoveTarget::force:
+        case MoveTarget::torque:
         case MoveTarget::gravity:
         case MoveTarget::point_a:
         case MoveTarget::point_b:
@@ -24,6 +25,8 @@ bool is_vector(MoveTarget target) {
             return false;
     }
 }
+
+bool is_of_scene(MoveTarget target) { return target == MoveTarget::gravity || target == MoveTarget::dmin; }
 
 bool is_of_friction(MoveTarget target) { return target >= MoveTarget::body_mu && target <= MoveTarget::default_mu; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Design parameters and what they move: dimensions of shapes, start poses and velocities, densities, gravity, forces, rates, and the
-/// numbers of joints, springs, motors and loads. How a scene is moved by them: problem/moved_scene.hpp.
+/// Design parameters and what they move: dimensions of shapes, start poses and velocities, densities, gravity, forces, torques, rates, the
+/// minimum separation, and the numbers of joints, springs, motors and loads. How a scene is moved by them: problem/moved_scene.hpp.
 ///
 /// What a parameter moves is a sum over all moves of that target: dimension = sum (scale p + offset), and so for every number and for each
 /// component of a vector that has a nonzero coefficient. The scene's own value of a moved target is replaced, so that a design says all by
@@ -25,7 +25,9 @@ enum class MoveTarget {
     velocity,          ///< vector: linear_velocity
     angular_velocity,  ///< vector
     force,             ///< vector: on a body
+    torque,            ///< vector: on a body, world axes
     gravity,           ///< vector: of the scene; `body` counts for nothing
+    dmin,              ///< minimum separation, of the scene; `body` counts for nothing
     // Coefficients of friction:
     body_mu,      ///< a body's own
     material_mu,  ///< of materials[0]
@@ -53,6 +55,8 @@ enum class MoveTarget {
 
 /// Is it three numbers, whose components are moved by `direction`?
 bool is_vector(MoveTarget target);
+/// Is it of the scene as a whole?
+bool is_of_scene(MoveTarget target);
 /// Is it a coefficient of friction?
 bool is_of_friction(MoveTarget target);
 /// Is it a number or vector (those from point_a on) of one of the scene's joints, springs, motors and loads?

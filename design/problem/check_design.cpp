@@ -13,7 +13,6 @@ namespace fettle::design::problem {
 
 namespace {
 
-namespace model = core::model;
 using description::Design;
 using description::Move;
 using description::MoveTarget;
@@ -52,40 +51,10 @@ public:
                 add(ErrorCode::out_of_range, where, "its bounds are in order, its margin is not negative, its unit is above 0");
             check_quantity(constraint.quantity.get(), where);
         }
-        if (!model_.mechanism.empty() && !design_.parameters.empty()) check_joints();
         return errors_;
     }
 
 private:
-    // What is not differentiated of joints and springs: refused, never left out.
-    void check_joints() {
-        const auto& terms = model_.mechanism.terms;
-        const auto is_stop = [](const model::MeasureTerm& term) { return term.kind == model::LawKind::stop; };
-        if (model_.area_weighted && std::any_of(terms.begin(), terms.end(), is_stop))
-            add(ErrorCode::unsupported, "contact/area_weighted",
-                "stops of joints have a stiffness that follows from the bodies' masses where the barrier is area-weighted: that cannot be "
-                "differentiated; switch `area_weighted` off");
-        for (const Parameter& parameter : design_.parameters)
-            for (const Move& move : parameter.moves)
-                if (move.target == MoveTarget::dimension && has_body(move.body)) check_joined_dimension(parameter, move);
-    }
-
-    // Stops and friction of angles act at the radius of the bodies.
-    void check_joined_dimension(const Parameter& parameter, const Move& move) {
-        const std::string& body = design_.scene.bodies[static_cast<size_t>(move.body)].name;
-        const auto acts = [&](const model::MeasureTerm& term) {
-            if (term.length == 1 || (term.kind != model::LawKind::stop && term.kind != model::LawKind::friction)) return false;
-            const core::measure::Measure& m = model_.mechanism.set.measures[static_cast<size_t>(term.measure)];
-            const auto of = [&](int frame) { return model_.mechanism.set.frames[static_cast<size_t>(frame)].body; };
-            return of(m.a) == move.body || of(m.b) == move.body;
-        };
-        const auto& terms = model_.mechanism.terms;
-        if (std::any_of(terms.begin(), terms.end(), acts))
-            add(ErrorCode::unsupported, place(parameter),
-                "it changes the size of body `" + body +
-                    "`, by which stops and friction of turning joints are measured: that cannot be differentiated yet");
-    }
-
     static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
 
     void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
@@ -124,7 +93,7 @@ private:
             } else if (is_of_friction(move.target)) {
                 const std::string reason = friction_misfit(design_.scene, move);
                 if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
-            } else if (move.target == MoveTarget::gravity) {
+            } else if (is_of_scene(move.target)) {
                 continue;
             } else if (!has_body(move.body)) {
                 add(ErrorCode::out_of_range, place(parameter), "it moves body " + std::to_string(move.body) + ", which is not there");

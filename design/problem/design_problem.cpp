@@ -32,6 +32,14 @@ std::string first_reason(const Errors& errors) {
     return reason;
 }
 
+core::model::TermScales term_scales_of(const Model& model) {
+    core::model::TermScales scales;
+    for (const core::model::Body& body : model.bodies) scales.radii.push_back(body.radius);
+    for (const core::model::MeasureTerm& term : model.mechanism.terms)
+        if (term.kind == core::model::LawKind::stop) scales.stop_stiffness = term.coefficient;
+    return scales;
+}
+
 }  // namespace
 
 Result<DesignProblem> DesignProblem::create(Design design) {
@@ -42,6 +50,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     DesignProblem problem;
     for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
     problem.kappa_ = model->kappa;
+    problem.term_scales_ = term_scales_of(*model);
     problem.warnings_ = model->warnings;
     if (model->proximal_weight > 0) problem.proximal_weight_ = model->proximal_weight;
     // Their defaults are functions of the scene's size, which parameters change.
@@ -55,6 +64,7 @@ Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
     core::model::BuildOptions options;
     options.reference_points = reference_points_;
     options.kappa = kappa_;
+    options.term_scales = term_scales_;
     options.proximal_weight = proximal_weight_;
     // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
     options.check_meshes = std::any_of(design_.shapes.begin(), design_.shapes.end(),

@@ -2,7 +2,8 @@
 /// Owns the chain from parameters to numbers and their gradients, and holds no mathematics of its own:
 ///   parameters -> parts and poses -> Scene -> Model -> simulate -> objective and constraints -> seeds -> reverse sweep -> d/d(parameters)
 /// Fixed once, from the scene as written, so that they are no hidden function of the parameters: reference points, barrier stiffness kappa,
-/// activation distance, solver tolerance. The same design has the same numbers, bit for bit, whether a program made it or a file.
+/// activation distance, solver tolerance, stiffness of stops and the radii by which stops and friction of angles are measured. The same
+/// design has the same numbers, bit for bit, whether a program made it or a file.
 #pragma once
 
 #include <functional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/model/build_mechanism.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/description/design.hpp"
@@ -98,6 +100,7 @@ private:
     description::Design design_;
     std::vector<Vector3> reference_points_;
     double kappa_ = 0;
+    core::model::TermScales term_scales_;
     std::vector<std::string> warnings_;
     std::optional<double> proximal_weight_;  // of quasi-static steps
 };

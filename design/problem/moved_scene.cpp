@@ -74,7 +74,7 @@ private:
     static Key key_of(const Move& move) {
         const bool of_mechanism = is_of_mechanism(move.target);
         const bool of_materials = is_of_friction(move.target) && move.target != MoveTarget::body_mu;
-        const bool of_body = !of_mechanism && !of_materials && move.target != MoveTarget::gravity;
+        const bool of_body = !of_mechanism && !of_materials && !is_of_scene(move.target);
         std::vector<std::string> materials;
         if (of_materials) materials = move.materials;
         std::sort(materials.begin(), materials.end());
@@ -88,7 +88,7 @@ private:
 
     void apply(int k, const Move& move) {
         if (is_vector(move.target)) add_to_vector(move, p_[k]);
-        if (is_of_mechanism(move.target) || is_of_friction(move.target) || move.target == MoveTarget::gravity) {
+        if (is_of_mechanism(move.target) || is_of_friction(move.target) || is_of_scene(move.target)) {
             if (!is_vector(move.target)) add_to_number(move, p_[k]);
             moved_.linear_changes.push_back({k, move});
             return;
@@ -150,6 +150,8 @@ private:
                 return body.angular_velocity;
             case MoveTarget::force:
                 return body.force;
+            case MoveTarget::torque:
+                return body.torque;
             default:
                 FETTLE_ASSERT(move.target == MoveTarget::position, "a vector that is replaced");
                 return body.pose.position;
@@ -186,7 +188,9 @@ private:
 
     void finish_numbers() {
         for (const auto& [key, sum] : numbers_) {
-            if (is_of_friction(sum.move.target))
+            if (sum.move.target == MoveTarget::dmin)
+                moved_.scene.dmin = sum.value;
+            else if (is_of_friction(sum.move.target))
                 set_coefficient(sum.move, sum.value, moved_.scene);
             else
                 set_number(sum.move, sum.value, moved_.scene.mechanism);
@@ -195,6 +199,7 @@ private:
 
     Errors check_numbers() const {
         Errors errors;
+        if (!(moved_.scene.dmin >= 0)) errors.push_back({ErrorCode::out_of_range, "dmin", "the minimum separation is not negative"});
         for (const LinearChange& change : moved_.linear_changes) {
             if (is_of_mechanism(change.move.target))
                 for (Error& error : moved_badly(moved_.scene.mechanism, change.move)) errors.push_back(std::move(error));
@@ -334,13 +339,17 @@ double linear_part(const Move& move, const core::scene::Scene& scene, const adjo
     switch (move.target) {
         case MoveTarget::gravity:
             return move.scale * move.direction.dot(gradient.gravity_bar);
+        case MoveTarget::dmin:
+            return move.scale * gradient.dmin_bar;
         case MoveTarget::velocity:
             return move.scale * move.direction.dot(start.velocity_bar[body].head<3>());
         case MoveTarget::angular_velocity:
             return move.scale * move.direction.dot(start.velocity_bar[body].tail<3>());
-        default:
-            FETTLE_ASSERT(move.target == MoveTarget::force, "every target has its derivative");
+        case MoveTarget::force:
             return move.scale * move.direction.dot(gradient.bodies[body].force_bar);
+        default:
+            FETTLE_ASSERT(move.target == MoveTarget::torque, "every target has its derivative");
+            return move.scale * move.direction.dot(gradient.bodies[body].torque_bar);
     }
 }
 

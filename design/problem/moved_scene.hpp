@@ -22,8 +22,8 @@ struct BodyChange {
     Vector6 rate_dot = Vector6::Zero();  ///< of the prescribed coordinates' rates
 };
 
-/// A move of what is linear in its parameter: numbers and vectors of joints, springs, motors and loads, velocities, forces, gravity,
-/// coefficients of friction.
+/// A move of what is linear in its parameter: numbers and vectors of joints, springs, motors and loads, velocities, forces, torques,
+/// gravity, minimum separation, coefficients of friction.
 struct LinearChange {
     int parameter = 0;
     description::Move move;

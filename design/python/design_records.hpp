@@ -67,9 +67,9 @@ public:
 }  // namespace pybind11::detail
 
 FETTLE_WORDS(fettle::design::description::MoveTarget, "dimension", "position", "density", "motor_rate", "turn", "velocity",
-             "angular_velocity", "force", "gravity", "body_mu", "material_mu", "pair_mu", "default_mu", "point_a", "point_b", "axis_a",
-             "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit", "pitch", "ratio", "curve_value",
-             "curve_rate", "load_point", "load_force")
+             "angular_velocity", "force", "torque", "gravity", "dmin", "body_mu", "material_mu", "pair_mu", "default_mu", "point_a",
+             "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit", "pitch",
+             "ratio", "curve_value", "curve_rate", "load_point", "load_force")
 FETTLE_WORDS(fettle::core::model::Origin::List, "joint", "spring", "motor", "load")
 FETTLE_RECORD(fettle::core::model::Origin, "Origin", field("list", &Type::list), field("index", &Type::index))
 FETTLE_RECORD(fettle::design::description::Move, "Move", field("target", &Type::target), field("body", &Type::body),

@@ -11,6 +11,7 @@
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
@@ -199,6 +200,10 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
                                             q.attr("times").cast<std::vector<double>>());
     }
     const auto over = [&] { return q.attr("over").cast<Over>(); };
+    if (is("MarkerSpeed")) {
+        const MarkerSpeed::Of of{body(), q.attr("point").cast<Vector3>(), q.attr("axis").cast<Vector3>()};
+        return std::make_shared<MarkerSpeed>(of, over());
+    }
     if (is("JointLoad")) {
         JointLoad::Of of{q.attr("kind").cast<JointLoadKind>(), q.attr("name").cast<std::string>(), q.attr("axis").cast<Vector3>(),
                          q.attr("effort_dimension").cast<Dimension>()};
@@ -238,6 +243,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     if (const auto* q = dynamic_cast<const Stroke*>(quantity.get())) return record_class("Stroke")(q->body(), q->axis(), q->target());
     if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get()))
         return record_class("MarkerPath")(q->body(), q->point(), q->targets(), q->times());
+    if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
+        return record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
         return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
     if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))

@@ -26,21 +26,13 @@ void ContactForce::add_series_seeds(const Simulated& s, const std::vector<double
 }
 
 Errors ContactForce::check(const core::model::Model& model, int steps) const {
-    Errors errors = check_steps(steps);
+    Errors errors = StepSeries::check(model, steps);
     for (const int body : {of_.body, of_.other.value_or(of_.body)})
         for (const core::base::Error& error : description::check_body(model, body)) errors.push_back(error);
     if (!errors.empty()) return errors;
     bool touches = false;
-    for (int other = 0; other < static_cast<int>(model.bodies.size()); ++other) {
-        if ((of_.other && other != *of_.other) || !may_collide(model, of_.body, other)) continue;
-        touches = true;
-        if (model.friction.rounds == 0 || !(friction_coefficient(model, of_.body, other) > 0)) continue;
-        errors.push_back({ErrorCode::unsupported, "",
-                          "friction acts between \"" + model.bodies[static_cast<size_t>(of_.body)].name + "\" and \"" +
-                              model.bodies[static_cast<size_t>(other)].name +
-                              "\": a force of contact is a quantity of a design without friction only"});
-        return errors;
-    }
+    for (int other = 0; other < static_cast<int>(model.bodies.size()); ++other)
+        touches = touches || ((!of_.other || other == *of_.other) && may_collide(model, of_.body, other));
     if (!touches)
         errors.push_back({ErrorCode::inconsistent, "",
                           "\"" + model.bodies[static_cast<size_t>(of_.body)].name +

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The resultant force of contact on a body at each step's end, of one other body or of all: barrier and damping
-/// (adjoint/stepper/contact_forces.hpp). With every integrator. Refused where friction acts between them: its share hangs on rounds within
-/// the step.
+/// The resultant force of contact on a body at each step's end, of one other body or of all: barrier, damping and friction
+/// (adjoint/stepper/contact_forces.hpp), what a scale between them would read. With every integrator.
 #pragma once
 
 #include <optional>
@@ -21,7 +20,7 @@ public:
 
     const Of& of() const { return of_; }
     Dimension dimension() const override { return Dimension::force; }
-    /// A body that is not there, the same twice, two that never touch, friction between them.
+    /// A body that is not there, the same twice, two that never touch.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:

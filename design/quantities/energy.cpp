@@ -3,6 +3,7 @@
 
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "fettle/adjoint/stepper/velocities.hpp"
 #include "fettle/core/energy/measure_law.hpp"
 
 namespace fettle::design::quantities {
@@ -31,15 +32,11 @@ core::energy::StepProblem unweighted(const core::model::Model& model) {
     return problem;
 }
 
-Matrix34 velocity(const Simulated& s, size_t t, size_t i) {
-    return (pose_matrix(s.trajectory.poses[t + 1][i]) - pose_matrix(s.trajectory.poses[t][i])) / s.model.timestep;
-}
-
-double kinetic(const Simulated& s, size_t t) {
+double kinetic(const Simulated& s, const std::vector<Matrix34>& velocities) {
     double sum = 0;
     for (size_t i = 0; i < s.model.bodies.size(); ++i) {
         if (!has_mass(s.model.bodies[i])) continue;
-        const Matrix34 v = velocity(s, t, i);
+        const Matrix34& v = velocities[i];
         sum += 0.5 * (v * s.model.bodies[i].moments).cwiseProduct(v).sum();
     }
     return sum;
@@ -72,12 +69,11 @@ public:
     EnergySeeds(const Simulated& s, size_t t, double scale, Seeds& seeds)
         : s_(s), t_(t), scale_(scale), seeds_(seeds), moments_bar_(s.model.bodies.size(), Matrix4::Zero()) {}
 
-    void add_kinetic() {
+    void add_kinetic(const std::vector<Matrix34>& velocities) {
         for (size_t i = 0; i < s_.model.bodies.size(); ++i) {
             if (!has_mass(s_.model.bodies[i])) continue;
-            const Matrix34 v = velocity(s_, t_, i), bar = scale_ / s_.model.timestep * v * s_.model.bodies[i].moments;
-            seeds_.trajectory_bar.pose_bar[t_ + 1][i] += bar;
-            seeds_.trajectory_bar.pose_bar[t_][i] -= bar;
+            const Matrix34 &v = velocities[i], bar = scale_ * v * s_.model.bodies[i].moments;
+            adjoint::stepper::add_velocity_seed(s_.model, static_cast<int>(t_), static_cast<int>(i), bar, seeds_.trajectory_bar);
             moments_bar_[i] += 0.5 * scale_ * v.transpose() * v;
         }
     }
@@ -145,12 +141,18 @@ private:
 
 }  // namespace
 
+bool Energy::has_kinetic(const core::model::Model& model) const {
+    return has(EnergyKind::kinetic) && model.integrator != core::scene::Integrator::quasi_static;
+}
+
 std::vector<double> Energy::series(const Simulated& s) const {
     const std::vector<std::vector<double>> angles = adjoint::stepper::angles_along(s.model, s.trajectory);
+    std::vector<std::vector<Matrix34>> velocities;
+    if (has_kinetic(s.model)) velocities = adjoint::stepper::end_velocities(s.model, s.trajectory);
     std::vector<double> out;
     for (size_t t = 0; t < s.trajectory.steps.size(); ++t) {
         double sum = 0;
-        if (has(EnergyKind::kinetic) && s.model.integrator != core::scene::Integrator::quasi_static) sum += kinetic(s, t);
+        if (has_kinetic(s.model)) sum += kinetic(s, velocities[t]);
         if (has(EnergyKind::potential)) sum += potential(s, t);
         if (has(EnergyKind::spring)) sum += spring(s, t, angles[t + 1]);
         out.push_back(sum);
@@ -160,10 +162,12 @@ std::vector<double> Energy::series(const Simulated& s) const {
 
 void Energy::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
     const std::vector<std::vector<double>> angles = adjoint::stepper::angles_along(s.model, s.trajectory);
+    std::vector<std::vector<Matrix34>> velocities;
+    if (has_kinetic(s.model)) velocities = adjoint::stepper::end_velocities(s.model, s.trajectory);
     for (size_t t = 0; t < weights.size(); ++t) {
         if (weights[t] == 0) continue;
         EnergySeeds step(s, t, weights[t], seeds);
-        if (has(EnergyKind::kinetic) && s.model.integrator != core::scene::Integrator::quasi_static) step.add_kinetic();
+        if (has_kinetic(s.model)) step.add_kinetic(velocities[t]);
         if (has(EnergyKind::potential)) step.add_potential();
         if (has(EnergyKind::spring)) step.add_spring(angles[t + 1]);
         step.finish();

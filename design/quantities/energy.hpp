@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Energies at each step's end, of all bodies with mass, joints and springs [J]:
-///   kinetic     sum 1/2 tr(V M V^T),   V = (P' - P)/h                                           (none in quasi-statics)
+///   kinetic     sum 1/2 tr(V M V^T),   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   (none in quasi-statics)
 ///   potential   - sum a . (P' M e4) + f . q'              gravity a and constant forces f, zero at the world's origin
 ///   spring      sum g(m')                                 of springs and stops (core/energy/measure_law.hpp)
 ///   total       their sum
@@ -27,6 +27,7 @@ protected:
                           description::Seeds& seeds) const override;
 
 private:
+    bool has_kinetic(const core::model::Model& model) const;
     bool has(EnergyKind kind) const { return kind_ == kind || kind_ == EnergyKind::total; }
 
     EnergyKind kind_;

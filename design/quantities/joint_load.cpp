@@ -25,12 +25,6 @@ int find_joint(const Mechanism& mechanism, const std::string& name, bool is_moto
     return -1;
 }
 
-// Of the potential.
-double step_weight(const core::model::Model& model) {
-    const bool is_static = model.integrator == core::scene::Integrator::quasi_static;
-    return is_static ? model.proximal_weight : model.timestep * model.timestep;
-}
-
 // The rows of one joint at the end of one step.
 class JointAtStep {
 public:
@@ -147,11 +141,11 @@ Dimension JointLoad::dimension() const {
 
 std::vector<double> JointLoad::series(const Simulated& s) const {
     const int joint = find_joint(s.model.mechanism, of_.name, of_.kind == JointLoadKind::effort);
-    const std::vector<VectorX> multipliers = adjoint::stepper::row_multipliers(s.model, s.trajectory);
-    const double weight = step_weight(s.model);
+    std::vector<double> weights_of_steps;
+    const std::vector<VectorX> multipliers = adjoint::stepper::row_multipliers(s.model, s.trajectory, &weights_of_steps);
     std::vector<double> out;
     for (size_t t = 0; t < multipliers.size(); ++t) {
-        const JointAtStep at(s, joint, t, multipliers[t], weight);
+        const JointAtStep at(s, joint, t, multipliers[t], weights_of_steps[t]);
         if (of_.kind == JointLoadKind::effort) {
             out.push_back(at.effort());
             continue;
@@ -164,14 +158,14 @@ std::vector<double> JointLoad::series(const Simulated& s) const {
 
 void JointLoad::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
     const int joint = find_joint(s.model.mechanism, of_.name, of_.kind == JointLoadKind::effort);
-    const std::vector<VectorX> multipliers = adjoint::stepper::row_multipliers(s.model, s.trajectory);
-    const double weight = step_weight(s.model);
+    std::vector<double> weights_of_steps;
+    const std::vector<VectorX> multipliers = adjoint::stepper::row_multipliers(s.model, s.trajectory, &weights_of_steps);
     seeds.trajectory_bar.multiplier_bar.resize(multipliers.size());
     for (size_t t = 0; t < multipliers.size(); ++t) {
         if (weights[t] == 0) continue;
         VectorX& bar = seeds.trajectory_bar.multiplier_bar[t];
         if (bar.size() == 0) bar = VectorX::Zero(multipliers[t].size());
-        const JointAtStep at(s, joint, t, multipliers[t], weight);
+        const JointAtStep at(s, joint, t, multipliers[t], weights_of_steps[t]);
         if (of_.kind == JointLoadKind::effort) {
             at.add_effort_seeds(weights[t], bar);
             continue;

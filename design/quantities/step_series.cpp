@@ -57,17 +57,9 @@ void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, doubl
     add_series_seeds(simulated, weights, seeds);
 }
 
-Errors StepSeries::check_steps(int steps) {
+Errors StepSeries::check(const core::model::Model&, int steps) const {
     if (steps >= 1) return {};
     return {{ErrorCode::out_of_range, "", "what a step reports needs a step"}};
-}
-
-Errors StepSeries::check(const core::model::Model& model, int steps) const {
-    Errors errors = check_steps(steps);
-    const core::scene::Integrator integrator = model.integrator;
-    if (integrator != core::scene::Integrator::implicit_euler && integrator != core::scene::Integrator::quasi_static)
-        errors.push_back({ErrorCode::unsupported, "", "this is no quantity of steps of bdf2 and newmark yet"});
-    return errors;
 }
 
 }  // namespace fettle::design::quantities

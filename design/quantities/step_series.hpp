@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them, and its derivative in each. Kinds:
-/// joint_load.hpp, energy.hpp, contact_force.hpp.
+/// joint_load.hpp, energy.hpp, contact_force.hpp, marker_speed.hpp.
 #pragma once
 
 #include <vector>
@@ -20,12 +20,10 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// No step; bdf2 and newmark, whose velocities and multipliers no kind here counts with, but for contact_force.hpp.
+    /// No step.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
-    /// No step.
-    static Errors check_steps(int steps);
     /// y_1 .. y_T. Contract: at least one step.
     virtual std::vector<double> series(const description::Simulated& simulated) const = 0;
     /// Adds the seeds of sum_t weights[t] y_t+1.

@@ -56,7 +56,8 @@ const std::vector<Property>& properties_of(std::string_view subject) {
     static const std::vector<Property> body{{"turn", MoveTarget::turn},
                                             {"velocity", MoveTarget::velocity},
                                             {"angular_velocity", MoveTarget::angular_velocity},
-                                            {"force", MoveTarget::force}};
+                                            {"force", MoveTarget::force},
+                                            {"torque", MoveTarget::torque}};
     if (subject == "joint") return joint;
     if (subject == "spring") return spring;
     if (subject == "damper") return damper;
@@ -79,6 +80,12 @@ public:
             node_.allow_keys({"gravity", "scale", "offset"});
             move_.target = MoveTarget::gravity;
             read_vector(node_["gravity"], {Dimension::acceleration, 1});
+            return move_;
+        }
+        if (node_["dmin"].exists()) {
+            node_.allow_keys({"dmin", "scale", "offset"});
+            move_.target = MoveTarget::dmin;
+            read_number(node_["dmin"], coordinate(false));
             return move_;
         }
         for (const std::string_view subject : subjects)
@@ -205,6 +212,8 @@ private:
             case MoveTarget::force:
             case MoveTarget::load_force:
                 return {Dimension::force, 1};
+            case MoveTarget::torque:
+                return {Dimension::torque, 1};
             case MoveTarget::point_a:
             case MoveTarget::point_b:
             case MoveTarget::load_point:
@@ -263,7 +272,7 @@ private:
 }  // namespace
 
 bool is_mechanism_move(const JsonNode& node) {
-    if (node["gravity"].exists() || node["mu"].exists()) return true;
+    if (node["gravity"].exists() || node["mu"].exists() || node["dmin"].exists()) return true;
     if (node["motor"].exists()) return !node["rate"].exists();
     for (const char* subject : {"joint", "spring", "damper", "load"})
         if (node[subject].exists()) return true;

@@ -98,13 +98,14 @@ private:
             node.allow_keys({"body", "density", "scale", "offset"});
             read_density(node, parameter, move);
         } else {
-            node.allow_keys({"body",    "dimension", "position",  "density", "turn",   "velocity", "angular_velocity",
-                             "force",   "motor",     "rate",      "joint",   "spring", "damper",   "load",
-                             "gravity", "material",  "materials", "mu",      "scale",  "offset"});
-            node.fail(ErrorCode::missing_key,
-                      "a move says what it moves: `body` with `dimension`, `position`, `turn`, `velocity`, `angular_velocity`, `force` or "
-                      "`density`, `motor` with `rate`, `speed` or `value`, `joint`, `spring`, `damper` or `load` with what of it, "
-                      "`gravity`, or a coefficient of friction: `mu`, of a `body`, a `material`, two `materials`, or of all others");
+            node.allow_keys({"body",  "dimension", "position", "density", "turn",   "velocity", "angular_velocity", "force",    "torque",
+                             "motor", "rate",      "joint",    "spring",  "damper", "load",     "gravity",          "material", "materials",
+                             "dmin",  "mu",        "scale",    "offset"});
+            node.fail(
+                ErrorCode::missing_key,
+                "a move says what it moves: `body` with `dimension`, `position`, `turn`, `velocity`, `angular_velocity`, `force`, "
+                "`torque` or `density`, `motor` with `rate`, `speed` or `value`, `joint`, `spring`, `damper` or `load` with what of it, "
+                "`gravity`, `dmin`, or a coefficient of friction: `mu`, of a `body`, a `material`, two `materials`, or of all others");
         }
         if (const auto body = context_.body(node.require(node["motor"].exists() ? "motor" : "body"))) {
             move.body = *body;
@@ -176,7 +177,8 @@ private:
         const auto& shape = shapes_[static_cast<size_t>(move.body)];
         if (!shape) {
             node.fail(ErrorCode::unsupported,
-                      "body \"" + body.name + "\" has a `scale` in the scene; a part that parameters move has none");
+                      "body \"" + body.name +
+                          "\" has a `scale` in the scene; a part that parameters move has none: give its dimensions their full size there");
             return false;
         }
         std::vector<std::string_view> known;

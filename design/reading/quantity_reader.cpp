@@ -10,6 +10,7 @@
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
@@ -99,6 +100,15 @@ quantities::Over read_over(const JsonNode& node) {
     return static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+std::shared_ptr<const Quantity> read_marker_speed(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto point = node.require("point").length3(context.length_unit);
+    const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
+    const quantities::Over over = read_over(node["over"]);
+    if (!body || !point || !axis) return nullptr;
+    return std::make_shared<quantities::MarkerSpeed>(quantities::MarkerSpeed::Of{*body, *point, *axis}, over);
+}
+
 // The name of a joint or motor of the scene.
 template <class Parts>
 const typename Parts::value_type* read_part(const JsonNode& node, const Parts& parts, const std::string& what) {
@@ -168,6 +178,7 @@ std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadCont
 
 std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
+std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
 std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
 std::string clearance_name(const JsonNode& node) {
     const bool motion = node["motion"].is_bool() && *node["motion"].boolean();
@@ -204,6 +215,12 @@ const std::vector<QuantityType>& quantity_table() {
          marker_name,
          "m^2",
          "how far a point of a body stays from points that it should go through, at given `times` or in free timing"},
+        {"marker_speed",
+         {"body", "point", "axis", "over"},
+         read_marker_speed,
+         marker_speed_name,
+         "m/s",
+         "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
         {"play", {"a", "b"}, read_clearance, play_name, "m", "certified least distance of two bodies as assembled, wanted small"},
         {"clearance",
          {"a", "b", "motion"},

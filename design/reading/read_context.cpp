@@ -32,6 +32,7 @@ std::optional<Vector3> ReadContext::axis(const JsonNode& node) const {
 double ReadContext::unit(Dimension dimension) const {
     switch (dimension) {
         case Dimension::length:
+        case Dimension::speed:
             return length_unit;
         case Dimension::area:
             return length_unit * length_unit;

@@ -62,6 +62,7 @@ from .design import (
     GeneratedPart,
     JointLoad,
     MarkerPath,
+    MarkerSpeed,
     Mass,
     MeshShape,
     Move,

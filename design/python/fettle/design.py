@@ -161,6 +161,16 @@ class MarkerPath(Record):
 
 
 @dataclasses.dataclass(eq=False)
+class MarkerSpeed(Record):
+    """Velocity of a body's point (in its file frame) at the steps' ends [m/s]; `over` as in JointLoad."""
+
+    body: int
+    point: Vector
+    over: str = "end"
+    axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
+
+
+@dataclasses.dataclass(eq=False)
 class JointLoad(Record):
     """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
     "mean", "largest" or "least"."""
@@ -174,7 +184,7 @@ class JointLoad(Record):
 
 @dataclasses.dataclass(eq=False)
 class ContactLoad(Record):
-    """Resultant force of contact on a body at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
+    """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
 
     body: int
     other: Optional[int] = None
@@ -190,7 +200,7 @@ class Energy(Record):
     over: str = "end"
 
 
-AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, JointLoad, ContactLoad, Energy, "_fettle.OpaqueQuantity"]
+AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, JointLoad, ContactLoad, Energy, "_fettle.OpaqueQuantity"]
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
@@ -207,8 +217,8 @@ class Move(Record):
     """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
     design/description/parameter.hpp lists the targets."""
 
-    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force"; "gravity"; coefficients of
-    #: friction "body_mu", "material_mu", "pair_mu", "default_mu"; of `part`
+    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force",
+    #: "torque"; of the scene "gravity", "dmin"; coefficients of friction "body_mu", "material_mu", "pair_mu", "default_mu"; of `part`
     #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",
     #: "pitch", "ratio", "curve_value", "curve_rate", "load_point", "load_force"
     target: str = "dimension"

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
@@ -126,6 +127,7 @@ TEST_CASE("the start's acceleration: its change and gradient", "[adjoint]") {
         for (const int held : {-1, 2, 5}) {
             Model model = brick(held);
             model.bodies[0].damping = {damping, 2 * damping};
+            const StartOf start{model.bodies[0], model.gravity, core::energy::start_loads(model)[0]};
             const auto value = [&](const VectorX& x) {
                 Model moved = model;
                 Body& body = moved.bodies[0];
@@ -138,13 +140,12 @@ TEST_CASE("the start's acceleration: its change and gradient", "[adjoint]") {
                 return packed(core::energy::start_history(moved).accelerations[0]);
             };
             const auto tangent = [&](const VectorX& x) {
-                return packed(start_acceleration_tangent(model.bodies[0], model.gravity,
-                                                         {x.head(12).reshaped(3, 4), x.segment(12, 9).reshaped(3, 3), x.segment(21, 3),
-                                                          x.segment(24, 3), x.segment(27, 3), 0.01 * symmetric_of(x.tail(16))}));
+                return packed(start_acceleration_tangent(start, {x.head(12).reshaped(3, 4), x.segment(12, 9).reshaped(3, 3),
+                                                                 x.segment(21, 3), x.segment(24, 6), 0.01 * symmetric_of(x.tail(16))}));
             };
             const auto transposed = [&](const VectorX& w) {
-                const StartChange bar = start_acceleration_adjoint(model.bodies[0], model.gravity, w.reshaped(3, 4));
-                return packed(bar.velocity, bar.rotation, bar.gravity, bar.force, bar.torque, Matrix4(0.01 * bar.moments));
+                const StartChange bar = start_acceleration_adjoint(start, w.reshaped(3, 4));
+                return packed(bar.velocity, bar.rotation, bar.gravity, bar.loads, Matrix4(0.01 * bar.moments));
             };
             CAPTURE(held, damping);
             const VectorX along = random_vector(46, random), zero = VectorX::Zero(46);

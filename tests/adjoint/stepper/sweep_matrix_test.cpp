@@ -269,7 +269,7 @@ void check_reached(Sort sort, const ContactCount& count) {
 // Of Taylor's remainder: the scenes are nearly linear in forces and masses.
 double largest_step(ParameterKind kind) {
     if (kind == ParameterKind::vertices) return 1e-5;
-    if (kind == ParameterKind::friction) return 0.3;
+    if (kind == ParameterKind::friction || kind == ParameterKind::dmin) return 0.3;
     return kind == ParameterKind::density || kind == ParameterKind::force || kind == ParameterKind::torque || kind == ParameterKind::gravity
                ? 0.1
                : 1e-3;

@@ -132,6 +132,7 @@ std::vector<ParameterKind> kinds_of(const SweepScene& scene) {
                                      ParameterKind::density,  ParameterKind::gravity,    ParameterKind::force,
                                      ParameterKind::torque,   ParameterKind::increments};
     if (scene.model.friction.mu.maxCoeff() > 0) kinds.push_back(ParameterKind::friction);
+    if (scene.model.dmin > 0) kinds.push_back(ParameterKind::dmin);
     return kinds;
 }
 
@@ -172,6 +173,8 @@ const char* to_string(ParameterKind kind) {
             return "increments";
         case ParameterKind::friction:
             return "friction";
+        case ParameterKind::dmin:
+            return "dmin";
     }
     return "unknown";
 }
@@ -181,6 +184,7 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
     const auto vector = [&](double scale) { return Vector3(scale * Vector3::NullaryExpr([&] { return uniform(random); })); };
     ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
     if (kind == ParameterKind::gravity) d.gravity_dot = vector(10);
+    if (kind == ParameterKind::dmin) d.dmin_dot = scene.model.dmin * uniform(random);
     const int count = static_cast<int>(d.bodies.size());
     const bool is_friction = kind == ParameterKind::friction;
     const double mu_dot = is_friction ? uniform(random) : 0;
@@ -219,6 +223,7 @@ ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradi
 Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
     Model model = scene.model;
     model.gravity += s * direction.gravity_dot;
+    model.dmin += s * direction.dmin_dot;
     if (!direction.friction_dot.empty()) model.friction.mu.array() += s * direction.friction_dot.begin()->second;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         Body& body = model.bodies[i];
@@ -251,7 +256,7 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
 }
 
 double pairing(const SweepScene& scene, const ModelGradient& gradient, const ModelTangent& direction) {
-    double sum = gradient.gravity_bar.dot(direction.gravity_dot);
+    double sum = gradient.gravity_bar.dot(direction.gravity_dot) + gradient.dmin_bar * direction.dmin_dot;
     for (const auto& [pair, dot] : direction.friction_dot)
         if (const auto bar = gradient.friction_bar.find(pair); bar != gradient.friction_bar.end()) sum += bar->second * dot;
     for (std::size_t i = 0; i < direction.bodies.size(); ++i) {

@@ -43,8 +43,8 @@ struct ContactCount {
 };
 ContactCount count_contacts(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
-enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, torque, increments, friction };
-/// Friction's coefficients where there is friction, all others always.
+enum class ParameterKind { vertices, pose_start, velocity_start, density, gravity, force, torque, increments, friction, dmin };
+/// Friction's coefficients where there is friction, dmin where it is above 0, all others always.
 std::vector<ParameterKind> kinds_of(const SweepScene& scene);
 const char* to_string(ParameterKind kind);
 

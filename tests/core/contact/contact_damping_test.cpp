@@ -6,6 +6,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 

@@ -2,6 +2,7 @@
 #include "fettle/core/energy/damping.hpp"
 
 #include "fettle/core/energy/incremental_potential.hpp"
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 

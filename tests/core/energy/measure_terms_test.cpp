@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/energy/incremental_potential.hpp"
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::core::energy::time_integration_test {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/solver/newton.hpp"
 #include "fettle/core/stepper/simulate.hpp"

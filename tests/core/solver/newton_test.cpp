@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"

@@ -161,6 +161,7 @@ public:
         add_parts(Origin::List::load, m.loads.size());
         for (std::size_t i = 0; i < design_.scene.bodies.size(); ++i) add_body(static_cast<int>(i));
         add_vector({.target = MoveTarget::gravity}, 1, design_.scene.gravity);
+        add({.target = MoveTarget::dmin, .offset = design_.scene.dmin});
     }
     Design take() { return std::move(design_); }
 
@@ -226,6 +227,7 @@ private:
         add_vector({.target = MoveTarget::velocity, .body = i}, 0.3, body.linear_velocity);
         add_vector({.target = MoveTarget::angular_velocity, .body = i}, 1, body.angular_velocity);
         add_vector({.target = MoveTarget::force, .body = i}, 1, body.force);
+        add_vector({.target = MoveTarget::torque, .body = i}, 0.1, body.torque);
         add({.target = MoveTarget::density, .body = i, .scale = 300, .offset = body.density});
     }
 
@@ -250,12 +252,14 @@ std::vector<double> numbers_of(const Model& model) {
         if (body.type == core::scene::BodyType::dynamic_body) v(body.velocity_start);
         v(body.density);
         v(body.force);
+        v(body.torque);
         for (int t = 0; t < steps; ++t)
             v(body.prescribed[0] ? core::scene::motion_value(*body.prescribed[0], (t + 1) * model.timestep) -
                                        core::scene::motion_value(*body.prescribed[0], t * model.timestep)
                                  : 0);
     }
     v(model.gravity);
+    v(model.dmin);
     for (const core::measure::Frame& f : model.mechanism.set.frames) {
         v(f.point);
         v(f.axes);
@@ -289,9 +293,11 @@ adjoint::ModelGradient gradient_of(const Model& model, const std::vector<double>
         if (model.bodies[i].type == core::scene::BodyType::dynamic_body) fill(bar.velocity_start_bar);
         bar.density_bar = weights[at++];
         fill(bar.force_bar);
+        fill(bar.torque_bar);
         for (int t = 0; t < steps; ++t) bar.increment_bar[static_cast<std::size_t>(t)][0] = weights[at++];
     }
     fill(g.gravity_bar);
+    g.dmin_bar = weights[at++];
     adjoint::MechanismGradient& m = g.mechanism;
     for (auto& f : m.frames) {
         fill(f.point);
@@ -330,6 +336,7 @@ Model model_at(const Design& design, const VectorX& p, const std::vector<Vector3
 TEST_CASE("whatever a parameter moves of a mechanism, its derivative goes back through the start's assembly", "[joints]") {
     for (core::scene::Scene& scene : std::vector<core::scene::Scene>{loop(), arm(), wheels()}) {
         scene.dhat = 1e-3;
+        scene.dmin = 0.1;
         const Design design = DesignOfAll(scene).take();
         const auto n = static_cast<Eigen::Index>(design.parameters.size());
         const VectorX start = VectorX::Zero(n);

@@ -85,6 +85,8 @@ LOADS = [
     ({"type": "joint_torque", "joint": "rocker pin", "axis": [1, 0, 0]}, fettle.JointLoad("torque", "rocker pin", axis=np.array([1, 0, 0]))),
     ({"type": "motor_effort", "motor": "drive", "over": "sum"}, fettle.JointLoad("effort", "drive", "sum")),
     ({"type": "energy", "of": "kinetic", "over": "mean"}, fettle.Energy("kinetic", "mean")),
+    ({"type": "marker_speed", "body": "rocker", "point": [1, 2, 3], "axis": [0, 1, 0]},
+     fettle.MarkerSpeed(3, np.array([0.001, 0.002, 0.003]), axis=np.array([0, 1, 0]))),
 ]
 
 

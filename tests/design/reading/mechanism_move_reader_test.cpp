@@ -95,6 +95,11 @@ TEST_CASE("moves of a mechanism: what they move, and in which unit") {
     const Move turn = read(R"({ "body": "rack", "turn": [1, 0, 0] })", "deg");
     CHECK((turn.target == MoveTarget::turn && turn.body == 1 && turn.scale == 1));
     CHECK(read(R"({ "body": "arm", "velocity": [1, 0, 0] })", "mm/s").target == MoveTarget::velocity);
+    const Move dmin = read(R"({ "dmin": true, "scale": 2, "offset": 0.5 })", "mm");
+    CHECK((dmin.target == MoveTarget::dmin && dmin.scale == 2 && dmin.offset == Approx(5e-4)));
+    const Move torque = read(R"({ "body": "rack", "torque": [0, 0, 2], "offset": [0, 0, "3 N mm"] })", "N mm");
+    CHECK((torque.target == MoveTarget::torque && torque.body == 1 && torque.direction == Vector3(0, 0, 2)));
+    CHECK(torque.position_offset.isApprox(Vector3(0, 0, 3e-3), 1e-15));
 }
 
 TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong") {
@@ -109,6 +114,7 @@ TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong
           std::pair(refused(R"({ "materials": ["steel"], "mu": true })", "1"), "two materials"),
           std::pair(refused(R"({ "body": "arm", "material": "steel", "mu": true })", "1"), "says whose `mu`"),
           std::pair(refused(R"({ "mu": true })", "mm"), "not a measure of what it moves"),
+          std::pair(refused(R"({ "body": "arm", "torque": [1, 0, 0] })", "N"), "not a measure of what it moves"),
           std::pair(refused(R"({ "load": "pull", "force": [0, 0, 0] })", "N"), "this moves nothing"),
           std::pair(refused(R"({ "load": "pull", "force": [0, 1, 0], "offset": [1, 0, 0] })", "N"), "coefficient is 0")}) {
         CAPTURE(message);

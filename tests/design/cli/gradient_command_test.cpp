@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// `fettle gradient --check` of designs that a file can ask for, as users have it.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/support/program.hpp"
+
+namespace fettle::design::cli::gradient_command_test {
+
+namespace {
+
+using namespace fettle::tests::design_support;
+using fettle::tests::support::Answer;
+using fettle::tests::support::run;
+
+// A wheel that a motor's torque and one of its own turn on an axle against a stop, and a body that tumbles freely.
+const std::string turned_scene = R"({
+  "fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.01, "end_time": 0.12, "integrator": "implicit_euler",
+  "contact": { "dhat": 3 },
+  "bodies": [
+    { "name": "wheel", "density": 1000, "torque": [0, 0, 0.002],
+      "shape": { "generator": "box", "dimensions": { "size_x": 80, "size_y": 20, "size_z": 10 } } },
+    { "name": "rotor", "density": 1000, "torque": [0.001, 0, 0], "position": [0, 0, 200], "angular_velocity": [90, 200, 30],
+      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 30, "size_z": 10 } } }
+  ],
+  "joints": [{ "name": "axle", "type": "revolute", "b": "wheel", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-90, 6],
+               "friction": 0.0005 }],
+  "motors": [{ "name": "drive", "joint": "axle", "torque": { "times": [0, 0.12], "values": [0.001, 0.003] } }]
+})";
+
+const std::string turned_design = R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [
+    { "name": "own", "value": 2, "lower": 1, "upper": 3, "unit": "N mm", "moves": [{ "body": "wheel", "torque": [0, 0, 1] }] },
+    { "name": "free", "value": 1, "lower": 0, "upper": 2, "unit": "N mm",
+      "moves": [{ "body": "rotor", "torque": [1, 0, 0.5], "offset": ["0.2 N mm", 0, 0] }] },
+    { "name": "driven", "value": 3, "lower": 2, "upper": 4, "unit": "N mm", "moves": [{ "motor": "drive", "value": 1 }] },
+    { "name": "length", "value": 80, "lower": 60, "upper": 90, "moves": [{ "body": "wheel", "dimension": "size_x" }] },
+    { "name": "stop", "value": 6, "lower": 5.5, "upper": 7, "unit": "deg", "moves": [{ "joint": "axle", "upper_limit": true }] }
+  ],
+  "objective": [
+    { "type": "marker_speed", "body": "wheel", "point": [30, 0, 0], "over": "mean", "weight": 1 },
+    { "type": "energy", "of": "total", "over": "mean", "weight": 1 }
+  ],
+  "constraints": [
+    { "type": "marker_speed", "body": "rotor", "point": [20, 10, 0], "axis": [0, 1, 0], "lower": -1000 },
+    { "type": "joint_torque", "joint": "axle", "over": "mean", "upper": 1 }
+  ]
+})";
+
+}  // namespace
+
+TEST_CASE("gradient --check: torques on a body and of a motor, the size of a part with stops and friction") {
+    for (const char* integrator : {"implicit_euler", "bdf2"}) {
+        const DesignFolder folder(turned_design, replaced(turned_scene, "implicit_euler", integrator));
+        const Answer answer = run("gradient " + folder.design() + " --check --json");
+        CAPTURE(integrator, answer.out);
+        CHECK(answer.code == 0);
+        const nlohmann::json told = answer.json();
+        CHECK(told.at("largest_relative_error").get<double>() < 1e-6);
+        REQUIRE(told.at("gradient").size() == 5);
+        for (const nlohmann::json& slope : told.at("gradient")) CHECK(slope.get<double>() != 0);
+    }
+}
+
+}  // namespace fettle::design::cli::gradient_command_test
