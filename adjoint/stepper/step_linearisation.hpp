@@ -146,9 +146,9 @@ LinearisedStep linearise_step(const core::model::Model& model, const core::stepp
                               const SweepHistory& history, StepSolver& solver);
 
 /// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
-/// density, scripts of poses, with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not
-/// hold where its rounds ended, or in which they have not settled (inconsistent); a step that turns a body by a full revolution or more,
-/// where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
+/// density, scripts of poses (all unsupported); with friction a trajectory that does not hold where its rounds ended, or in which they have
+/// not settled (inconsistent); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range). Contract:
+/// the trajectory belongs to the model (number of bodies, time step).
 Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.

@@ -59,7 +59,7 @@ public:
         if (!take_known_contacts()) find_contacts(at_);
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
-            if (frictional_) lag_friction();
+            if (frictional_) lag_friction_of_round();
             value_ = potential(at_);
             first_of_round_ = result_.iterations;
             while (iterate()) {
@@ -112,10 +112,19 @@ private:
     }
 
     // Normal forces and tangents of where we are.
-    void lag_friction() {
-        problem_.friction =
-            contact::lag_friction(model_, at_.contacts, at_.poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
+    void lag_friction() { lag_friction(at_.contacts, at_.poses); }
+    void lag_friction(const contact::ContactSet& contacts, const std::vector<Pose>& poses) {
+        problem_.friction = contact::lag_friction(model_, contacts, poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
         ++result_.friction_rounds;
+    }
+
+    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not hang on that way. With
+    // caution the first are of no matter.
+    void lag_friction_of_round() {
+        const bool begins_on_the_way = result_.friction_rounds == 0 && !options_.start.empty() && !(options_.caution > 0);
+        if (!begins_on_the_way) return lag_friction();
+        const std::vector<Pose>& start = problem_.poses_t0;
+        lag_friction(contact::find_contacts(model_, contact::find_candidates(model_, start, 0), start), start);
     }
 
     // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before

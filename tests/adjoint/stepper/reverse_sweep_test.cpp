@@ -261,7 +261,7 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         brick.script.poses = {brick.pose_start};
         refused("'brick' follows a script");
     }
-    SECTION("friction of which the trajectory holds no rounds, or within a step in which a motion changes") {
+    SECTION("friction of which the trajectory holds no rounds") {
         SweepScene two = stack();
         core::stepper::Trajectory path = trajectory_of(two);
         const std::vector<TrajectoryGradient> end{end_position(two, 0, 0)};
@@ -276,8 +276,6 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         refused_with("rounds of friction");
         path = trajectory_of(two);
         CHECK(reverse_sweep(two.model, path, end));
-        path.steps[0].fractions = {0, 1};
-        refused_with("whole steps");
         for (core::model::Body& body : two.model.bodies) body.group = 1;  // no two may touch
         CHECK(reverse_sweep(two.model, trajectory_of(two), end));
     }
