@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/cli/answers.hpp"
@@ -139,6 +140,27 @@ Json roughness_json(const Design& design, const RoughnessReport& report) {
     return json;
 }
 
+Json contact_changes_json(const Design& design, const CheckReport& report) {
+    Json list = Json::array();
+    for (const studies::ContactChange& change : report.contact_changes) {
+        const double unit = factor_of(design, change.parameter);
+        const studies::ContactState &was = change.at.was, &is = change.at.is;
+        list.push_back({{"parameter", change.parameter},
+                        {"from", change.from / unit},
+                        {"to", change.to / unit},
+                        {"event", to_string(change.at.event)},
+                        {"a", change.body_a},
+                        {"b", change.body_b},
+                        {"features", {to_string(is.on_a.kind), to_string(is.on_b.kind)}},
+                        {"features_before", {to_string(was.on_a.kind), to_string(was.on_b.kind)}},
+                        {"time", change.time},
+                        {"place", {is.place.x(), is.place.y(), is.place.z()}},
+                        {"contacts", change.count},
+                        {"gradient_jumps", is_kink(change.at.event)}});
+    }
+    return list;
+}
+
 void add_check(const Design& design, const CheckReport& report, Json& json) {
     Json rows = Json::array();
     for (const CheckRow& row : report.rows) {
@@ -157,6 +179,10 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
     json["check_simulations"] = report.simulations;
     json["first_step"] = report.first_step;
     json["not_checked"] = report.failures;
+    json["contact_changes"] = contact_changes_json(design, report);
+    json["contacts_reach"] = Json::object();
+    for (Eigen::Index k = 0; k < report.contacts_reach.rows(); ++k)
+        json["contacts_reach"][design.parameters[static_cast<size_t>(k)].name] = {report.contacts_reach(k, 0), report.contacts_reach(k, 1)};
     json["roughness"] = roughness_json(design, report.roughness);
 }
 
@@ -192,6 +218,33 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     return text;
 }
 
+std::string contact_changes_text(const Design& design, const CheckReport& report) {
+    constexpr size_t most = 12;
+    const double reach = report.contacts_reach.size() > 0 ? report.contacts_reach.maxCoeff() : 0;
+    if (!(reach > 0)) return {};
+    std::string text = formatted("contacts that change as a parameter moves by up to %.3g %% of its range, nearest first:\n", 100 * reach);
+    if (report.contact_changes.empty()) text += "  none\n";
+    for (size_t k = 0; k < std::min(most, report.contact_changes.size()); ++k) {
+        const studies::ContactChange& change = report.contact_changes[k];
+        const double unit = factor_of(design, change.parameter);
+        std::string_view unit_name;
+        for (const Parameter& p : design.parameters)
+            if (p.name == change.parameter) unit_name = p.unit.name;
+        text += formatted("  %s %+.3g to %+.3g %s: ", change.parameter.c_str(), change.from / unit, change.to / unit,
+                          std::string(unit_name).c_str());
+        text += sentence_of(change) + (is_kink(change.at.event) ? "; gradients jump there\n" : "\n");
+    }
+    if (report.contact_changes.size() > most) text += formatted("  and %zu more (--json has all)\n", report.contact_changes.size() - most);
+    for (size_t k = 0; k < design.parameters.size(); ++k)
+        for (const int side : {0, 1}) {
+            const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
+            if (looked < reach)
+                text += formatted("  looked at %s %s by up to %.3g %% alone\n", side == 0 ? "less" : "more",
+                                  design.parameters[k].name.c_str(), 100 * looked);
+        }
+    return text;
+}
+
 std::string check_text(const Design& design, const CheckReport& report) {
     std::string text = formatted("%-40s %-20s %14s %14s %10s %10s\n", "quantity", "parameter", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
@@ -205,7 +258,7 @@ std::string check_text(const Design& design, const CheckReport& report) {
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
     return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
-           roughness_text(design, report.roughness);
+           contact_changes_text(design, report) + roughness_text(design, report.roughness);
 }
 
 std::string values_text(const Design& design, const DesignEvaluation& e, const Console& console) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
@@ -51,60 +53,86 @@ DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX
 struct ParameterDifferences {
     std::vector<DifferenceEstimate> estimates;  ///< per quantity, per unit of the parameter's range
     VectorX kinks;                              ///< per quantity: slope above minus slope below, where they differ however small the step
+    std::vector<ContactChange> contact_changes;
+    Vector2 contacts_reach = Vector2::Zero();
     std::string failure;
     bool interrupted = false;
+};
+
+// Where the gradients are checked: how it was simulated, and its contacts.
+struct CheckedDesign {
+    const problem::DesignEvaluation& evaluation;
+    std::vector<std::vector<ContactState>> contacts;
 };
 
 class ParameterCheck {
 public:
     ParameterCheck(const problem::DesignProblem& problem, const VectorX& p, int parameter, const DifferenceSteps& steps,
-                   const CheckOptions& options, const std::function<void()>& on_simulation)
+                   const CheckOptions& options, const CheckedDesign& at)
         : problem_(problem),
           p_(p),
           parameter_(parameter),
           range_(parameter_ranges(problem.design())[parameter]),
           steps_(steps),
           options_(options),
-          on_simulation_(on_simulation) {}
+          at_(at),
+          above_(at.contacts),
+          below_(at.contacts) {}
 
-    ParameterDifferences run() {
+    ParameterDifferences run(const std::function<void()>& on_simulation) {
+        on_simulation_ = on_simulation;
         double step = steps_.first;
+        if (options_.contact_reach > step)
+            for (const double side : {1.0, -1.0}) simulate_beside(side, options_.contact_reach);
+        if (result_.interrupted) return std::move(result_);
         for (int size = 0; size < options_.sizes; ++size, step /= options_.ratio) {
             add_difference(step);
             result_.estimates = estimates(step);
             if (result_.interrupted || good_enough(step)) break;
         }
         result_.kinks = kinks(step);
+        result_.contacts_reach = {below_.reach(), above_.reach()};
+        for (const auto& [side, watch] : {std::pair(-1.0, &below_), std::pair(1.0, &above_)})
+            for (ContactChange& change : watch->changes(name(), side, range_, *at_.evaluation.model, at_.evaluation.simulation.trajectory))
+                result_.contact_changes.push_back(std::move(change));
         return std::move(result_);
     }
 
 private:
-    // p +- step as the doubles they are: their distance is exact, not 2 step. Where a trial fails the sequence begins anew with the next
-    // size: extrapolation needs one ratio throughout.
-    void add_difference(double step) {
-        VectorX above = p_, below = p_;
-        above[parameter_] += step * range_;
-        below[parameter_] -= step * range_;
+    const std::string& name() const { return problem_.design().parameters[static_cast<size_t>(parameter_)].name; }
+
+    struct Trial {
+        problem::DesignEvaluation evaluation;
+        double value = 0;  ///< of the parameter, as the double that it is
+    };
+    Trial simulate_beside(double side, double step) {
+        VectorX p = p_;
+        p[parameter_] += side * step * range_;
         problem::EvaluateOptions options;
         options.gradients = false;
         options.should_stop = options_.should_stop;
-        const problem::DesignEvaluation up = problem_.evaluate(above, options);
+        Trial trial{problem_.evaluate(p, options), p[parameter_]};
         on_simulation_();
-        problem::DesignEvaluation down;
-        if (up.usable) {
-            down = problem_.evaluate(below, options);
-            on_simulation_();
-        }
-        if (!up.usable || !down.usable) {
-            result_.interrupted = up.interrupted || down.interrupted;
-            result_.failure = up.usable ? down.reason : up.reason;
+        result_.interrupted = result_.interrupted || trial.evaluation.interrupted;
+        if (trial.evaluation.usable)
+            (side > 0 ? above_ : below_).add(step, *trial.evaluation.model, trial.evaluation.simulation.trajectory);
+        return trial;
+    }
+
+    // Where a trial fails the sequence begins anew with the next size: extrapolation needs one ratio throughout.
+    void add_difference(double step) {
+        const Trial up = simulate_beside(1, step);
+        const Trial down = up.evaluation.usable ? simulate_beside(-1, step) : Trial{};
+        if (!down.evaluation.usable) {
+            result_.failure = up.evaluation.usable ? down.evaluation.reason : up.evaluation.reason;
             differences_.clear();
             bends_.clear();
             return;
         }
         result_.failure.clear();
-        bends_.push_back((quantities_of(up) - 2 * steps_.values + quantities_of(down)) / step);
-        differences_.push_back((quantities_of(up) - quantities_of(down)) * (range_ / (above[parameter_] - below[parameter_])));
+        const VectorX above = quantities_of(up.evaluation), below = quantities_of(down.evaluation);
+        bends_.push_back((above - 2 * steps_.values + below) / step);
+        differences_.push_back((above - below) * (range_ / (up.value - down.value)));  // their distance is exact, not 2 step
     }
 
     // @param step  Of the newest difference.
@@ -155,7 +183,9 @@ private:
     double range_;
     const DifferenceSteps& steps_;
     const CheckOptions& options_;
-    const std::function<void()>& on_simulation_;
+    const CheckedDesign& at_;
+    ContactWatch above_, below_;
+    std::function<void()> on_simulation_;
     std::vector<VectorX> differences_, bends_;
     ParameterDifferences result_;
 };
@@ -218,7 +248,7 @@ DifferenceEstimate ridders_estimate(const std::vector<double>& differences, doub
 
 int check_cost(int parameters, const CheckOptions& options) {
     return options.roughness.intervals * (options.roughness.fine_spacing > 0 ? 2 : 1) + options.roughness.distances +
-           2 * options.sizes * parameters;
+           2 * (options.sizes + (options.contact_reach > 0 ? 1 : 0)) * parameters;
 }
 
 CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX& p, const problem::DesignEvaluation& at,
@@ -242,15 +272,21 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
     const DifferenceSteps steps = difference_steps(report.roughness, quantities_of(at), options);
     report.first_step = steps.first;
     std::vector<ParameterDifferences> found(static_cast<size_t>(n));
-    core::base::parallel_for(n, 1,
-                             [&](int k) { found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, count).run(); });
+    const CheckedDesign checked{at, contact_states(*at.model, at.simulation.trajectory)};
+    core::base::parallel_for(
+        n, 1, [&](int k) { found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, checked).run(count); });
     compare(problem, quantity_gradients(at), found, steps, options, report);
+    report.contacts_reach = MatrixX::Zero(n, 2);
     for (int k = 0; k < n; ++k) {
-        const ParameterDifferences& differences = found[static_cast<size_t>(k)];
+        ParameterDifferences& differences = found[static_cast<size_t>(k)];
+        report.contacts_reach.row(k) = differences.contacts_reach.transpose();
+        std::move(differences.contact_changes.begin(), differences.contact_changes.end(), std::back_inserter(report.contact_changes));
         report.interrupted = report.interrupted || differences.interrupted;
         if (differences.estimates.empty())
             report.failures.push_back(problem.design().parameters[static_cast<size_t>(k)].name + ": " + differences.failure);
     }
+    std::stable_sort(report.contact_changes.begin(), report.contact_changes.end(),
+                     [](const ContactChange& a, const ContactChange& b) { return a.share < b.share; });
     return report;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Audit of a design's gradients: central differences of whole simulations. How the differences are weighed goes by themselves and by the
-/// noise of the quantities, never by comparing them with the adjoint.
+/// noise of the quantities, never by comparing them with the adjoint. The same simulations tell which contacts are about to change.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/contact_changes.hpp"
 #include "fettle/design/studies/roughness.hpp"
 
 namespace fettle::design::studies {
@@ -37,6 +38,7 @@ struct CheckOptions {
     /// limit) per unit of the parameter's range, e the error that noise makes in d: a component that is nothing beside the others, or
     /// changes nothing that counts over the whole range of its parameter, is compared at their scale.
     double scale_fraction = 1e-3, size_fraction = 1e-4;
+    double contact_reach = 1e-2;  ///< how far contacts that change are looked for, in shares of the ranges; 0: as far as differences go
     /// Spacing of noise and rounding, distances; its callbacks are not used.
     RoughnessOptions roughness = {.fine_spacing = 1e-6, .distances = 6};
     std::function<void(int done, int of)> on_simulation;  ///< optional; `of` is the most that it can take
@@ -57,8 +59,10 @@ struct CheckRow {
 struct CheckReport {
     std::vector<CheckRow> rows;  ///< per quantity and parameter
     double largest_relative_error = 0;
-    RoughnessReport roughness;  ///< along downhill_direction, unless told otherwise
-    double first_step = 0;      ///< step, in shares of the parameters' ranges, that differences begin with
+    RoughnessReport roughness;                   ///< along downhill_direction, unless told otherwise
+    double first_step = 0;                       ///< step, in shares of the parameters' ranges, that differences begin with
+    std::vector<ContactChange> contact_changes;  ///< nearest first, by their share of the parameters' ranges
+    MatrixX contacts_reach;  ///< parameter x (below, above): to what share of its range they were looked for; 0: not at all
     int simulations = 0;
     std::vector<std::string> failures;  ///< parameters whose neighbours could not be simulated: not checked
     bool interrupted = false;

@@ -169,7 +169,12 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     for (const char* key : {"quantity", "noise", "noise_status", "rounding", "holds", "breaks", "tolerance", "rough"})
         CHECK(roughness.at("quantities").at(0).contains(key));
     CHECK(roughness.at("remedies").is_array());
-    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 68 simulations") != std::string::npos);
+    CHECK(g.at("contacts_reach").at("width") == Json({1e-2, 1e-2}));
+    REQUIRE_FALSE(g.at("contact_changes").empty());
+    for (const char* key :
+         {"parameter", "from", "to", "event", "a", "b", "features", "features_before", "time", "place", "contacts", "gradient_jumps"})
+        CHECK(g.at("contact_changes").at(0).contains(key));
+    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 78 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));
 

@@ -242,14 +242,15 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         return out;
     };
     const Eigen::Matrix<double, 5, 1> exact = (Eigen::Matrix<double, 5, 1>() << -0.4 + 1 + 0.1, 1, 0, 1, 0).finished();
-    const Eigen::Matrix<double, 5, 1> coarse = struck(0.016, 2e-4) - exact, fine = struck(0.016, 1e-4) - exact,
-                                      wider = struck(0.03, 2e-4) - exact;
-    CAPTURE(coarse.transpose(), fine.transpose(), wider.transpose());
-    // The impact begins before the bodies touch, by a length in proportion to dhat; what the derivatives lack is the steps'.
-    CHECK(fine[0] > 0);
-    CHECK(wider[0] / fine[0] == Approx(0.03 / 0.016).epsilon(0.01));
-    CHECK(fine.tail<4>().lpNorm<Eigen::Infinity>() < 0.02);
-    for (int k = 1; k < 5; ++k) CHECK(std::abs(fine[k]) < 0.5 * std::abs(coarse[k]));
+    // The impact begins before the bodies touch, and how deep they go hangs on their speed: lengths in proportion to dhat, as kappa dhat^2
+    // is the same. What the steps lack is less the more of them the impact takes (h v/dhat squared): here a thousand and more.
+    const Eigen::Matrix<double, 5, 1> narrow = struck(0.06, 2e-4) - exact, wide = struck(0.12, 2e-4) - exact, none = 2 * narrow - wide;
+    CAPTURE(narrow.transpose(), wide.transpose(), none.transpose());
+    for (const int k : {0, 3, 4}) CHECK(wide[k] / narrow[k] == Approx(2).epsilon(2e-3));  // place, and its derivatives in velocities
+    CHECK(narrow[0] > 0.01);
+    for (const int k : {1, 2}) CHECK(std::abs(narrow[k]) < 1e-3);
+    CHECK(std::abs(none[0]) < 1e-5);
+    CHECK(none.tail<4>().lpNorm<Eigen::Infinity>() < 1e-3);
 }
 
 TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[joints]") {
