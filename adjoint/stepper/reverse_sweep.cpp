@@ -9,6 +9,7 @@
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
+#include "fettle/adjoint/stepper/check_differentiable.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
 

@@ -329,6 +329,23 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         REQUIRE_FALSE(result);
         CHECK(result.errors()[0].message.find("'feather' is out of balance") != std::string::npos);
     }
+    SECTION("a prescribed motion that ends short of where it leads") {
+        SweepScene pushed = pusher();
+        const core::stepper::Trajectory path = trajectory_of(pushed);
+        const std::vector<TrajectoryGradient> end{end_position(pushed, 0, 0)};
+        for (const double off : {1e-13, 1e-9}) {
+            core::stepper::Trajectory moved = path;
+            moved.poses[4][0].position.x() -= off;
+            moved.steps[3].nodes.back()[0].position.x() -= off;
+            const auto result = reverse_sweep(pushed.model, moved, end);
+            CAPTURE(off, result ? "" : result.errors()[0].message);
+            REQUIRE(bool(result) == (off < 1e-12));
+            if (result) continue;
+            CHECK(result.errors()[0].where == "step 3");
+            CHECK(result.errors()[0].message.find("'pusher' ends the step at t = 0.03 s 1e-09 m from where") == 0);
+            CHECK_FALSE(tangent_sweep(pushed.model, moved, fettle::adjoint::zero_model_tangent(pushed.model, pushed.steps)));
+        }
+    }
     SECTION("a body without mass") {
         scene.model.bodies[0].density = 0;
         scene.model.bodies[0].force.setZero();
