@@ -156,6 +156,7 @@ Json contact_changes_json(const Design& design, const CheckReport& report) {
                         {"time", change.time},
                         {"place", {is.place.x(), is.place.y(), is.place.z()}},
                         {"contacts", change.count},
+                        {"others", change.at.others},
                         {"gradient_jumps", is_kink(change.at.event)}});
     }
     return list;
@@ -218,23 +219,41 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     return text;
 }
 
+// "width grows by 0.01 to 0.1 mm"
+std::string move_text(const Design& design, const studies::ContactChange& change) {
+    const double unit = factor_of(design, change.parameter);
+    std::string_view unit_name;
+    for (const Parameter& p : design.parameters)
+        if (p.name == change.parameter) unit_name = p.unit.name;
+    return formatted("%s %s by %.3g to %.3g %s", change.parameter.c_str(), change.to > 0 ? "grows" : "falls", std::abs(change.from) / unit,
+                     std::abs(change.to) / unit, std::string(unit_name).c_str());
+}
+
+// A line for each change, with all parameters that make it.
+std::vector<std::string> contact_change_lines(const Design& design, const CheckReport& report) {
+    std::vector<std::string> sentences, lines;
+    for (const studies::ContactChange& change : report.contact_changes) {
+        const std::string sentence = sentence_of(change) + (is_kink(change.at.event) ? " (gradients jump there)" : "");
+        const auto known = std::find(sentences.begin(), sentences.end(), sentence);
+        if (known != sentences.end()) {
+            lines[static_cast<size_t>(known - sentences.begin())] += ", or " + move_text(design, change);
+            continue;
+        }
+        sentences.push_back(sentence);
+        lines.push_back("  " + sentence + ": if " + move_text(design, change));
+    }
+    return lines;
+}
+
 std::string contact_changes_text(const Design& design, const CheckReport& report) {
     constexpr size_t most = 12;
     const double reach = report.contacts_reach.size() > 0 ? report.contacts_reach.maxCoeff() : 0;
     if (!(reach > 0)) return {};
     std::string text = formatted("contacts that change as a parameter moves by up to %.3g %% of its range, nearest first:\n", 100 * reach);
-    if (report.contact_changes.empty()) text += "  none\n";
-    for (size_t k = 0; k < std::min(most, report.contact_changes.size()); ++k) {
-        const studies::ContactChange& change = report.contact_changes[k];
-        const double unit = factor_of(design, change.parameter);
-        std::string_view unit_name;
-        for (const Parameter& p : design.parameters)
-            if (p.name == change.parameter) unit_name = p.unit.name;
-        text += formatted("  %s %+.3g to %+.3g %s: ", change.parameter.c_str(), change.from / unit, change.to / unit,
-                          std::string(unit_name).c_str());
-        text += sentence_of(change) + (is_kink(change.at.event) ? "; gradients jump there\n" : "\n");
-    }
-    if (report.contact_changes.size() > most) text += formatted("  and %zu more (--json has all)\n", report.contact_changes.size() - most);
+    const std::vector<std::string> lines = contact_change_lines(design, report);
+    if (lines.empty()) text += "  none\n";
+    for (size_t k = 0; k < std::min(most, lines.size()); ++k) text += lines[k] + "\n";
+    if (lines.size() > most) text += formatted("  and %zu more (--json has all)\n", lines.size() - most);
     for (size_t k = 0; k < design.parameters.size(); ++k)
         for (const int side : {0, 1}) {
             const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);

@@ -15,11 +15,12 @@ namespace {
 struct EventWords {
     const char *name, *words;
     bool is_kink;
+    const char* words_with_others = nullptr;
 };
 
 const EventWords& words_at(ContactEvent event) {
-    static constexpr std::array<EventWords, 7> table{{{"touch", "begin to touch", false},
-                                                      {"part", "lose touch", false},
+    static constexpr std::array<EventWords, 7> table{{{"touch", "begin to touch", false, "touch in a further place"},
+                                                      {"part", "lose touch", false, "touch in one place less"},
                                                       {"new_features", "touch elsewhere", true},
                                                       {"parallel", "have edges that become nearly parallel", true},
                                                       {"crossing", "have edges that cease to be nearly parallel", true},
@@ -52,8 +53,12 @@ Compared compared(const Contacts& from, const Contacts& to) {
     return out;
 }
 
+bool touch(const Contacts& contacts, const ContactState& of) {
+    return std::any_of(contacts.begin(), contacts.end(), [&](const ContactState& c) { return c.a == of.a && c.b == of.b; });
+}
+
 // What is found beside something lost has moved there; the rest comes and goes.
-void add_moved(Compared& step, int t, std::vector<ContactDifference>& out) {
+void add_moved(Compared& step, int t, const Contacts& from, const Contacts& to, std::vector<ContactDifference>& out) {
     std::erase_if(step.found, [&](const ContactState* now) {
         const auto was = std::find_if(step.lost.begin(), step.lost.end(), [&](const ContactState* x) { return are_neighbours(*x, *now); });
         if (was == step.lost.end()) return false;
@@ -61,8 +66,8 @@ void add_moved(Compared& step, int t, std::vector<ContactDifference>& out) {
         step.lost.erase(was);
         return true;
     });
-    for (const ContactState* now : step.found) out.push_back({ContactEvent::touch, t, *now, *now});
-    for (const ContactState* was : step.lost) out.push_back({ContactEvent::part, t, *was, *was});
+    for (const ContactState* now : step.found) out.push_back({ContactEvent::touch, t, *now, *now, touch(from, *now)});
+    for (const ContactState* was : step.lost) out.push_back({ContactEvent::part, t, *was, *was, touch(to, *was)});
 }
 
 void add_kept(const Compared& step, int t, std::vector<ContactDifference>& out) {
@@ -78,7 +83,6 @@ auto sort_of(const ContactDifference& d) { return std::tuple(d.is.a, d.is.b, d.e
 }  // namespace
 
 const char* to_string(ContactEvent event) { return words_at(event).name; }
-const char* words_of(ContactEvent event) { return words_at(event).words; }
 bool is_kink(ContactEvent event) { return words_at(event).is_kink; }
 
 std::vector<ContactDifference> contact_differences(const std::vector<Contacts>& from, const std::vector<Contacts>& to) {
@@ -86,7 +90,7 @@ std::vector<ContactDifference> contact_differences(const std::vector<Contacts>& 
     for (size_t t = 0; t < std::min(from.size(), to.size()); ++t) {
         Compared step = compared(from[t], to[t]);
         add_kept(step, static_cast<int>(t), out);
-        add_moved(step, static_cast<int>(t), out);
+        add_moved(step, static_cast<int>(t), from[t], to[t], out);
     }
     return out;
 }
@@ -131,8 +135,10 @@ std::string sentence_of(const ContactChange& change) {
     std::snprintf(near.data(), near.size(), "near (%.4g, %.4g, %.4g) mm", place.x(), place.y(), place.z());
     std::array<char, 32> time{};
     std::snprintf(time.data(), time.size(), "%.4g", change.time);
+    const EventWords& words = words_at(change.at.event);
     std::string text = std::string("at t = ") + time.data() + " s '" + change.body_a + "' and '" + change.body_b + "' " +
-                       words_of(change.at.event) + ", " + features(change.at.is);
+                       (change.at.others && words.words_with_others != nullptr ? words.words_with_others : words.words) + ", " +
+                       features(change.at.is);
     if (change.at.event == ContactEvent::new_features) text += " in place of " + features(change.at.was);
     text += std::string(", ") + near.data();
     if (change.count > 1) text += "; " + std::to_string(change.count) + " contacts in all";

@@ -24,8 +24,6 @@ enum class ContactEvent {
 };
 /// "touch", "part", "new_features" ...
 const char* to_string(ContactEvent event);
-/// "begin to touch", "lose touch" ...: what two bodies do.
-const char* words_of(ContactEvent event);
 /// Do derivatives jump there?
 bool is_kink(ContactEvent event);
 
@@ -34,6 +32,7 @@ struct ContactDifference {
     ContactEvent event = ContactEvent::touch;
     int step = 0;          ///< at whose end
     ContactState was, is;  ///< the same but for new_features, `parallel`, `slide` and their like
+    bool others = false;   ///< the two touch elsewhere too: before they begin to here, or after they have parted here
 };
 
 /// From one simulation's contacts to another's, step by step; no more steps than both have.

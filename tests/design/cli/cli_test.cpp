@@ -151,6 +151,40 @@ TEST_CASE("a file of another program, given for a design, is told with what is r
     }
 }
 
+TEST_CASE("gradient --check tells which contacts are about to change") {
+    const DesignFolder folder(R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [
+    { "name": "lift", "value": 5, "lower": 0, "upper": 10, "moves": [{ "body": "block", "position": [0, 0, 1], "offset": [0, 0, 0.12] }] }
+  ],
+  "objective": [{ "type": "mass", "bodies": ["block"] }]
+})",
+                              R"({
+  "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.001, "end_time": 0.003, "contact": { "dhat": 0.1 },
+  "bodies": [
+    { "name": "table", "type": "static", "position": [0, 0, -5],
+      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } } },
+    { "name": "block", "density": 1000, "fixed": ["px", "pz", "rx", "ry", "rz"], "position": [0, 0, 5.12],
+      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } } }
+  ]
+})");
+    const Json changes = run("gradient " + folder.design() + " --check --json").json().at("contact_changes");
+    REQUIRE(changes.size() == 1);
+    CHECK(changes.at(0).at("parameter") == "lift");
+    CHECK(changes.at(0).at("event") == "touch");
+    CHECK(changes.at(0).at("a") == "table");
+    CHECK(changes.at(0).at("b") == "block");
+    CHECK(changes.at(0).at("features") == Json({"a face", "a vertex"}));
+    CHECK(changes.at(0).at("from").get<double>() == Approx(-0.01));  // mm; it is at -0.02
+    CHECK(changes.at(0).at("to").get<double>() == Approx(-0.1));
+    for (const char* key : {"features_before", "time", "place", "contacts", "others", "gradient_jumps"}) CHECK(changes.at(0).contains(key));
+    const std::string text = run("gradient " + folder.design() + " --check").out;
+    CAPTURE(text);
+    CHECK(text.find("at t = 0.001 s 'table' and 'block' begin to touch, a face of 'table' on a vertex of 'block', near (") !=
+          std::string::npos);
+    CHECK(text.find("12 contacts in all: if lift falls by 0.01 to 0.1 mm") != std::string::npos);
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
@@ -170,10 +204,7 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
         CHECK(roughness.at("quantities").at(0).contains(key));
     CHECK(roughness.at("remedies").is_array());
     CHECK(g.at("contacts_reach").at("width") == Json({1e-2, 1e-2}));
-    REQUIRE_FALSE(g.at("contact_changes").empty());
-    for (const char* key :
-         {"parameter", "from", "to", "event", "a", "b", "features", "features_before", "time", "place", "contacts", "gradient_jumps"})
-        CHECK(g.at("contact_changes").at(0).contains(key));
+    CHECK(g.at("contact_changes").is_array());
     CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 78 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));

@@ -143,8 +143,13 @@ TEST_CASE("contact changes: of two sets of contacts, each change is one", "[cont
     CHECK(found[1].event == ContactEvent::slide);
     CHECK(found[2].event == ContactEvent::touch);
     CHECK(found[2].step == 1);
+    CHECK(found[2].others);
+    after[1].pop_back();
+    std::vector<std::vector<ContactState>> none{{}, {contact(0, 3)}};
+    CHECK_FALSE(contact_differences(none, before)[0].others);
+    CHECK_FALSE(contact_differences(before, none)[0].others);
     CHECK(contact_differences(before, before).empty());
-    CHECK(contact_differences(after, before).size() == 3);
+    CHECK(contact_differences(after, before).size() == 2);
 }
 
 }  // namespace fettle::design::studies::contact_changes_test
