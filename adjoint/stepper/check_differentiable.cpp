@@ -52,6 +52,13 @@ Errors check_friction_rounds(const core::model::Model& model, const core::steppe
     return {};
 }
 
+// Steps are those of the model, from its start: curves are taken at their times.
+Errors check_times(const core::stepper::Trajectory& trajectory) {
+    if (trajectory.time_start == 0 && trajectory.times.empty()) return {};
+    return {{core::base::ErrorCode::inconsistent, "trajectory",
+             "its steps are not the even ones of a simulation from its start at t = 0, and cannot be differentiated"}};
+}
+
 // Contact may leave a motion short of its target, by no more than a solve accepts: then it is not the curve that says where the body goes.
 Errors check_prescribed(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     constexpr double met = 1e-11;  // of the scene's size
@@ -86,6 +93,7 @@ Errors check_differentiable(const core::model::Model& model, const core::stepper
     FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "a trajectory has a pose before and after each step");
     FETTLE_ASSERT(trajectory.poses[0].size() == model.bodies.size(), "the trajectory is of another model");
     FETTLE_ASSERT(trajectory.timestep == model.timestep, "the trajectory was simulated with another time step");
+    if (Errors errors = check_times(trajectory); !errors.empty()) return errors;
     Errors errors = energy::check_terms(model);
     for (const Errors& more :
          {model::check_masses(model), check_scripts(model), check_friction_rounds(model, trajectory), check_prescribed(model, trajectory)})

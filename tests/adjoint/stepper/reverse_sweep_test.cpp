@@ -305,6 +305,10 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         two.model.kappa = kappa;
         core::stepper::SimulationOptions options;
         options.steps = two.steps;
+        two.model.adaptive_kappa = true;  // from ten times as much
+        path = core::stepper::simulate(two.model, options).trajectory;
+        out_of_balance();
+        two.model.adaptive_kappa = false;
         two.model.velocity_tolerance = 0.1;
         path = core::stepper::simulate(two.model, options).trajectory;
         out_of_balance();
@@ -328,6 +332,16 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         const auto result = reverse_sweep(pair.model, path, end);
         REQUIRE_FALSE(result);
         CHECK(result.errors()[0].message.find("'feather' is out of balance") != std::string::npos);
+    }
+    SECTION("steps that are not those of a simulation from its start") {
+        core::stepper::Trajectory late = trajectory, uneven = trajectory;
+        late.time_start = 0.5;
+        for (std::size_t t = 0; t < uneven.poses.size(); ++t) uneven.times.push_back(0.01 * static_cast<double>(t));
+        for (const core::stepper::Trajectory* path : {&late, &uneven}) {
+            const auto result = reverse_sweep(scene.model, *path, seeds);
+            REQUIRE(result.errors().size() == 1);
+            CHECK(result.errors()[0].where == "trajectory");
+        }
     }
     SECTION("a prescribed motion that ends short of where it leads") {
         SweepScene pushed = pusher();
