@@ -31,6 +31,7 @@ struct GradientArguments {
     std::string path;
     bool check = false;
     double check_limit = 1e-5;
+    int check_parameters = 0;
 };
 
 Json failure_json(const DesignEvaluation& evaluation) {
@@ -176,6 +177,19 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
                         {"resolved", row.resolved}});
     }
     json["check"] = rows;
+    Json along = Json::array();
+    for (const studies::LineRow& row : report.along)
+        along.push_back({{"quantity", row.quantity},
+                         {"adjoint", row.adjoint},
+                         {"difference", row.difference},
+                         {"relative_error", row.relative_error},
+                         {"difference_error", finite_or_null(row.difference_error)},
+                         {"resolved", row.resolved},
+                         {"remainder_slope", finite_or_null(row.slope)}});
+    json["along_gradient"] = along;
+    json["sweeps_disagreement"] = finite_or_null(report.sweeps.disagreement);
+    if (!report.sweeps.failure.empty()) json["sweeps_failure"] = report.sweeps.failure;
+    json["left_out"] = report.left_out;
     json["largest_relative_error"] = report.largest_relative_error;
     json["check_simulations"] = report.simulations;
     json["first_step"] = report.first_step;
@@ -264,6 +278,18 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
     return text;
 }
 
+std::string along_text(const CheckReport& report) {
+    if (report.along.empty()) return "along the gradient: not simulated\n";
+    std::string text =
+        formatted("%-61s %14s %14s %10s %10s\n", "along the gradient, in shares of the ranges", "adjoint", "difference", "error", "slope");
+    for (const studies::LineRow& row : report.along) {
+        const std::string slope = std::isfinite(row.slope) ? formatted("%10.2f", row.slope) : "    (noise)";
+        text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", row.quantity.c_str(), row.adjoint, row.difference, row.relative_error,
+                          slope.c_str(), row.resolved ? "" : "  hidden by noise");
+    }
+    return text + "slope: of what the gradient leaves, over the step; 2 where it is right and the quantity smooth\n";
+}
+
 std::string check_text(const Design& design, const CheckReport& report) {
     std::string text = formatted("%-40s %-20s %14s %14s %10s %10s\n", "quantity", "parameter", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
@@ -276,6 +302,12 @@ std::string check_text(const Design& design, const CheckReport& report) {
                               row.difference - row.kink / 2, row.difference + row.kink / 2);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
+    for (size_t k = 0; k < report.left_out.size(); ++k) text += (k == 0 ? "left out: " : ", ") + report.left_out[k];
+    if (!report.left_out.empty()) text += "\n";
+    text += along_text(report);
+    text += report.sweeps.failure.empty()
+                ? formatted("backwards and forwards through the simulation agree to %.2g\n", report.sweeps.disagreement)
+                : "backwards and forwards not compared: " + report.sweeps.failure + "\n";
     return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
            contact_changes_text(design, report) + roughness_text(design, report.roughness);
 }
@@ -303,9 +335,11 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
 }
 
-CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, double limit, Console& console) {
+CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, const GradientArguments& arguments,
+                      Console& console) {
     studies::CheckOptions check;
-    check.limit = limit;
+    check.limit = arguments.check_limit;
+    check.most_parameters = arguments.check_parameters;
     const int cost = studies::check_cost(problem.parameter_count(), check), threads = core::base::thread_count();
     console.narrate(formatted("the check takes up to %d simulations of about %.2g s each, on %d thread%s", cost, at.forward_seconds,
                               threads, threads == 1 ? "" : "s"));
@@ -337,13 +371,13 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     std::string text = values_text(design, evaluation, console);
     int code = exit_done;
     if (options.check) {
-        const CheckReport report = run_check(*problem, values, evaluation, options.check_limit, console);
+        const CheckReport report = run_check(*problem, values, evaluation, options, console);
         add_check(design, report, json);
         text += check_text(design, report);
         const bool resolved =
             std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });
-        const bool good =
-            report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() && !report.interrupted;
+        const bool good = report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() &&
+                          !report.interrupted && report.sweeps.failure.empty() && report.sweeps.disagreement <= options.check_limit;
         if (!good) code = exit_undecided;
         if (!good) json["status"] = report.interrupted ? "interrupted" : "check_failed";
     }
@@ -359,6 +393,9 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     app.option("DESIGN", options->path, "Design, taken at its values").required();
     app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
     app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2").above(0);
+    app.option("--check-parameters", options->check_parameters,
+               "Check that many alone, those that the objective hangs on most in shares of their ranges (default: all)")
+        .at_least(1);
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
@@ -14,7 +15,6 @@
 #include "fettle/design/studies/design_line.hpp"
 
 namespace fettle::design::studies {
-
 namespace {
 
 using core::base::infinity;
@@ -226,6 +226,98 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
     }
 }
 
+// Along one direction: steps fall from the first that differences begin with, by sqrt(10).
+class LineCheck {
+public:
+    LineCheck(const problem::DesignProblem& problem, const VectorX& p, const VectorX& direction, const DifferenceSteps& steps,
+              const CheckOptions& options)
+        : problem_(problem),
+          names_(quantity_names(problem.design())),
+          p_(p),
+          way_(direction.cwiseProduct(parameter_ranges(problem.design()))),
+          steps_(steps),
+          options_(options) {}
+
+    /// @param slopes  of the quantities along the direction, by the adjoint. @return empty if the line cannot be simulated
+    std::vector<LineRow> run(const VectorX& slopes, const std::function<void()>& on_simulation) {
+        const int count = options_.line_sizes;
+        std::vector<double> t;
+        for (int k = 0; k < count; ++k) t.push_back(steps_.first * std::pow(ratio, -k));
+        std::vector<VectorX> above(static_cast<size_t>(count)), below = above;
+        core::base::parallel_for(2 * count, 1, [&](int k) {
+            const size_t at = static_cast<size_t>(k % count);
+            (k < count ? above : below)[at] = change(k < count ? t[at] : -t[at]);
+            on_simulation();
+        });
+        for (size_t k = 0; k < t.size(); ++k)
+            if (above[k].size() == 0 || below[k].size() == 0) return {};
+        std::vector<LineRow> rows;
+        for (Eigen::Index q = 0; q < slopes.size(); ++q) {
+            std::vector<double> differences, up, down;
+            for (size_t k = 0; k < t.size(); ++k) {
+                differences.push_back((above[k][q] - below[k][q]) / (2 * t[k]));
+                up.push_back(above[k][q] - t[k] * slopes[q]);
+                down.push_back(below[k][q] + t[k] * slopes[q]);
+            }
+            rows.push_back(row(q, slopes[q], differences));
+            const double a = slope_of(t, up, q), b = slope_of(t, down, q);
+            rows.back().slope = std::isfinite(a) && !(std::abs(b - 2) > std::abs(a - 2)) ? a : b;
+        }
+        return rows;
+    }
+
+private:
+    VectorX change(double t) const {
+        problem::EvaluateOptions options;
+        options.gradients = false;
+        options.should_stop = options_.should_stop;
+        const problem::DesignEvaluation there = problem_.evaluate(p_ + t * way_, options);
+        return there.usable ? VectorX(quantities_of(there) - steps_.values) : VectorX();
+    }
+
+    LineRow row(Eigen::Index q, double slope, const std::vector<double>& differences) const {
+        const DifferenceEstimate d = ridders_estimate(differences, ratio, steps_.noise_error(q, steps_.first));
+        const CheckRow c = compared(slope, d, std::max(options_.size_fraction * steps_.size[q], steps_.tolerance[q]), options_.limit);
+        return {names_[static_cast<size_t>(q)], slope, d.value, c.difference_error, c.relative_error, c.resolved, 0};
+    }
+
+    // NaN: too few remainders stand clear of noise.
+    double slope_of(const std::vector<double>& t, const std::vector<double>& remainder, Eigen::Index q) const {
+        constexpr double fewest = 4, most = 5, clear = 30;  // points; times the noise
+        std::vector<double> x, y;
+        for (size_t k = t.size(); k-- > 0 && static_cast<double>(x.size()) < most;) {
+            if (!(std::abs(remainder[k]) > clear * steps_.noise[q])) continue;
+            x.push_back(std::log(t[k]));
+            y.push_back(std::log(std::abs(remainder[k])));
+        }
+        if (static_cast<double>(x.size()) < fewest) return std::numeric_limits<double>::quiet_NaN();
+        const Eigen::Map<const VectorX> at(x.data(), static_cast<Eigen::Index>(x.size())),
+            of(y.data(), static_cast<Eigen::Index>(y.size()));
+        const VectorX offset = at.array() - at.mean();
+        return offset.dot(of) / offset.squaredNorm();
+    }
+
+    static constexpr double ratio = 3.1622776601683795;
+    const problem::DesignProblem& problem_;
+    const std::vector<std::string> names_;
+    const VectorX& p_;
+    const VectorX way_;
+    const DifferenceSteps& steps_;
+    const CheckOptions& options_;
+};
+
+// In the order of the design; those that the objective hangs on most, if not all.
+std::vector<int> parameters_to_check(const problem::DesignProblem& problem, const VectorX& gradient, int most) {
+    std::vector<int> order(static_cast<size_t>(gradient.size()));
+    std::iota(order.begin(), order.end(), 0);
+    if (most <= 0 || most >= static_cast<int>(order.size())) return order;
+    const VectorX share = gradient.cwiseProduct(parameter_ranges(problem.design())).cwiseAbs();
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
+    order.resize(static_cast<size_t>(most));
+    std::sort(order.begin(), order.end());
+    return order;
+}
+
 }  // namespace
 
 DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio, double noise_error) {
@@ -247,8 +339,9 @@ DifferenceEstimate ridders_estimate(const std::vector<double>& differences, doub
 }
 
 int check_cost(int parameters, const CheckOptions& options) {
+    if (options.most_parameters > 0) parameters = std::min(parameters, options.most_parameters);
     return options.roughness.intervals * (options.roughness.fine_spacing > 0 ? 2 : 1) + options.roughness.distances +
-           2 * (options.sizes + (options.contact_reach > 0 ? 1 : 0)) * parameters;
+           2 * options.line_sizes + 2 * (options.sizes + (options.contact_reach > 0 ? 1 : 0)) * parameters;
 }
 
 CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX& p, const problem::DesignEvaluation& at,
@@ -271,13 +364,27 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
 
     const DifferenceSteps steps = difference_steps(report.roughness, quantities_of(at), options);
     report.first_step = steps.first;
+    report.sweeps = compare_sweeps(problem, at);
+    if (report.roughness.measured && options.line_sizes > 0) {
+        const VectorX& direction = report.roughness.direction;
+        report.along = LineCheck(problem, p, direction, steps, options)
+                           .run(quantity_gradients(at) * direction.cwiseProduct(parameter_ranges(problem.design())), count);
+        for (const LineRow& row : report.along) report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
+    }
+    const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(static_cast<size_t>(n));
     const CheckedDesign checked{at, contact_states(*at.model, at.simulation.trajectory)};
-    core::base::parallel_for(
-        n, 1, [&](int k) { found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, checked).run(count); });
+    core::base::parallel_for(static_cast<int>(chosen.size()), 1, [&](int i) {
+        const int k = chosen[static_cast<size_t>(i)];
+        found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, checked).run(count);
+    });
     compare(problem, quantity_gradients(at), found, steps, options, report);
     report.contacts_reach = MatrixX::Zero(n, 2);
     for (int k = 0; k < n; ++k) {
+        if (!std::binary_search(chosen.begin(), chosen.end(), k)) {
+            report.left_out.push_back(problem.design().parameters[static_cast<size_t>(k)].name);
+            continue;
+        }
         ParameterDifferences& differences = found[static_cast<size_t>(k)];
         report.contacts_reach.row(k) = differences.contacts_reach.transpose();
         std::move(differences.contact_changes.begin(), differences.contact_changes.end(), std::back_inserter(report.contact_changes));

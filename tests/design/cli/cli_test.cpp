@@ -205,7 +205,17 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(roughness.at("remedies").is_array());
     CHECK(g.at("contacts_reach").at("width") == Json({1e-2, 1e-2}));
     CHECK(g.at("contact_changes").is_array());
-    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 78 simulations") != std::string::npos);
+    CHECK(g.at("sweeps_disagreement").get<double>() < 1e-9);
+    REQUIRE(g.at("along_gradient").size() == 6);
+    for (const Json& row : g.at("along_gradient")) CHECK(row.at("relative_error").get<double>() < 1e-5);
+    const Json& slope = g.at("along_gradient").at(0).at("remainder_slope");
+    CHECK(slope.get<double>() == Approx(2).margin(0.1));
+    CHECK(g.at("left_out").empty());
+    const Json cut = run("gradient " + folder.design() + " --check --check-parameters 2 --json").json();
+    CHECK(cut.at("check").size() == 12);
+    CHECK(cut.at("left_out").size() == 3);
+    CHECK(cut.at("check_simulations").get<int>() <= 58);
+    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 94 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));
 
