@@ -30,7 +30,7 @@ namespace fettle::adjoint::stepper {
 struct SweepCounts;  // step_linearisation.hpp
 
 /// One ModelGradient per seed; all seeds share each step's assembly and factorisation.
-/// Errors: what check_differentiable (step_linearisation.hpp) refuses, and a step whose Hessian is singular (names the step).
+/// Errors: what check_differentiable refuses, and a step whose Hessian is singular (names the step).
 /// @param counts  optional: what the sweep took
 Result<std::vector<ModelGradient>> reverse_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                  const std::vector<TrajectoryGradient>& seeds, SweepCounts* counts = nullptr);

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <sstream>
 
 #include "fettle/adjoint/energy/friction_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
 #include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/solver/row_system.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {
@@ -48,16 +47,6 @@ core::energy::History history_at(const core::model::Model& model, const core::st
     out.velocities_before = bdf2_velocities_at(model, trajectory, t - 1);
     for (const core::kinematics::Pose& pose : trajectory.poses[t - 1]) out.poses_before.push_back(pose_matrix(pose));
     return out;
-}
-
-Errors check_scripts(const core::model::Model& model) {
-    Errors errors;
-    for (const core::model::Body& body : model.bodies) {
-        if (body.script.empty()) continue;
-        errors.push_back(energy::refusal(body.name, "'" + body.name + "' follows a script of poses, which"));
-        errors.back().message += "; prescribed coordinates can";
-    }
-    return errors;
 }
 
 // H^-1 rhs, one column each, with one round of iterative refinement.
@@ -144,14 +133,25 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
         g.tail<3>() /= std::max(body.radius, model.dhat);
         for (int k = 0; k < 6; ++k)
             if (dofs_.index[i][k] < 0) g[k] = 0;
-        const double size = magnitude[i] + body.moments(3, 3) * model.velocity_tolerance * model.timestep;
-        if (g.norm() <= balanced * size) continue;
-        return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
-                 "the step at t = " + std::to_string(trajectory.time_start + t * trajectory.timestep) + " s has no derivative: '" +
-                     body.name + "' is out of balance by " + std::to_string(g.norm() / size) +
-                     " of the forces on it. Was the trajectory simulated for gradients, from this model?"}};
+        const double mass = body.moments(3, 3), size = magnitude[i] + mass * model.velocity_tolerance * model.timestep;
+        if (g.norm() <= balanced * size + mass * rounding_of_places * model.diagonal) continue;
+        std::ostringstream message;
+        message << "the step at t = " << trajectory.time_start + t * trajectory.timestep << " s has no derivative: '" << body.name
+                << "' is out of balance by " << g.norm() / size
+                << " of the forces on it. Was the trajectory simulated for gradients, from this model?";
+        return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
     }
     return {};
+}
+
+Errors StepSolver::check_rows(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
+    constexpr double met = 1e-10;  // of the scene's size; simulations for gradients meet them to 1e-12
+    const double gap = step.rows.count() > 0 ? core::solver::largest_gap(step.problem, step.poses) : 0;
+    if (gap <= met * step.problem.model->diagonal) return {};
+    std::ostringstream message;
+    message << "the step at t = " << trajectory.time_start + t * trajectory.timestep << " s has no derivative: joints or motors are " << gap
+            << " m from being met. Was the trajectory simulated for gradients, from this model?";
+    return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
 }
 
 // Of an area-weighted barrier.
@@ -188,6 +188,7 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     indefinite_.reset();
+    if (Errors errors = check_rows(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_areas(trajectory, t, step); !errors.empty()) return errors;
     ++counts_.factorisations;
@@ -342,59 +343,6 @@ LinearisedStep linearise_step(const core::model::Model& model, const core::stepp
                               const SweepHistory& history, StepSolver& solver) {
     const StepRounds rounds(model, trajectory, t, history);
     return rounds.linearise(rounds.count(), solver);
-}
-
-namespace {
-
-bool agree(const core::model::Model& model, const std::vector<core::kinematics::ChartPoint>& a,
-           const std::vector<core::kinematics::ChartPoint>& b) {
-    constexpr double settled = 1e-9;  // of the scene's size
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double turned = model.bodies[i].radius * (a[i].rotation_vector - b[i].rotation_vector).norm();
-        if (!((a[i].position - b[i].position).norm() + turned <= settled * model.diagonal)) return false;
-    }
-    return true;
-}
-
-// One step says enough.
-Errors check_friction_rounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    if (!energy::has_friction(model)) return {};
-    for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
-        const core::stepper::TrajectoryStep& step = trajectory.steps[t];
-        if (step.friction_rounds.empty())
-            return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
-                     "the trajectory does not hold where its rounds of friction ended: only one that is in memory, and was simulated for "
-                     "gradients, does"}};
-        const bool is_quasi_static = model.integrator == core::scene::Integrator::quasi_static;
-        if (is_quasi_static && step.friction_rounds.size() > 1 && !agree(model, step.friction_rounds.front(), step.friction_rounds.back()))
-            return StepSolver::unsettled(trajectory, static_cast<int>(t));
-        if (step.fractions.empty()) continue;
-        Errors errors{energy::refusal("step " + std::to_string(t), "friction in a step in which a prescribed motion changes")};
-        errors.back().message += " yet; let tables and stops fall on whole steps";
-        return errors;
-    }
-    return {};
-}
-
-}  // namespace
-
-Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "a trajectory has a pose before and after each step");
-    FETTLE_ASSERT(trajectory.poses[0].size() == model.bodies.size(), "the trajectory is of another model");
-    FETTLE_ASSERT(trajectory.timestep == model.timestep, "the trajectory was simulated with another time step");
-    Errors errors = energy::check_terms(model);
-    for (const Errors& more : {model::check_masses(model), check_scripts(model), check_friction_rounds(model, trajectory)})
-        errors.insert(errors.end(), more.begin(), more.end());
-    for (std::size_t t = 0; t < trajectory.steps.size(); ++t)
-        for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-            const double angle = trajectory.steps[t].nodes.back()[i].rotation_vector.norm();
-            if (angle < 1.99 * std::numbers::pi) continue;
-            errors.push_back(
-                {core::base::ErrorCode::out_of_range, "step " + std::to_string(t),
-                 "'" + model.bodies[i].name + "' turns by " + std::to_string(angle) +
-                     " rad in one time step, which cannot be differentiated: use a smaller time step (less than a revolution each)"});
-        }
-    return errors;
 }
 
 }  // namespace fettle::adjoint::stepper

@@ -47,9 +47,9 @@ public:
     const SweepCounts& counts() const { return counts_; }
     void count_assembly() { ++counts_.assemblies; }
 
-    /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, since the trajectory
-    /// was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an area-weighted barrier two edges in
-    /// contact whose areas are the same.
+    /// Errors (inconsistent), with the step and the time: a body's forces do not balance to `balanced` of their sizes, or joints are not
+    /// met, since the trajectory was not solved for gradients, or with another kappa; the matrix is singular. Unsupported: of an
+    /// area-weighted barrier two edges in contact whose areas are the same.
     Errors factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
 
     struct Solution {
@@ -71,11 +71,12 @@ public:
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;
 
-    /// Largest share of its forces by which a body may be out of balance.
-    static constexpr double balanced = 1e-6;
+    /// Largest share of its forces by which a body may be out of balance; what would move it by this much of the scene's size is none.
+    static constexpr double balanced = 1e-6, rounding_of_places = 1e-14;
 
 private:
     Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
+    static Errors check_rows(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     static Errors check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
@@ -147,12 +148,6 @@ private:
 /// The last round of that step.
 LinearisedStep linearise_step(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                               const SweepHistory& history, StepSolver& solver);
-
-/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
-/// density, scripts of poses, with friction a motion that changes within a step (all unsupported); with friction a trajectory that does not
-/// hold where its rounds ended, or in which they have not settled (inconsistent); a step that turns a body by a full revolution or more,
-/// where the chart is singular (out_of_range). Contract: the trajectory belongs to the model (number of bodies, time step).
-Errors check_differentiable(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
 
 /// All three rotations free: the end pose then does not depend on where the step's chart is based.
 bool rotates_freely(const core::model::Body& body);

@@ -10,6 +10,7 @@
 #include "fettle/adjoint/energy/start_history_adjoint.hpp"
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
+#include "fettle/adjoint/stepper/check_differentiable.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/core/base/contract.hpp"
 

@@ -33,11 +33,12 @@ constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/meth
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
-constexpr int most_friction_rounds = 30;     // when they are to converge: normal forces that do not settle must not hold up the simulation
-constexpr int most_settling_rounds = 100;    // when they are to agree to rounding, for a gradient
-constexpr double settled_motion = 1e-13;     // of the scene's size: that
-constexpr double friction_resolution = 0.1;  // of eps_v
-constexpr double usable_residual = 1e-8;     // of a solve to rounding: the adjoint's accuracy
+constexpr int most_friction_rounds = 30;      // when they are to converge: normal forces that do not settle must not hold up the simulation
+constexpr int most_settling_rounds = 100;     // when they are to agree to rounding, for a gradient
+constexpr double settled_motion = 1e-13;      // of the scene's size: that
+constexpr double friction_resolution = 0.1;   // of eps_v
+constexpr double usable_residual = 1e-8;      // of a solve to rounding: the adjoint's accuracy
+constexpr double rounding_of_places = 1e-14;  // of the scene's size
 
 class Minimiser {
 public:
@@ -59,7 +60,7 @@ public:
         if (!take_known_contacts()) find_contacts(at_);
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
-            if (frictional_) lag_friction();
+            if (frictional_) lag_friction_of_round();
             value_ = potential(at_);
             first_of_round_ = result_.iterations;
             while (iterate()) {
@@ -112,10 +113,19 @@ private:
     }
 
     // Normal forces and tangents of where we are.
-    void lag_friction() {
-        problem_.friction =
-            contact::lag_friction(model_, at_.contacts, at_.poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
+    void lag_friction() { lag_friction(at_.contacts, at_.poses); }
+    void lag_friction(const contact::ContactSet& contacts, const std::vector<Pose>& poses) {
+        problem_.friction = contact::lag_friction(model_, contacts, poses, problem_.barrier, problem_.slip_reference, problem_.slip_time);
         ++result_.friction_rounds;
+    }
+
+    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not hang on that way. With
+    // caution the first are of no matter.
+    void lag_friction_of_round() {
+        const bool begins_on_the_way = result_.friction_rounds == 0 && !options_.start.empty() && !(options_.caution > 0);
+        if (!begins_on_the_way) return lag_friction();
+        const std::vector<Pose>& start = problem_.poses_t0;
+        lag_friction(contact::find_contacts(model_, contact::find_candidates(model_, start, 0), start), start);
     }
 
     // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
@@ -192,7 +202,7 @@ private:
         if (result_.iterations >= options_.max_iterations)
             return stop(failure(*direction), failure_message(*direction, "too many Newton iterations"));
         if (solved && is_stagnant(*direction)) {
-            if (direction->residual <= usable_residual) return stop(NewtonStatus::converged);
+            if (direction->residual <= usable_residual || is_as_near_as_numbers(*direction)) return stop(NewtonStatus::converged);
             if (direction->residual <= saddle_growth * least_residual_)
                 return stop(NewtonStatus::not_converged,
                             failure_message(*direction, "rounding stops the solve before it is accurate enough for a gradient"));
@@ -392,6 +402,13 @@ private:
     bool is_slow(const Direction& direction) const {
         const bool telling = direction.shift <= telling_shift || direction.residual <= usable_residual;
         return telling && direction.motion <= velocity_tolerance() * model_.timestep;
+    }
+
+    // What is left would move nothing by more than the rounding of places. Where all forces are next to nothing (free flight, the first
+    // touch of a soft contact) that is all there can be, and much beside them.
+    bool is_as_near_as_numbers(const Direction& direction) const {
+        const bool newton = direction.kind == HessianKind::exact && direction.shift <= negligible_shift;
+        return newton && has_arrived(direction) && direction.motion <= rounding_of_places * model_.diagonal;
     }
 
     bool is_accurate_enough(double residual) const { return !options_.to_rounding || residual <= usable_residual; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/answers/answer_json.hpp"
@@ -31,6 +32,7 @@ struct GradientArguments {
     std::string path;
     bool check = false;
     double check_limit = 1e-5;
+    int check_parameters = 0;
 };
 
 Json failure_json(const DesignEvaluation& evaluation) {
@@ -140,6 +142,28 @@ Json roughness_json(const Design& design, const RoughnessReport& report) {
     return json;
 }
 
+Json contact_changes_json(const Design& design, const CheckReport& report) {
+    Json list = Json::array();
+    for (const studies::ContactChange& change : report.contact_changes) {
+        const double unit = factor_of(design, change.parameter);
+        const studies::ContactState &was = change.at.was, &is = change.at.is;
+        list.push_back({{"parameter", change.parameter},
+                        {"from", change.from / unit},
+                        {"to", change.to / unit},
+                        {"event", to_string(change.at.event)},
+                        {"a", change.body_a},
+                        {"b", change.body_b},
+                        {"features", {to_string(is.on_a.kind), to_string(is.on_b.kind)}},
+                        {"features_before", {to_string(was.on_a.kind), to_string(was.on_b.kind)}},
+                        {"time", change.time},
+                        {"place", {is.place.x(), is.place.y(), is.place.z()}},
+                        {"contacts", change.count},
+                        {"others", change.at.others},
+                        {"gradient_jumps", is_kink(change.at.event)}});
+    }
+    return list;
+}
+
 void add_check(const Design& design, const CheckReport& report, Json& json) {
     Json rows = Json::array();
     for (const CheckRow& row : report.rows) {
@@ -154,10 +178,27 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
                         {"resolved", row.resolved}});
     }
     json["check"] = rows;
+    Json along = Json::array();
+    for (const studies::LineRow& row : report.along)
+        along.push_back({{"quantity", row.quantity},
+                         {"adjoint", row.adjoint},
+                         {"difference", row.difference},
+                         {"relative_error", row.relative_error},
+                         {"difference_error", finite_or_null(row.difference_error)},
+                         {"resolved", row.resolved},
+                         {"remainder_slope", finite_or_null(row.slope)}});
+    json["along_gradient"] = along;
+    json["sweeps_disagreement"] = finite_or_null(report.sweeps.disagreement);
+    if (!report.sweeps.failure.empty()) json["sweeps_failure"] = report.sweeps.failure;
+    json["left_out"] = report.left_out;
     json["largest_relative_error"] = report.largest_relative_error;
     json["check_simulations"] = report.simulations;
     json["first_step"] = report.first_step;
     json["not_checked"] = report.failures;
+    json["contact_changes"] = contact_changes_json(design, report);
+    json["contacts_reach"] = Json::object();
+    for (Eigen::Index k = 0; k < report.contacts_reach.rows(); ++k)
+        json["contacts_reach"][design.parameters[static_cast<size_t>(k)].name] = {report.contacts_reach(k, 0), report.contacts_reach(k, 1)};
     json["roughness"] = roughness_json(design, report.roughness);
 }
 
@@ -193,6 +234,63 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     return text;
 }
 
+// "width grows by 0.01 to 0.1 mm"
+std::string move_text(const Design& design, const studies::ContactChange& change) {
+    const double unit = factor_of(design, change.parameter);
+    std::string_view unit_name;
+    for (const Parameter& p : design.parameters)
+        if (p.name == change.parameter) unit_name = p.unit.name;
+    return formatted("%s %s by %.3g to %.3g %s", change.parameter.c_str(), change.to > 0 ? "grows" : "falls", std::abs(change.from) / unit,
+                     std::abs(change.to) / unit, std::string(unit_name).c_str());
+}
+
+// A line for each change, with all parameters that make it.
+std::vector<std::string> contact_change_lines(const Design& design, const CheckReport& report) {
+    std::vector<std::string> sentences, lines;
+    for (const studies::ContactChange& change : report.contact_changes) {
+        const std::string sentence = sentence_of(change) + (is_kink(change.at.event) ? " (gradients jump there)" : "");
+        const auto known = std::find(sentences.begin(), sentences.end(), sentence);
+        if (known != sentences.end()) {
+            lines[static_cast<size_t>(known - sentences.begin())] += ", or " + move_text(design, change);
+            continue;
+        }
+        sentences.push_back(sentence);
+        lines.push_back("  " + sentence + ": if " + move_text(design, change));
+    }
+    return lines;
+}
+
+std::string contact_changes_text(const Design& design, const CheckReport& report) {
+    constexpr size_t most = 12;
+    const double reach = report.contacts_reach.size() > 0 ? report.contacts_reach.maxCoeff() : 0;
+    if (!(reach > 0)) return {};
+    std::string text = formatted("contacts that change as a parameter moves by up to %.3g %% of its range, nearest first:\n", 100 * reach);
+    const std::vector<std::string> lines = contact_change_lines(design, report);
+    if (lines.empty()) text += "  none\n";
+    for (size_t k = 0; k < std::min(most, lines.size()); ++k) text += lines[k] + "\n";
+    if (lines.size() > most) text += formatted("  and %zu more (--json has all)\n", lines.size() - most);
+    for (size_t k = 0; k < design.parameters.size(); ++k)
+        for (const int side : {0, 1}) {
+            const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
+            if (looked < reach)
+                text += formatted("  looked at %s %s by up to %.3g %% alone\n", side == 0 ? "less" : "more",
+                                  design.parameters[k].name.c_str(), 100 * looked);
+        }
+    return text;
+}
+
+std::string along_text(const CheckReport& report) {
+    if (report.along.empty()) return "along the gradient: not simulated\n";
+    std::string text =
+        formatted("%-61s %14s %14s %10s %10s\n", "along the gradient, in shares of the ranges", "adjoint", "difference", "error", "slope");
+    for (const studies::LineRow& row : report.along) {
+        const std::string slope = std::isfinite(row.slope) ? formatted("%10.2f", row.slope) : "    (noise)";
+        text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", row.quantity.c_str(), row.adjoint, row.difference, row.relative_error,
+                          slope.c_str(), row.resolved ? "" : "  hidden by noise");
+    }
+    return text + "slope: of what the gradient leaves, over the step; 2 where it is right and the quantity smooth\n";
+}
+
 std::string check_text(const Design& design, const CheckReport& report) {
     std::string text = formatted("%-40s %-20s %14s %14s %10s %10s\n", "quantity", "parameter", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
@@ -205,8 +303,14 @@ std::string check_text(const Design& design, const CheckReport& report) {
                               row.difference - row.kink / 2, row.difference + row.kink / 2);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
+    for (size_t k = 0; k < report.left_out.size(); ++k) text += (k == 0 ? "left out: " : ", ") + report.left_out[k];
+    if (!report.left_out.empty()) text += "\n";
+    text += along_text(report);
+    text += report.sweeps.failure.empty()
+                ? formatted("backwards and forwards through the simulation agree to %.2g\n", report.sweeps.disagreement)
+                : "backwards and forwards not compared: " + report.sweeps.failure + "\n";
     return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
-           roughness_text(design, report.roughness);
+           contact_changes_text(design, report) + roughness_text(design, report.roughness);
 }
 
 std::string values_text(const Design& design, const DesignEvaluation& e, const Console& console) {
@@ -232,9 +336,11 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
 }
 
-CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, double limit, Console& console) {
+CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, const GradientArguments& arguments,
+                      Console& console) {
     studies::CheckOptions check;
-    check.limit = limit;
+    check.limit = arguments.check_limit;
+    check.most_parameters = arguments.check_parameters;
     const int cost = studies::check_cost(problem.parameter_count(), check), threads = core::base::thread_count();
     console.narrate(formatted("the check takes up to %d simulations of about %.2g s each, on %d thread%s", cost, at.forward_seconds,
                               threads, threads == 1 ? "" : "s"));
@@ -266,13 +372,13 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     std::string text = values_text(design, evaluation, console);
     int code = exit_done;
     if (options.check) {
-        const CheckReport report = run_check(*problem, values, evaluation, options.check_limit, console);
+        const CheckReport report = run_check(*problem, values, evaluation, options, console);
         add_check(design, report, json);
         text += check_text(design, report);
         const bool resolved =
             std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });
-        const bool good =
-            report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() && !report.interrupted;
+        const bool good = report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() &&
+                          !report.interrupted && report.sweeps.failure.empty() && report.sweeps.disagreement <= options.check_limit;
         if (!good) code = exit_undecided;
         if (!good) json["status"] = report.interrupted ? "interrupted" : "check_failed";
     }
@@ -288,6 +394,9 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     app.option("DESIGN", options->path, "Design, taken at its values").required();
     app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
     app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2").above(0);
+    app.option("--check-parameters", options->check_parameters,
+               "Check that many alone, those that the objective hangs on most in shares of their ranges (default: all)")
+        .at_least(1);
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");

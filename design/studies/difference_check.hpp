@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Audit of a design's gradients: central differences of whole simulations. How the differences are weighed goes by themselves and by the
-/// noise of the quantities, never by comparing them with the adjoint.
+/// noise of the quantities, never by comparing them with the adjoint. The same simulations tell which contacts are about to change.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,9 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/contact_changes.hpp"
 #include "fettle/design/studies/roughness.hpp"
+#include "fettle/design/studies/sweep_agreement.hpp"
 
 namespace fettle::design::studies {
 
@@ -37,6 +39,9 @@ struct CheckOptions {
     /// limit) per unit of the parameter's range, e the error that noise makes in d: a component that is nothing beside the others, or
     /// changes nothing that counts over the whole range of its parameter, is compared at their scale.
     double scale_fraction = 1e-3, size_fraction = 1e-4;
+    int line_sizes = 8;       ///< step sizes along the gradient, each 1/sqrt(10) of the one before; 0: none
+    int most_parameters = 0;  ///< look at those alone that the objective's gradient, in shares of their ranges, is largest in; 0: at all
+    double contact_reach = 1e-2;  ///< how far contacts that change are looked for, in shares of the ranges; 0: as far as differences go
     /// Spacing of noise and rounding, distances; its callbacks are not used.
     RoughnessOptions roughness = {.fine_spacing = 1e-6, .distances = 6};
     std::function<void(int done, int of)> on_simulation;  ///< optional; `of` is the most that it can take
@@ -54,17 +59,32 @@ struct CheckRow {
     bool resolved = true;  ///< false: noise leaves more open than `limit`, so that nothing is shown
 };
 
+/// The same along the direction of the roughness (the objective's gradient, within the bounds): per unit of t, in shares of the ranges.
+struct LineRow {
+    std::string quantity;
+    double adjoint = 0, difference = 0, difference_error = 0, relative_error = 0;  ///< as CheckRow's
+    bool resolved = true;
+    /// Of ln |q(t) - q(0) - t q'(0)| over ln t, of the side where it is farther from 2, over the least steps (four or five) at which that
+    /// stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
+    double slope = 0;
+};
+
 struct CheckReport {
-    std::vector<CheckRow> rows;  ///< per quantity and parameter
+    std::vector<CheckRow> rows;         ///< per quantity and parameter
+    std::vector<LineRow> along;         ///< per quantity; empty where the line could not be simulated
+    SweepAgreement sweeps;              ///< of the design's own simulation
+    std::vector<std::string> left_out;  ///< parameters, where not all are looked at
     double largest_relative_error = 0;
-    RoughnessReport roughness;  ///< along downhill_direction, unless told otherwise
-    double first_step = 0;      ///< step, in shares of the parameters' ranges, that differences begin with
+    RoughnessReport roughness;                   ///< along downhill_direction, unless told otherwise
+    double first_step = 0;                       ///< step, in shares of the parameters' ranges, that differences begin with
+    std::vector<ContactChange> contact_changes;  ///< nearest first, by their share of the parameters' ranges
+    MatrixX contacts_reach;  ///< parameter x (below, above): to what share of its range they were looked for; 0: not at all
     int simulations = 0;
     std::vector<std::string> failures;  ///< parameters whose neighbours could not be simulated: not checked
     bool interrupted = false;
 };
 
-/// The most simulations that the check of `parameters` parameters takes, unless trials fail.
+/// The most simulations that the check of a design of `parameters` parameters takes, unless trials fail.
 int check_cost(int parameters, const CheckOptions& options = {});
 
 /// First the roughness. Differences begin at the length over which the gradients of all quantities hold, and end where noise outweighs what

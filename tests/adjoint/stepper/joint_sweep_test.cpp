@@ -7,6 +7,7 @@
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/line_check.hpp"
 
 namespace fettle::adjoint::stepper::joint_sweep_test {
 
@@ -371,6 +372,64 @@ TEST_CASE("joints, springs and motors: gradients agree with differences of simul
             CHECK(error < 1e-6);
         }
     }
+}
+
+// As in sweep_matrix_test: scalars and directions at random until one tells, and all that are looked at right.
+TEST_CASE("joints, springs and motors: Taylor's remainder", "[adjoint][joints][slow]") {
+    constexpr int most = 6;
+    for (const SweepScene& scene : joint_scenes()) {
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        std::mt19937_64 random(37);
+        std::vector<TrajectoryGradient> seeds;
+        for (int k = 0; k < most; ++k) seeds.push_back(random_seed(scene, random));
+        const auto gradients = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(gradients);
+        // @param look  k -> the check of the k-th scalar along a direction of its own
+        const auto check = [&](const std::string& what, const auto& look) {
+            bool tells = false;
+            for (int k = 0; k < most && !tells; ++k) {
+                const tests::support::LineCheck line = look(static_cast<std::size_t>(k));
+                CAPTURE(scene.name, what, k, line.difference, line.relative_error, line.slope);
+                CHECK(line.is_right());
+                tells = line.tells;
+            }
+            CAPTURE(scene.name, what);
+            CHECK(tells);
+        };
+        const auto change = [&](std::size_t k, const core::model::Model& model) {
+            const core::stepper::Simulation there = run(model, scene.steps, true);
+            const bool ok = there.report.status == core::stepper::SimulationStatus::ok;
+            return ok ? objective_change(seeds[k], trajectory, there.trajectory) : std::numeric_limits<double>::quiet_NaN();
+        };
+        check("mechanism", [&](std::size_t k) {
+            const ModelTangent direction = mechanism_direction(scene, random);
+            return tests::support::check_line([&](double s) { return change(k, with_mechanism(scene.model, direction.mechanism, s)); },
+                                              mechanism_pairing((*gradients)[k].mechanism, direction.mechanism), {1e-2, 6});
+        });
+        for (const ParameterKind kind : {ParameterKind::gravity, ParameterKind::density}) {
+            if (std::abs(pairing(scene, (*gradients)[0], random_direction(scene, kind, random))) < 1e-9) continue;
+            check(to_string(kind), [&](std::size_t k) {
+                const ModelTangent direction = random_direction(scene, kind, random);
+                return tests::support::check_line([&](double s) { return change(k, moved(scene, direction, s)); },
+                                                  pairing(scene, (*gradients)[k], direction));
+            });
+        }
+    }
+}
+
+TEST_CASE("a step that does not meet its joints has no derivative", "[adjoint][joints]") {
+    const SweepScene scene = arm();
+    core::stepper::Trajectory trajectory = trajectory_of(scene);
+    std::mt19937_64 random(41);
+    const std::vector<TrajectoryGradient> seeds{random_seed(scene, random)};
+    REQUIRE(reverse_sweep(scene.model, trajectory, seeds));
+    trajectory.poses[6][1].position.z() += 1e-9;
+    trajectory.steps[5].nodes.back()[1].position.z() += 1e-9;
+    const auto result = reverse_sweep(scene.model, trajectory, seeds);
+    REQUIRE_FALSE(result);
+    CAPTURE(result.errors()[0].message);
+    CHECK(result.errors()[0].where == "step 5");
+    CHECK(result.errors()[0].message.find("joints or motors are 1e-09 m from being met") != std::string::npos);
 }
 
 }  // namespace fettle::adjoint::stepper::joint_sweep_test

@@ -261,7 +261,7 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         brick.script.poses = {brick.pose_start};
         refused("'brick' follows a script");
     }
-    SECTION("friction of which the trajectory holds no rounds, or within a step in which a motion changes") {
+    SECTION("friction of which the trajectory holds no rounds") {
         SweepScene two = stack();
         core::stepper::Trajectory path = trajectory_of(two);
         const std::vector<TrajectoryGradient> end{end_position(two, 0, 0)};
@@ -276,8 +276,6 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         refused_with("rounds of friction");
         path = trajectory_of(two);
         CHECK(reverse_sweep(two.model, path, end));
-        path.steps[0].fractions = {0, 1};
-        refused_with("whole steps");
         for (core::model::Body& body : two.model.bodies) body.group = 1;  // no two may touch
         CHECK(reverse_sweep(two.model, trajectory_of(two), end));
     }
@@ -307,6 +305,10 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         two.model.kappa = kappa;
         core::stepper::SimulationOptions options;
         options.steps = two.steps;
+        two.model.adaptive_kappa = true;  // from ten times as much
+        path = core::stepper::simulate(two.model, options).trajectory;
+        out_of_balance();
+        two.model.adaptive_kappa = false;
         two.model.velocity_tolerance = 0.1;
         path = core::stepper::simulate(two.model, options).trajectory;
         out_of_balance();
@@ -330,6 +332,33 @@ TEST_CASE("what cannot be differentiated is refused by name", "[adjoint][stepper
         const auto result = reverse_sweep(pair.model, path, end);
         REQUIRE_FALSE(result);
         CHECK(result.errors()[0].message.find("'feather' is out of balance") != std::string::npos);
+    }
+    SECTION("steps that are not those of a simulation from its start") {
+        core::stepper::Trajectory late = trajectory, uneven = trajectory;
+        late.time_start = 0.5;
+        for (std::size_t t = 0; t < uneven.poses.size(); ++t) uneven.times.push_back(0.01 * static_cast<double>(t));
+        for (const core::stepper::Trajectory* path : {&late, &uneven}) {
+            const auto result = reverse_sweep(scene.model, *path, seeds);
+            REQUIRE(result.errors().size() == 1);
+            CHECK(result.errors()[0].where == "trajectory");
+        }
+    }
+    SECTION("a prescribed motion that ends short of where it leads") {
+        SweepScene pushed = pusher();
+        const core::stepper::Trajectory path = trajectory_of(pushed);
+        const std::vector<TrajectoryGradient> end{end_position(pushed, 0, 0)};
+        for (const double off : {1e-13, 1e-9}) {
+            core::stepper::Trajectory moved = path;
+            moved.poses[4][0].position.x() -= off;
+            moved.steps[3].nodes.back()[0].position.x() -= off;
+            const auto result = reverse_sweep(pushed.model, moved, end);
+            CAPTURE(off, result ? "" : result.errors()[0].message);
+            REQUIRE(bool(result) == (off < 1e-12));
+            if (result) continue;
+            CHECK(result.errors()[0].where == "step 3");
+            CHECK(result.errors()[0].message.find("'pusher' ends the step at t = 0.03 s 1e-09 m from where") == 0);
+            CHECK_FALSE(tangent_sweep(pushed.model, moved, fettle::adjoint::zero_model_tangent(pushed.model, pushed.steps)));
+        }
     }
     SECTION("a body without mass") {
         scene.model.bodies[0].density = 0;

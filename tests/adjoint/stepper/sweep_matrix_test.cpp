@@ -10,7 +10,7 @@
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/line_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::adjoint::stepper::sweep_matrix_test {
@@ -215,6 +215,27 @@ std::vector<SweepScene> loads_table() {
     return out;
 }
 
+// With friction, and motions that change within steps: the support is pushed along and turned, what is held stops.
+std::vector<SweepScene> changing_table() {
+    std::vector<SweepScene> out;
+    for (const Sort sort : {Sort::face, Sort::crossing_edges})
+        for (const Rubbing& rubbing : rubbings) {
+            SweepScene scene = scene_of(sort, rubbing);
+            scene.name += ", a motion that changes within steps";
+            const double h = scene.model.timestep;
+            core::scene::MotionCurve push, turn;
+            push.times = {0, 1.4 * h, 5.7 * h};
+            push.values = {0, 2e-4, -3e-4};
+            turn.rate = 0.2;
+            turn.stop_time = 6.3 * h;
+            scene.model.bodies[0].prescribed[1] = push;
+            scene.model.bodies[0].prescribed[5] = turn;
+            if (rubbing.integrator == Integrator::quasi_static) scene.model.bodies[1].prescribed[0]->stop_time = 3.5 * h;
+            out.push_back(std::move(scene));
+        }
+    return out;
+}
+
 // What falls is a shell, a wire frame, points, or a box that is not quite closed.
 std::vector<SweepScene> masses_table() {
     using core::scene::MassKind;
@@ -266,15 +287,6 @@ void check_reached(Sort sort, const ContactCount& count) {
     if (sort == Sort::parallel_edges) CHECK(count.mollified > 0);
 }
 
-// Of Taylor's remainder: the scenes are nearly linear in forces and masses.
-double largest_step(ParameterKind kind) {
-    if (kind == ParameterKind::vertices) return 1e-5;
-    if (kind == ParameterKind::friction || kind == ParameterKind::dmin) return 0.3;
-    return kind == ParameterKind::density || kind == ParameterKind::force || kind == ParameterKind::torque || kind == ParameterKind::gravity
-               ? 0.1
-               : 1e-3;
-}
-
 void check_forwards(const SweepScene& scene, const core::stepper::Simulation& done) {
     std::mt19937_64 random(5);
     const std::vector<TrajectoryGradient> seeds{random_seed(scene, random), random_seed(scene, random)};
@@ -294,45 +306,88 @@ void check_forwards(const SweepScene& scene, const core::stepper::Simulation& do
     }
 }
 
-// @param reach  of Taylor's remainder, in what moves no shape: less where its third order shows sooner
-void check_differences(const SweepScene& scene, double reach = 1) {
-    const core::stepper::Simulation done = simulation_of(scene, scene.model);
-    REQUIRE(done.report.status == core::stepper::SimulationStatus::ok);
-    std::mt19937_64 random(7);
-    const TrajectoryGradient seed = random_seed(scene, random);
-    const auto gradients = reverse_sweep(scene.model, done.trajectory, {seed});
-    REQUIRE(gradients);
-    const auto check = [&](const ModelTangent& direction, const std::string& what, double largest) {
-        const double derivative = pairing(scene, (*gradients)[0], direction);
-        const auto along = [&](const VectorX& s) {
-            const core::stepper::Simulation there = simulation_of(scene, moved(scene, direction, s[0]));
-            const bool ok = there.report.status == core::stepper::SimulationStatus::ok;
-            return ok ? objective(seed, there.trajectory) : std::numeric_limits<double>::quiet_NaN();
-        };
-        const auto difference =
-            tests::support::check_directional([&](const VectorX& s) { return VectorX::Constant(1, along(s)); }, VectorX::Zero(1),
-                                              VectorX::Ones(1), VectorX::Constant(1, derivative), {1e-4, 0.3, 9});
-        // What is flat counts as flat to 1e-5 of a body: shapes are moved by less, and little of their remainder is above rounding.
-        // Friction has a kink where its contacts' closest features change: it is moved by less too.
-        const bool rubs = scene.model.friction.mu.maxCoeff() > 0, moves_little = largest <= 1e-5 || rubs;
-        const tests::support::StepSweep steps{rubs ? 0.3 * largest : largest, 0.3, moves_little ? 6 : 9};
-        const auto taylor =
-            tests::support::check_taylor(along, VectorX::Zero(1), VectorX::Constant(1, derivative), VectorX::Ones(1), steps);
-        CAPTURE(scene.name, what, derivative, difference.relative_error, taylor.slope, taylor.points);
-        CHECK(difference.relative_error < 1e-6);
-        const int enough = moves_little ? 4 : 3;  // points above rounding that tell a slope
-        CHECK((taylor.ok() || (moves_little && taylor.points < enough)));
-        if (!taylor.below_rounding && taylor.points >= enough)  // 3: the second derivative is nearly nothing
-            CHECK(((taylor.slope > 1.9 && taylor.slope < 2.1) || taylor.slope > 2.9));
-    };
-    for (const ParameterKind kind : kinds_of(scene)) {
-        const ModelTangent direction = random_direction(scene, kind, random);
-        constexpr double nothing = 1e-15;  // of numbers of size 1: what is not felt but by rounding
-        if (std::abs(pairing(scene, (*gradients)[0], direction)) > nothing)
-            check(direction, tests::adjoint::to_string(kind),
-                  kind == ParameterKind::vertices ? largest_step(kind) : reach * largest_step(kind));
+// A scene, scalars of its motion, and the derivatives of those.
+struct Differentiated {
+    static constexpr int count = 8;
+    const SweepScene& scene;
+    core::stepper::Simulation done;
+    std::vector<TrajectoryGradient> seeds;
+    std::vector<ModelGradient> gradients;
+
+    explicit Differentiated(const SweepScene& s) : scene(s), done(simulation_of(s, s.model)) {
+        CAPTURE(scene.name, done.report.message);
+        REQUIRE(done.report.status == core::stepper::SimulationStatus::ok);
+        std::mt19937_64 random(7);
+        for (int k = 0; k < count; ++k) seeds.push_back(random_seed(scene, random));
+        const auto found = reverse_sweep(scene.model, done.trajectory, seeds);
+        REQUIRE(found);
+        gradients = *found;
     }
-    check(vertex_gradient_direction(scene, (*gradients)[0]), "along the gradient", largest_step(ParameterKind::vertices));
+
+    const ModelGradient& gradient(int k) const { return gradients[static_cast<std::size_t>(k)]; }
+
+    /// Of the k-th scalar. @param wrong_by  a relative error that is put into the derivative
+    tests::support::LineCheck check(int k, const ModelTangent& direction, const tests::support::LineSweep& sweep,
+                                    double wrong_by = 0) const {
+        const auto change = [&](double s) {
+            const core::stepper::Simulation there = simulation_of(scene, moved(scene, direction, s));
+            const bool ok = there.report.status == core::stepper::SimulationStatus::ok;
+            return ok ? objective_change(seeds[static_cast<std::size_t>(k)], done.trajectory, there.trajectory)
+                      : std::numeric_limits<double>::quiet_NaN();
+        };
+        return tests::support::check_line(change, (1 + wrong_by) * pairing(scene, gradient(k), direction), sweep);
+    }
+
+    bool is_felt(int k, const ModelTangent& direction) const {
+        constexpr double nothing = 1e-15;  // of numbers of size 1: rounding
+        return std::abs(pairing(scene, gradient(k), direction)) > nothing;
+    }
+};
+
+// What is flat counts as flat to 1e-5 of a body: vertices that go each their own way are moved by less.
+constexpr tests::support::LineSweep of_loose_vertices{1e-5, 3}, of_all_else{};
+
+// Scalars and directions of one kind, each at random, until a pair tells: whose second derivative is large enough beside the third. All
+// that are looked at must have the right derivative. Of vertices the first may go each their own way, later ones leave plane faces plane.
+void check_kind(const Differentiated& at, ParameterKind kind, std::mt19937_64& random) {
+    constexpr int loose_directions = 2;
+    bool tells = false;
+    for (int k = 0; k < Differentiated::count && !tells; ++k) {
+        const bool is_loose = kind == ParameterKind::vertices && k < loose_directions;
+        const ModelTangent direction =
+            kind == ParameterKind::vertices && !is_loose ? affine_direction(at.scene, random) : random_direction(at.scene, kind, random);
+        if (!at.is_felt(k, direction)) return;
+        const tests::support::LineCheck check = at.check(k, direction, is_loose ? of_loose_vertices : of_all_else);
+        CAPTURE(at.scene.name, tests::adjoint::to_string(kind), k, check.difference, check.relative_error, check.slope, check.largest);
+        CHECK(check.is_right());
+        tells = check.tells;
+    }
+    CAPTURE(at.scene.name, tests::adjoint::to_string(kind));
+    CHECK(tells);
+}
+
+// The same along the scalars' own gradients; where one tells nothing, along that of what leaves plane faces plane.
+void check_along_gradient(const Differentiated& at) {
+    bool tells = false;
+    const auto look = [&](int k, const ModelTangent& direction, const tests::support::LineSweep& sweep) {
+        const tests::support::LineCheck check = at.check(k, direction, sweep);
+        CAPTURE(at.scene.name, k, check.difference, check.relative_error, check.slope, check.largest);
+        CHECK(check.is_right());
+        tells = check.tells;
+    };
+    for (int k = 0; k < Differentiated::count && !tells; ++k) {
+        look(k, vertex_gradient_direction(at.scene, at.gradient(k)), of_loose_vertices);
+        if (!tells) look(k, affine_gradient_direction(at.scene, at.gradient(k)), of_all_else);
+    }
+    CAPTURE(at.scene.name);
+    CHECK(tells);
+}
+
+void check_differences(const SweepScene& scene) {
+    const Differentiated at(scene);
+    std::mt19937_64 random(11);
+    for (const ParameterKind kind : kinds_of(scene)) check_kind(at, kind, random);
+    check_along_gradient(at);
 }
 
 void check_forwards(const std::vector<SweepScene>& scenes) {
@@ -363,6 +418,15 @@ TEST_CASE("area weights: backwards and forwards agree", "[adjoint][stepper]") { 
 TEST_CASE("damping and torques: backwards and forwards agree", "[adjoint][stepper]") { check_forwards(loads_table()); }
 TEST_CASE("shells, wires, points, capped solids: backwards and forwards agree", "[adjoint][stepper]") { check_forwards(masses_table()); }
 
+TEST_CASE("friction in steps within which a motion changes: backwards and forwards agree", "[adjoint][stepper]") {
+    for (const SweepScene& scene : changing_table()) {
+        const core::stepper::Trajectory trajectory = simulation_of(scene, scene.model).trajectory;
+        REQUIRE(trajectory.steps.size() == static_cast<std::size_t>(scene.steps));
+        for (const std::size_t t : {1U, 5U, 6U}) CHECK(trajectory.steps[t].fractions.size() > 2);
+    }
+    check_forwards(changing_table());
+}
+
 TEST_CASE("every sort of contact, integrator and minimum separation: differences and Taylor's remainder", "[adjoint][stepper][slow]") {
     for (const Sort sort : sorts)
         for (const SweepScene& scene : table(sort)) check_differences(scene);
@@ -375,7 +439,35 @@ TEST_CASE("damping and torques: differences and Taylor's remainder", "[adjoint][
     for (const SweepScene& scene : loads_table()) check_differences(scene);
 }
 TEST_CASE("shells, wires, points, capped solids: differences and Taylor's remainder", "[adjoint][stepper][slow]") {
-    for (const SweepScene& scene : masses_table()) check_differences(scene, 0.3);
+    for (const SweepScene& scene : masses_table()) check_differences(scene);
+}
+TEST_CASE("friction in steps within which a motion changes: differences and Taylor's remainder", "[adjoint][stepper][slow]") {
+    for (const SweepScene& scene : changing_table()) check_differences(scene);
+}
+
+// In two scenes whose remainders' third order shows soon, and in all sorts of contact.
+TEST_CASE("the rule that judges derivatives finds out those that are wrong by a millionth", "[adjoint][stepper][slow]") {
+    std::vector<SweepScene> scenes{scene_of(Sort::crossing_edges, rubbings[3]),
+                                   scene_of(Sort::parallel_edges, Rubbing{Integrator::implicit_euler, 0, 0.2, 2})};
+    weigh_by_area(scenes[1]);
+    damp(scenes[1]);
+    for (const Sort sort : sorts) scenes.push_back(scene_of(sort, Integrator::bdf2, 0));
+    int by_slope = 0;
+    for (const SweepScene& scene : scenes) {
+        const Differentiated at(scene);
+        std::mt19937_64 random(3);
+        for (const ParameterKind kind : {ParameterKind::increments, ParameterKind::gravity}) {
+            const ModelTangent direction = random_direction(scene, kind, random);
+            CHECK(at.check(0, direction, of_all_else).is_right());
+            for (const double error : {1e-6, -1e-6}) {
+                const tests::support::LineCheck wrong = at.check(0, direction, of_all_else, error);
+                CAPTURE(scene.name, tests::adjoint::to_string(kind), wrong.relative_error, wrong.slope);
+                CHECK_FALSE(wrong.is_right());
+                by_slope += wrong.tells && !(wrong.slope > 1.9 && wrong.slope < 2.1) ? 1 : 0;
+            }
+        }
+    }
+    CHECK(by_slope >= 18);  // half of them
 }
 
 }  // namespace fettle::adjoint::stepper::sweep_matrix_test

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
 
+#include <functional>
+
 #include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/contact/contact_set.hpp"
@@ -36,6 +38,29 @@ Matrix34 velocity_matrix(const Vector6& tangent, const Matrix3& rotation) {
     Matrix34 p;
     p << cross_matrix(tangent.tail<3>()) * rotation, tangent.head<3>();
     return p;
+}
+
+// With an entry at each step, and where the curve itself has some; its increments over steps changed by these.
+core::scene::MotionCurve moved_curve(const core::scene::MotionCurve& curve, double timestep, int steps,
+                                     const std::function<double(int)>& increment) {
+    core::scene::MotionCurve out;
+    std::vector<double> inside = curve.times;
+    if (curve.stop_time) inside.push_back(*curve.stop_time);
+    double sum = 0;
+    for (int t = 0; t <= steps; ++t) {
+        const double time = t * timestep;
+        out.times.push_back(time);
+        out.values.push_back(core::scene::motion_value(curve, time) + sum);
+        if (t == steps) break;
+        for (const double at : inside) {
+            const double share = (at - time) / timestep;
+            if (!(share > 1e-6 && share < 1 - 1e-6)) continue;
+            out.times.push_back(at);
+            out.values.push_back(core::scene::motion_value(curve, at) + sum + share * increment(t));
+        }
+        sum += increment(t);
+    }
+    return out;
 }
 
 }  // namespace
@@ -220,6 +245,40 @@ ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradi
     return d;
 }
 
+namespace {
+
+// Largest entry: the size of the parts.
+ModelTangent scaled(ModelTangent d) {
+    double largest = 0;
+    for (const auto& body : d.bodies) largest = std::max(largest, body.vertices_dot.cwiseAbs().maxCoeff());
+    for (auto& body : d.bodies) body.vertices_dot *= size / largest;
+    return d;
+}
+
+}  // namespace
+
+ModelTangent affine_direction(const SweepScene& scene, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+        const Matrix34 map = Matrix34::NullaryExpr([&] { return uniform(random); });
+        const Body& body = scene.model.bodies[i];
+        d.bodies[i].vertices_dot = map * (body.mesh.vertices / std::max(body.radius, size)).colwise().homogeneous();
+    }
+    return scaled(std::move(d));
+}
+
+ModelTangent affine_gradient_direction(const SweepScene& scene, const ModelGradient& gradient) {
+    ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+    for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+        const Body& body = scene.model.bodies[i];
+        const Eigen::Matrix<double, 4, Eigen::Dynamic> at = (body.mesh.vertices / std::max(body.radius, size)).colwise().homogeneous();
+        const Matrix34 map = gradient.bodies[i].vertices_bar * at.transpose();
+        d.bodies[i].vertices_dot = map * at;
+    }
+    return scaled(std::move(d));
+}
+
 Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
     Model model = scene.model;
     model.gravity += s * direction.gravity_dot;
@@ -242,14 +301,8 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
             body.moments = core::model::mass_moments(body, model.dhat);
         for (int k = 0; k < 6; ++k) {
             if (is_free(body, k)) continue;
-            core::scene::MotionCurve curve;
-            double sum = 0;
-            for (int t = 0; t <= scene.steps; ++t) {
-                curve.times.push_back(t * model.timestep);
-                curve.values.push_back(core::scene::motion_value(*scene.model.bodies[i].prescribed[k], t * model.timestep) + s * sum);
-                if (t < scene.steps) sum += dot.increment_dot[t][k];
-            }
-            body.prescribed[k] = curve;
+            body.prescribed[k] = moved_curve(*scene.model.bodies[i].prescribed[k], model.timestep, scene.steps,
+                                             [&](int t) { return s * dot.increment_dot[static_cast<std::size_t>(t)][k]; });
         }
     }
     return model;
@@ -287,6 +340,14 @@ double objective(const TrajectoryGradient& weights, const core::stepper::Traject
     for (std::size_t t = 0; t < trajectory.poses.size(); ++t)
         for (std::size_t i = 0; i < trajectory.poses[t].size(); ++i)
             sum += weights.pose_bar[t][i].cwiseProduct(pose_matrix(trajectory.poses[t][i])).sum();
+    return sum;
+}
+
+double objective_change(const TrajectoryGradient& weights, const core::stepper::Trajectory& from, const core::stepper::Trajectory& to) {
+    double sum = 0;
+    for (std::size_t t = 0; t < from.poses.size(); ++t)
+        for (std::size_t i = 0; i < from.poses[t].size(); ++i)
+            sum += weights.pose_bar[t][i].cwiseProduct(pose_matrix(to.poses[t][i]) - pose_matrix(from.poses[t][i])).sum();
     return sum;
 }
 

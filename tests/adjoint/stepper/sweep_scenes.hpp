@@ -55,6 +55,11 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
 /// The gradient's own direction in the vertices, largest entry 0.05 m.
 ModelTangent vertex_gradient_direction(const SweepScene& scene, const ModelGradient& gradient);
 
+/// Vertices that move by dX = A X + b, a matrix and a vector for each body: plane faces stay plane. At random, or the gradient in A (times
+/// the body's radius) and b; largest entry as before.
+ModelTangent affine_direction(const SweepScene& scene, std::mt19937_64& random);
+ModelTangent affine_gradient_direction(const SweepScene& scene, const ModelGradient& gradient);
+
 /// model + s * direction, poses moved on the manifold. Masses stay of their kind: solids, shells, wires, points.
 core::model::Model moved(const SweepScene& scene, const ModelTangent& direction, double s);
 
@@ -64,6 +69,8 @@ double pairing(const SweepScene& scene, const ModelGradient& gradient, const Mod
 /// J = sum_t,i <weights, P_t,i>; its weights are the seed.
 TrajectoryGradient random_seed(const SweepScene& scene, std::mt19937_64& random);
 double objective(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory);
+/// Of J from one trajectory to another, without the rounding of J.
+double objective_change(const TrajectoryGradient& weights, const core::stepper::Trajectory& from, const core::stepper::Trajectory& to);
 
 /// <weights, P_dot> for a tangent sweep's output.
 double pairing(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory,

@@ -151,6 +151,40 @@ TEST_CASE("a file of another program, given for a design, is told with what is r
     }
 }
 
+TEST_CASE("gradient --check tells which contacts are about to change") {
+    const DesignFolder folder(R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [
+    { "name": "lift", "value": 5, "lower": 0, "upper": 10, "moves": [{ "body": "block", "position": [0, 0, 1], "offset": [0, 0, 0.12] }] }
+  ],
+  "objective": [{ "type": "mass", "bodies": ["block"] }]
+})",
+                              R"({
+  "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.001, "end_time": 0.003, "contact": { "dhat": 0.1 },
+  "bodies": [
+    { "name": "table", "type": "static", "position": [0, 0, -5],
+      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } } },
+    { "name": "block", "density": 1000, "fixed": ["px", "pz", "rx", "ry", "rz"], "position": [0, 0, 5.12],
+      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } } }
+  ]
+})");
+    const Json changes = run("gradient " + folder.design() + " --check --json").json().at("contact_changes");
+    REQUIRE(changes.size() == 1);
+    CHECK(changes.at(0).at("parameter") == "lift");
+    CHECK(changes.at(0).at("event") == "touch");
+    CHECK(changes.at(0).at("a") == "table");
+    CHECK(changes.at(0).at("b") == "block");
+    CHECK(changes.at(0).at("features") == Json({"a face", "a vertex"}));
+    CHECK(changes.at(0).at("from").get<double>() == Approx(-0.01));  // mm; it is at -0.02
+    CHECK(changes.at(0).at("to").get<double>() == Approx(-0.1));
+    for (const char* key : {"features_before", "time", "place", "contacts", "others", "gradient_jumps"}) CHECK(changes.at(0).contains(key));
+    const std::string text = run("gradient " + folder.design() + " --check").out;
+    CAPTURE(text);
+    CHECK(text.find("at t = 0.001 s 'table' and 'block' begin to touch, a face of 'table' on a vertex of 'block', near (") !=
+          std::string::npos);
+    CHECK(text.find("12 contacts in all: if lift falls by 0.01 to 0.1 mm") != std::string::npos);
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
@@ -169,7 +203,19 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     for (const char* key : {"quantity", "noise", "noise_status", "rounding", "holds", "breaks", "tolerance", "rough"})
         CHECK(roughness.at("quantities").at(0).contains(key));
     CHECK(roughness.at("remedies").is_array());
-    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 68 simulations") != std::string::npos);
+    CHECK(g.at("contacts_reach").at("width") == Json({1e-2, 1e-2}));
+    CHECK(g.at("contact_changes").is_array());
+    CHECK(g.at("sweeps_disagreement").get<double>() < 1e-9);
+    REQUIRE(g.at("along_gradient").size() == 6);
+    for (const Json& row : g.at("along_gradient")) CHECK(row.at("relative_error").get<double>() < 1e-5);
+    const Json& slope = g.at("along_gradient").at(0).at("remainder_slope");
+    CHECK(slope.get<double>() == Approx(2).margin(0.1));
+    CHECK(g.at("left_out").empty());
+    const Json cut = run("gradient " + folder.design() + " --check --check-parameters 2 --json").json();
+    CHECK(cut.at("check").size() == 12);
+    CHECK(cut.at("left_out").size() == 3);
+    CHECK(cut.at("check_simulations").get<int>() <= 58);
+    CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 94 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));
     CHECK(g.contains("backward_seconds"));
 

@@ -145,4 +145,44 @@ TEST_CASE("check: a kink is named, with the slopes of both sides") {
     CHECK(report.rows[1].relative_error < 1e-6);
 }
 
+TEST_CASE("check: along the gradient, the remainder's slope tells a right gradient from a wrong one") {
+    for (const double factor : {1.0, 1.001}) {
+        const auto value = [](const VectorX& u) { return std::exp(2 * u[0]) + 0.5 * u[0] * u[1]; };
+        const auto gradient = [=](const VectorX& u) { return VectorX(factor * Vector2(2 * std::exp(2 * u[0]) + 0.5 * u[1], 0.5 * u[0])); };
+        const DesignProblem problem =
+            density_problem(2, {std::make_shared<OfDensities>(value, gradient),
+                                std::make_shared<OfDensities>([](const VectorX& u) { return 2 + 3 * u[0]; },
+                                                              [](const VectorX&) { return VectorX(Vector2(3, 0)); })});
+        const VectorX p = values_of(problem.design().parameters);
+        const CheckReport report = check_gradients(problem, p, problem.evaluate(p));
+        REQUIRE(report.along.size() == 2);
+        CAPTURE(factor, report.along[0].slope, report.along[0].difference, report.along[0].adjoint, report.first_step);
+        CHECK(report.along[0].difference == Approx(report.along[0].adjoint / factor).epsilon(1e-7));
+        CHECK((report.along[0].relative_error < 1e-7) == (factor == 1));
+        if (factor == 1)
+            CHECK(report.along[0].slope == Approx(2).margin(0.02));
+        else
+            CHECK(report.along[0].slope < 1.5);
+        CHECK(std::isnan(report.along[1].slope));  // straight: rounding is all that is left
+        CHECK(report.sweeps.failure.empty());
+        CHECK(report.left_out.empty());
+    }
+}
+
+TEST_CASE("check: cut to the parameters that the objective hangs on most") {
+    const DesignProblem problem =
+        density_problem(3, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + u[0] - 5 * u[1] + 2 * u[2]; },
+                                                          [](const VectorX&) { return VectorX(Eigen::Vector3d(1, -5, 2)); })});
+    const VectorX p = values_of(problem.design().parameters);
+    CheckOptions options;
+    options.most_parameters = 2;
+    const CheckReport report = check_gradients(problem, p, problem.evaluate(p), options);
+    REQUIRE(report.rows.size() == 2);
+    CHECK(report.rows[0].parameter == problem.design().parameters[1].name);
+    CHECK(report.rows[1].parameter == problem.design().parameters[2].name);
+    CHECK(report.left_out == std::vector<std::string>{problem.design().parameters[0].name});
+    CHECK(report.simulations <= check_cost(3, options));
+    CHECK(check_cost(3, options) < check_cost(3));
+}
+
 }  // namespace fettle::design::studies::difference_check_test
