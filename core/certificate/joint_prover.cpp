@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "fettle/core/base/limits.hpp"
@@ -183,15 +184,16 @@ struct RowSystem {
 class Prover {
 public:
     Prover(const IdealJoints& joints, const model::Model& model, const stepper::Trajectory& trajectory)
-        : joints_(joints), model_(model), trajectory_(trajectory), slots_(model.bodies.size(), -1) {
+        : joints_(joints), model_(model), trajectory_(trajectory), slots_(model.bodies.size(), -1), used_(joints.set.measures.size()) {
         for (std::size_t i = 0; i < joints.bodies.size(); ++i) {
             const auto body = static_cast<std::size_t>(joints.bodies[i]);
             slots_[body] = static_cast<int>(i);
             const auto& vertices = model.bodies[body].mesh.vertices;
             radii_.push_back(vertices.cols() > 0 ? vertices.colwise().norm().maxCoeff() * inflation : 0);
+            size_ = std::max(size_, 1 + radii_.back());
         }
-        for (const measure::Frame& frame : joints.set.frames)
-            if (frame.body != measure::world) framed_.push_back(frame.body);
+        for (const Row& row : joints.rows)
+            for (const constraint::RowPart& part : row.parts) use(part.measure);
         std::sort(framed_.begin(), framed_.end());
         framed_.erase(std::unique(framed_.begin(), framed_.end()), framed_.end());
         count_turns();
@@ -230,6 +232,15 @@ private:
         VectorX half;
     };
 
+    void use(int measure) {
+        const Measure& m = joints_.set.measures[static_cast<std::size_t>(measure)];
+        used_[static_cast<std::size_t>(measure)] = true;
+        for (const int frame : {m.a, m.b}) {
+            const int body = joints_.set.frames[static_cast<std::size_t>(frame)].body;
+            if (body != measure::world) framed_.push_back(body);
+        }
+    }
+
     // Whole turns of each angle at each node, as they come from the start.
     void count_turns() {
         std::vector<double> angles;
@@ -261,9 +272,11 @@ private:
         };
         for (const BodyPath& path : segment.paths)
             if (!(path.magnitude < base::largest_magnitude)) return "numbers too large";
-        for (const Measure& m : joints_.set.measures)
-            if (m.kind == MeasureKind::angle && !(speed(m.a) + speed(m.b) < largest_turn))
+        for (std::size_t i = 0; i < used_.size(); ++i) {
+            const Measure& m = joints_.set.measures[i];
+            if (used_[i] && m.kind == MeasureKind::angle && !(speed(m.a) + speed(m.b) < largest_turn))
                 return "bodies turn too far between two nodes to tell which way";
+        }
         return {};
     }
 
@@ -310,13 +323,11 @@ private:
         for (const int body : framed_)
             bodies[static_cast<std::size_t>(body)] = moving_body(segment.paths[static_cast<std::size_t>(body)], part);
         std::vector<Derivatives> of(joints_.set.measures.size());
-        bool is_usable = true;
         for (std::size_t i = 0; i < of.size(); ++i) {
-            bool usable = true;
-            of[i] = derivatives(joints_.set.measures[i], bodies, part.half(), box, usable);
-            is_usable = is_usable && usable;
+            bool is_usable = true;
+            if (used_[i]) of[i] = derivatives(joints_.set.measures[i], bodies, part.half(), box, is_usable);
+            if (!is_usable) return std::nullopt;
         }
-        if (!is_usable) return std::nullopt;
         RowSystem out;
         for (const Derivatives& each : of) out.measured.push_back(each.value);
         for (const Row& row : joints_.rows) {
@@ -422,7 +433,7 @@ private:
                                        product_bound(A, residual->bent) + A.cwiseAbs() * residual->off);
         Box box{1.1 * v + floor_of()};
         for (int i = 0; i < most_boxes; ++i) {
-            if (!box.half.allFinite() || !(box.half.maxCoeff() < 0.1 * (model_.diagonal + 1))) return false;
+            if (!box.half.allFinite() || !(box.half.maxCoeff() < 0.1 * size_)) return false;
             const auto around = system_over(segment, part, &box);
             if (!around) return false;
             const VectorX mapped = inflation * (v + unlikeness(A, *around) * box.half);
@@ -440,7 +451,7 @@ private:
         return false;
     }
 
-    VectorX floor_of() const { return VectorX::Constant(static_cast<Eigen::Index>(joints_.rows.size()), 1e-13 * (model_.diagonal + 1)); }
+    VectorX floor_of() const { return VectorX::Constant(static_cast<Eigen::Index>(joints_.rows.size()), 1e-13 * size_); }
 
     MatrixX middles(const RowSystem& system) const {
         const auto n = static_cast<Eigen::Index>(joints_.rows.size());
@@ -466,16 +477,15 @@ private:
     // |1 - A C| from above.
     MatrixX unlikeness(const MatrixX& A, const RowSystem& system) const {
         const auto n = static_cast<Eigen::Index>(joints_.rows.size());
-        const MatrixX middle = middles(system);
-        MatrixX radius = MatrixX::Zero(n, n), size = MatrixX::Zero(n, n);
+        const double rounding = static_cast<double>(4 * n + 64) * unit;  // of a column's sum, in the sizes of its terms
+        MatrixX off = MatrixX::Identity(n, n), loose = rounding * MatrixX::Identity(n, n);
         for (Eigen::Index r = 0; r < n; ++r)
             for (const Entry& e : system.entries[static_cast<std::size_t>(r)]) {
-                radius(r, e.column) += (e.value - Interval(0.5 * (e.value.low + e.value.high))).magnitude();
-                size(r, e.column) += e.value.magnitude();
+                const double middle = 0.5 * (e.value.low + e.value.high);
+                off.col(e.column) -= middle * A.col(r);
+                loose.col(e.column) += ((e.value - Interval(middle)).magnitude() + rounding * e.value.magnitude()) * A.col(r).cwiseAbs();
             }
-        const double rounding = static_cast<double>(n + 16) * unit;
-        const MatrixX off = (MatrixX::Identity(n, n) - A * middle).cwiseAbs();
-        return inflation * (off + A.cwiseAbs() * (radius + rounding * size) + rounding * MatrixX::Identity(n, n));
+        return inflation * (off.cwiseAbs() + loose);
     }
 
     std::vector<double> deviations_of(const VectorX& half) const {
@@ -492,15 +502,63 @@ private:
     const stepper::Trajectory& trajectory_;
     std::vector<int> slots_;                                // [body] place among those that move; -1: none
     std::vector<double> radii_;                             // of those
-    std::vector<int> framed_;                               // bodies of frames, increasing
+    std::vector<char> used_;                                // [measure] by a row
+    std::vector<int> framed_;                               // bodies of their frames, increasing
+    double size_ = 1;                                       // [m] of what is small by itself
     std::vector<std::vector<std::vector<double>>> turned_;  // [step][node][measure]
 };
+
+// What rows connect through bodies that they move: each part of the whole is proven by itself.
+std::vector<IdealJoints> connected_parts(const IdealJoints& joints) {
+    std::vector<int> root(joints.bodies.size());
+    std::iota(root.begin(), root.end(), 0);
+    const auto root_of = [&](int i) {
+        while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
+        return i;
+    };
+    std::vector<int> first_of_row;  // a body that it moves; -1: none
+    for (const Row& row : joints.rows) {
+        int first = -1;
+        for (const constraint::RowPart& part : row.parts) {
+            const Measure& m = joints.set.measures[static_cast<std::size_t>(part.measure)];
+            for (const int frame : {m.a, m.b}) {
+                const int body = joints.set.frames[static_cast<std::size_t>(frame)].body;
+                const auto found = std::lower_bound(joints.bodies.begin(), joints.bodies.end(), body);
+                if (found == joints.bodies.end() || *found != body) continue;
+                const int slot = root_of(static_cast<int>(found - joints.bodies.begin()));
+                if (first >= 0) root[static_cast<std::size_t>(slot)] = root_of(first);
+                if (first < 0) first = slot;
+            }
+        }
+        first_of_row.push_back(first);
+    }
+    std::vector<IdealJoints> parts(joints.bodies.size());
+    for (std::size_t r = 0; r < joints.rows.size(); ++r)
+        if (first_of_row[r] >= 0) parts[static_cast<std::size_t>(root_of(first_of_row[r]))].rows.push_back(joints.rows[r]);
+    for (std::size_t i = 0; i < joints.bodies.size(); ++i) {
+        IdealJoints& part = parts[static_cast<std::size_t>(root_of(static_cast<int>(i)))];
+        part.set = joints.set;
+        part.bodies.push_back(joints.bodies[i]);
+    }
+    parts.erase(std::remove_if(parts.begin(), parts.end(), [](const IdealJoints& part) { return part.bodies.empty(); }), parts.end());
+    return parts;
+}
 
 }  // namespace
 
 ProvenDeviations prove_deviations(const IdealJoints& joints, const model::Model& model, const stepper::Trajectory& trajectory) {
-    if (joints.rows.empty()) return {};
-    return Prover(joints, model, trajectory).run();
+    ProvenDeviations out;
+    out.of_body.assign(joints.bodies.size(), 0.0);
+    for (const IdealJoints& part : connected_parts(joints)) {
+        if (part.rows.size() != 6 * part.bodies.size()) return {{}, "joints and motors do not determine every body that they move"};
+        const ProvenDeviations of_part = Prover(part, model, trajectory).run();
+        if (!of_part.fault.empty()) return of_part;
+        for (std::size_t i = 0; i < part.bodies.size(); ++i) {
+            const auto at = std::lower_bound(joints.bodies.begin(), joints.bodies.end(), part.bodies[i]) - joints.bodies.begin();
+            out.of_body[static_cast<std::size_t>(at)] = of_part.of_body[i];
+        }
+    }
+    return out;
 }
 
 }  // namespace fettle::core::certificate

@@ -3,6 +3,7 @@
 #include "fettle/core/certificate/joint_prover.hpp"
 
 #include "fettle/core/clearance/jointed_clearance.hpp"
+#include "fettle/core/constraint/assembly.hpp"
 #include "fettle/tests/core/clearance/four_bar_motion.hpp"
 
 namespace fettle::core::certificate::joint_prover_test {
@@ -93,6 +94,120 @@ TEST_CASE("joint prover: what motors' curves do between nodes counts", "[mechani
     const ProvenDeviations proven = prove_deviations(d.joints, d.model, d.motion.trajectory);
     REQUIRE(proven.of_body.size() == 3);
     for (int body = 0; body < 3; ++body) CHECK(seen(d, body, 40) <= proven.of_body[static_cast<std::size_t>(body)]);
+}
+
+namespace {
+
+using core::scene::JointKind;
+using fettle::tests::mechanisms::bar;
+using fettle::tests::mechanisms::joint;
+
+const Vector3 x_axis = Vector3::UnitX(), z_axis = Vector3::UnitZ(), origin = Vector3::Zero();
+
+// Whole scenes turned: no axis is one of the world's.
+scene::Scene tilted(scene::Scene scene) {
+    const Matrix3 turn = kinematics::rotation(Vector3(0.7, -0.4, 0.3));
+    for (scene::Body& body : scene.bodies) {
+        body.pose.rotation = turn * body.pose.rotation;
+        body.pose.position = turn * body.pose.position;
+    }
+    for (scene::Joint& each : scene.mechanism.joints)
+        for (scene::Attachment* end : {&each.a, &each.b})
+            if (end->body.empty()) {
+                end->point = turn * end->point;
+                end->axis = turn * end->axis;
+            }
+    return scene;
+}
+
+// A crank, and a rocker along which the crank's pin slides in a die; a wheel geared to the crank; a piston on a rod of its own.
+scene::Scene quick_return(double h) {
+    constexpr double crank_length = 0.06, post = 0.15;
+    const double angle = std::atan2(0.0, crank_length + post);
+    scene::Scene out = fettle::tests::mechanisms::scene_of(
+        {bar("crank", crank_length), bar("die", 0.02, Vector3(crank_length, 0, 0), Vector3(0, 0, angle)),
+         bar("rocker", 0.3, Vector3(-post, 0, 0), Vector3(0, 0, angle)), bar("wheel", 0.05, Vector3(0, -0.3, 0))},
+        h);
+    out.mechanism.joints = {joint("main", JointKind::revolute, {"", origin, z_axis}, {"crank", origin, z_axis}),
+                            joint("pin", JointKind::revolute, {"crank", Vector3(crank_length, 0, 0), z_axis}, {"die", origin, z_axis}),
+                            joint("slot", JointKind::prismatic, {"rocker", origin, x_axis}, {"die", origin, x_axis}),
+                            joint("pivot", JointKind::revolute, {"", Vector3(-post, 0, 0), z_axis}, {"rocker", origin, z_axis}),
+                            joint("axle", JointKind::revolute, {"", Vector3(0, -0.3, 0), z_axis}, {"wheel", Vector3(0.01, 0, 0), z_axis})};
+    out.bodies[3].pose.position = Vector3(-0.01, -0.3, 0);
+    scene::Joint gear = joint("gear", JointKind::gear, {}, {});
+    gear.of = {"main", "axle"};
+    gear.ratio = -0.7;
+    out.mechanism.joints.push_back(gear);
+    out.mechanism.motors = {fettle::tests::mechanisms::motor("drive", "main", at_rate(2.5))};
+    return out;
+}
+
+// A bolt in a thread, and a piston on a rod that a crank on the bolt's far side moves: two mechanisms in one scene.
+scene::Scene bolt_and_piston(double h) {
+    constexpr double crank_length = 0.05, rod = 0.12;
+    scene::Scene out = fettle::tests::mechanisms::scene_of(
+        {bar("bolt", 0.05), bar("crank", crank_length, Vector3(0, 0.3, 0)), bar("rod", rod, Vector3(crank_length, 0.3, 0)),
+         bar("piston", 0.05, Vector3(crank_length + rod, 0.3, 0))},
+        h);
+    out.mechanism.joints = {joint("thread", JointKind::screw, {"", Vector3(0.01, 0, 0), z_axis}, {"bolt", Vector3(0.01, 0, 0), z_axis}),
+                            joint("main", JointKind::revolute, {"", Vector3(0, 0.3, 0), z_axis}, {"crank", origin, z_axis}),
+                            joint("big", JointKind::revolute, {"crank", Vector3(crank_length, 0, 0), z_axis}, {"rod", origin, z_axis}),
+                            joint("small", JointKind::revolute, {"rod", Vector3(rod, 0, 0), z_axis}, {"piston", origin, z_axis}),
+                            joint("guide", JointKind::prismatic, {"", Vector3(0, 0.3, 0), x_axis}, {"piston", origin, x_axis})};
+    out.mechanism.joints[0].pitch = 0.01;
+    out.mechanism.motors = {fettle::tests::mechanisms::motor("screw", "thread", at_rate(2)),
+                            fettle::tests::mechanisms::motor("drive", "main", at_rate(2.5))};
+    return out;
+}
+
+// Where Newton's method puts the bodies on the rows from the path on, in doubles. Contract: no angle leaves (-pi, pi).
+std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::Trajectory& trajectory, int t, double s) {
+    constraint::AssemblyProblem problem{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
+    std::vector<kinematics::Pose> poses;
+    for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+        problem.moments.push_back(model.bodies[static_cast<std::size_t>(i)].moments);
+        std::array<int, 6> index{};
+        for (int& k : index) k = problem.count++;
+        problem.index.push_back(index);
+        poses.push_back(pose_at(trajectory, t, 0, s, i));
+    }
+    problem.targets.resize(static_cast<Eigen::Index>(model.mechanism.rows.size()));
+    for (std::size_t r = 0; r < model.mechanism.rows.size(); ++r)
+        problem.targets[static_cast<Eigen::Index>(r)] = target_at(model.mechanism.rows[r], time_at(trajectory, t, 0, s));
+    const constraint::Assembly found = assemble(problem, poses);
+    REQUIRE(found.is_met);
+    return found.poses;
+}
+
+}  // namespace
+
+TEST_CASE("joint prover: sliding dies, gears, threads and pistons against assembled places", "[mechanism][certificate]") {
+    for (const auto& written : {quick_return(0.02), bolt_and_piston(0.02)}) {
+        const model::Model model = built(tilted(written));
+        const auto motion = stepper::follow_joints(model, 50, 1);
+        REQUIRE(motion);
+        REQUIRE(motion->parts == 1);
+        const clearance::JointedPath path = clearance::jointed_path(model, *motion);
+        INFO(path.refusal);
+        REQUIRE(path.joints);
+        REQUIRE(path.joints->bodies.size() == model.bodies.size());
+        std::vector<double> farthest(model.bodies.size(), 0.0);
+        for (int t = 0; t < 50; ++t)
+            for (const double s : {0.0, 0.2, 0.5, 0.7, 1.0}) {
+                const std::vector<kinematics::Pose> met = met_at(model, motion->trajectory, t, s);
+                for (std::size_t i = 0; i < met.size(); ++i)
+                    for (const auto& x : model.bodies[i].mesh.vertices.colwise()) {
+                        const kinematics::Pose stored = pose_at(motion->trajectory, t, 0, s, static_cast<int>(i));
+                        farthest[i] = std::max(farthest[i], (world_position(stored, x) - world_position(met[i], x)).norm());
+                    }
+            }
+        for (std::size_t i = 0; i < farthest.size(); ++i) {
+            CAPTURE(model.bodies[i].name, farthest[i], path.joints->deviations[i]);
+            CHECK(farthest[i] > 1e-6);
+            CHECK(farthest[i] <= path.joints->deviations[i]);
+            CHECK(path.joints->deviations[i] < 8 * farthest[i]);
+        }
+    }
 }
 
 TEST_CASE("joint prover: what does not determine the bodies, or is not where they are, proves nothing", "[mechanism][certificate]") {
