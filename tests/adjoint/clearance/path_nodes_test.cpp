@@ -4,6 +4,7 @@
 #include "fettle/adjoint/clearance/path_nodes.hpp"
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
@@ -158,6 +159,71 @@ TEST_CASE("A body that moves freely through a step that is cut has no derivative
     const auto swept = stepper::seeded_sweep(model, trajectory, seeds);
     REQUIRE(!swept);
     CHECK(swept.errors()[0].message == refusal);
+}
+
+namespace {
+
+// A cube thrown past an edge, spinning: corners and edges of the two meet, and the way round them bends inside steps.
+Model thrown(std::mt19937& random) {
+    std::uniform_real_distribution<double> u(-1, 1);
+    const auto vector = [&] { return Vector3(u(random), u(random), u(random)); };
+    Model model;
+    model.bodies = {
+        make_body("cube", box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}), make_pose(vector(), {-0.35, 0.1 * u(random), 0})),
+        make_body("edge", box_mesh({-0.1, -0.1, -0.3}, {0.1, 0.1, 0.3}), make_pose(0.5 * vector(), {0, 0, 0}), BodyType::static_body)};
+    set_velocity(model.bodies[0], Vector3(2, 0, 0) + 0.3 * vector(), 12 * vector());
+    model.timestep = 0.02;
+    model.end_time = 0.02 * 12;
+    model.dhat = 2e-3;
+    model.diagonal = 1;
+    model.gravity = Vector3::Zero();
+    model.velocity_tolerance = 1e-4;
+    model.kappa = core::model::choose_kappa(model);
+    return model;
+}
+
+core::stepper::Trajectory thrown_path(const Model& model) {
+    core::stepper::SimulationOptions options;
+    options.steps = 12;
+    options.for_gradient = true;
+    return core::stepper::simulate(model, options).trajectory;
+}
+
+}  // namespace
+
+TEST_CASE("Through contact a clearance's derivative is that of whole simulations, or is refused", "[clearance][adjoint]") {
+    int right = 0, refused = 0, cut = 0;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        std::mt19937 random(seed);
+        const Model model = thrown(random);
+        const auto trajectory = thrown_path(model);
+        if (trajectory.steps.size() != 12) continue;
+        const PairClearance pair = certified(model, trajectory, 0, 1);
+        for (const auto& step : trajectory.steps) cut += step.nodes.size() > 2;
+        std::vector<Seeds> seeds{zero_seeds(model, 12)};
+        const std::string refusal = clearance_adjoint(model, trajectory, pair, 1, seeds[0].trajectory_bar, seeds[0].model_bar);
+        CAPTURE(seed, pair.witness.step, pair.witness.segment, pair.witness.s, pair.upper, refusal);
+        refused += !refusal.empty();
+        if (!refusal.empty()) continue;
+        const auto swept = stepper::seeded_sweep(model, trajectory, seeds);
+        REQUIRE(swept);
+        const Vector3 along = Vector3(0.3, 0.8, -0.5).normalized();
+        const double derivative = along.dot(swept->front().bodies[0].velocity_start_bar.col(3));
+        const auto upper = [&](double h) {
+            Model other = model;
+            other.bodies[0].velocity_start.col(3) += h * along;
+            return certified(other, thrown_path(other), 0, 1).upper;
+        };
+        double best = 1e9;
+        for (const double h : {1e-4, 1e-5, 1e-6})
+            best = std::min(best, std::abs((upper(h) - upper(-h)) / (2 * h) - derivative) / (std::abs(derivative) + 1e-3));
+        CAPTURE(derivative, best);
+        CHECK(best < 1e-4);
+        right += best < 1e-4;
+    }
+    CAPTURE(right, refused, cut);
+    CHECK(right >= 10);
+    CHECK(refused >= 1);
 }
 
 }  // namespace fettle::adjoint::clearance::path_nodes_test
