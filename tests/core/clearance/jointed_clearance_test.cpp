@@ -25,9 +25,10 @@ struct Looked {
     PairClearance result, of_path;
 };
 
-Looked look(double allowed_gap, double tolerance, double minimum) {
+Looked look(double allowed_gap, double tolerance, double minimum, double plate_lowered = 0) {
     Looked out;
     out.model = built(four_bar_scene(at_rate(2 * M_PI), 1.0 / 40));
+    out.model.bodies[plate_body].pose_start.position.y() -= plate_lowered;
     auto motion = stepper::follow_joints(out.model, 40, allowed_gap);
     REQUIRE(motion);
     out.path = jointed_path(out.model, *motion);
@@ -71,6 +72,22 @@ TEST_CASE("jointed clearance: verdicts are of the joints, not of the path", "[me
     CHECK(!between.result.reason.empty());
     CHECK(between.of_path.status == PairStatus::clear);  // which is not so
     CHECK(between.result.minimum == truth);
+}
+
+TEST_CASE("jointed clearance: a clash of the path is one of the joints if it is deeper than they part by", "[mechanism][clearance]") {
+    const double truth = least_gap(built(four_bar_scene(at_rate(1), 1)));
+    const double charge = joint_charge(*look(1, 1e-6, 0).path.joints, coupler_body, plate_body);
+    const Looked deep = look(1, 1e-6, 0, truth + 0.012);
+    CHECK(deep.result.is_clash());
+    CHECK(deep.result.status == PairStatus::violated);
+    CHECK(deep.result.overlap->depth_lower > charge);
+    const Looked shallow = look(1, 1e-6, 0, truth + 0.2 * charge);
+    CHECK(shallow.of_path.is_clash());
+    CHECK(!shallow.result.is_clash());
+    CHECK(shallow.result.status == PairStatus::undecided);
+    CHECK(shallow.result.solids == Solids::unproven);
+    CHECK(shallow.result.lower == 0);
+    CHECK(shallow.result.reason.find("joints part") == 0);
 }
 
 TEST_CASE("jointed clearance: the certificate is accepted, and rejected where it charges too little", "[mechanism][clearance]") {
