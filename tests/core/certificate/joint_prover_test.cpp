@@ -2,6 +2,8 @@
 // How far a stored path is from where joints and motors have the bodies: against trigonometry, at many instants between the nodes.
 #include "fettle/core/certificate/joint_prover.hpp"
 
+#include <random>
+
 #include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/constraint/assembly.hpp"
 #include "fettle/tests/core/clearance/four_bar_motion.hpp"
@@ -179,7 +181,80 @@ std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::T
     return found.poses;
 }
 
+// Of each body's vertices, at some instants of every step.
+std::vector<double> farthest_from_met(const model::Model& model, const stepper::Trajectory& trajectory) {
+    std::vector<double> farthest(model.bodies.size(), 0.0);
+    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+        for (const double s : {0.0, 0.2, 0.5, 0.7, 1.0}) {
+            const std::vector<kinematics::Pose> met = met_at(model, trajectory, t, s);
+            for (std::size_t i = 0; i < met.size(); ++i) {
+                const kinematics::Pose stored = pose_at(trajectory, t, 0, s, static_cast<int>(i));
+                for (const auto& x : model.bodies[i].mesh.vertices.colwise())
+                    farthest[i] = std::max(farthest[i], (world_position(stored, x) - world_position(met[i], x)).norm());
+            }
+        }
+    return farthest;
+}
+
+// A four-bar of any lengths, started anywhere, turned anyhow; one in three nearly folds. The crank goes through 2 rad.
+std::optional<scene::Scene> random_four_bar(std::mt19937& random, double h) {
+    const auto u = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const double ground_length = u(0.1, 0.3), coupler_length = u(0.1, 0.3), rocker_length = u(0.1, 0.3), start = u(-3, 3);
+    const double room = coupler_length + rocker_length - ground_length;
+    const double crank_length = random() % 3 == 0 ? room * (1 - u(1e-3, 1e-2)) : room * u(0.1, 0.9);
+    if (!(crank_length > 0.02 && crank_length < 0.5)) return std::nullopt;
+    const Vector3 b = crank_length * Vector3(std::cos(start), std::sin(start), 0), g(ground_length, 0, 0);
+    const double distance = (g - b).norm();
+    if (!(distance < 0.999 * (coupler_length + rocker_length) && distance > 1.001 * std::abs(coupler_length - rocker_length)))
+        return std::nullopt;
+    const double along = std::acos((coupler_length * coupler_length + distance * distance - rocker_length * rocker_length) /
+                                   (2 * coupler_length * distance));
+    const double angle = std::atan2(g.y() - b.y(), g.x() - b.x()) + along;
+    const Vector3 end = b + coupler_length * Vector3(std::cos(angle), std::sin(angle), 0);
+    scene::Scene out = fettle::tests::mechanisms::scene_of(
+        {bar("crank", crank_length, origin, Vector3(0, 0, start)), bar("coupler", coupler_length, b, Vector3(0, 0, angle)),
+         bar("rocker", rocker_length, g, Vector3(0, 0, std::atan2(end.y(), end.x() - ground_length)))},
+        h);
+    out.mechanism.joints = {joint("main", JointKind::revolute, {"", origin, z_axis}, {"crank", origin, z_axis}),
+                            joint("pin", JointKind::revolute, {"crank", Vector3(crank_length, 0, 0), z_axis}, {"coupler", origin, z_axis}),
+                            joint("end", JointKind::revolute, {"coupler", Vector3(coupler_length, 0, 0), z_axis},
+                                  {"rocker", Vector3(rocker_length, 0, 0), z_axis}),
+                            joint("pivot", JointKind::revolute, {"", g, z_axis}, {"rocker", origin, z_axis})};
+    out.mechanism.motors = {fettle::tests::mechanisms::motor("drive", "main", at_rate(u(-2, 2)))};
+    return tilted(std::move(out));
+}
+
+void look_at_random_four_bars(unsigned seed, int wanted, int least_proven) {
+    std::mt19937 random(seed);
+    int looked = 0, proven = 0;
+    while (looked < wanted) {
+        const int steps = 10 + static_cast<int>(random() % 60);
+        const auto written = random_four_bar(random, 1.0 / steps);
+        if (!written) continue;
+        const model::Model model = built(*written);
+        const auto motion = stepper::follow_joints(model, steps, 1);
+        if (!motion) continue;  // it cannot go so far
+        ++looked;
+        const clearance::JointedPath path = clearance::jointed_path(model, *motion);
+        CHECK(path.refusal.empty() == path.joints.has_value());
+        if (!path.joints) continue;
+        ++proven;
+        const std::vector<double> farthest = farthest_from_met(model, motion->trajectory);
+        for (std::size_t i = 0; i < farthest.size(); ++i) {
+            CAPTURE(seed, looked, steps, motion->parts, i, farthest[i], path.joints->deviations[i]);
+            CHECK(farthest[i] <= path.joints->deviations[i]);
+        }
+    }
+    CAPTURE(looked, proven);
+    CHECK(proven >= least_proven);
+    if (looked >= 100) WARN(proven << " of " << looked << " are proven");
+}
+
 }  // namespace
+
+TEST_CASE("joint prover: random four-bars, some of which nearly fold", "[mechanism][certificate]") { look_at_random_four_bars(3, 12, 6); }
+
+TEST_CASE("joint prover: 400 random four-bars", "[mechanism][certificate][slow]") { look_at_random_four_bars(4, 400, 200); }
 
 TEST_CASE("joint prover: sliding dies, gears, threads and pistons against assembled places", "[mechanism][certificate]") {
     for (const auto& written : {quick_return(0.02), bolt_and_piston(0.02)}) {
@@ -191,16 +266,7 @@ TEST_CASE("joint prover: sliding dies, gears, threads and pistons against assemb
         INFO(path.refusal);
         REQUIRE(path.joints);
         REQUIRE(path.joints->bodies.size() == model.bodies.size());
-        std::vector<double> farthest(model.bodies.size(), 0.0);
-        for (int t = 0; t < 50; ++t)
-            for (const double s : {0.0, 0.2, 0.5, 0.7, 1.0}) {
-                const std::vector<kinematics::Pose> met = met_at(model, motion->trajectory, t, s);
-                for (std::size_t i = 0; i < met.size(); ++i)
-                    for (const auto& x : model.bodies[i].mesh.vertices.colwise()) {
-                        const kinematics::Pose stored = pose_at(motion->trajectory, t, 0, s, static_cast<int>(i));
-                        farthest[i] = std::max(farthest[i], (world_position(stored, x) - world_position(met[i], x)).norm());
-                    }
-            }
+        const std::vector<double> farthest = farthest_from_met(model, motion->trajectory);
         for (std::size_t i = 0; i < farthest.size(); ++i) {
             CAPTURE(model.bodies[i].name, farthest[i], path.joints->deviations[i]);
             CHECK(farthest[i] > 1e-6);
