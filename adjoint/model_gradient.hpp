@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,7 @@ void add(ModelGradient& sum, const ModelGradient& part);
 struct Seeds {
     TrajectoryGradient trajectory_bar;
     ModelGradient model_bar;
+    std::string refusal{};  ///< why the quantity has no derivative here, with the step; empty: it has one
 };
 Seeds zero_seeds(const core::model::Model& model, int steps);
 

@@ -107,26 +107,16 @@ SegmentGradient on_segment(const Trajectory& trajectory, const Witness& w, int b
     return out;
 }
 
-// The chain of the header's convention: from two nodes of a step to its start and end poses.
-void add_to_ends(const Trajectory& trajectory, const Witness& w, int body, double radius, const SegmentGradient& on,
-                 ClearanceGradient& out) {
-    const TrajectoryStep& step = trajectory.steps[w.step];
-    const int last = static_cast<int>(step.nodes.size()) - 1;
-    const ChartPoint &start = step.nodes.front()[body], &end = step.nodes.back()[body];
+// From two nodes of a step, which move by these shares of its ends', to its start and end poses.
+void add_to_ends(const Trajectory& trajectory, const Witness& w, int body, const std::array<NodeShare, 2>& shares,
+                 const SegmentGradient& on, ClearanceGradient& out) {
     Vector6 to_start = stacked(Vector3::Zero(), on.base_bar), to_end = Vector6::Zero();  // to_end: of the end's chart coordinates
-    for (int i = 0; i < 2; ++i) {
-        const int k = w.segment + i;
-        const Vector6& bar = on.node_bar[static_cast<std::size_t>(i)];
-        const double sigma = k == 0 ? 0 : k == last ? 1 : node_fraction(step, k, body, radius);
-        to_start.head<3>() += (1 - sigma) * bar.head<3>();
-        to_end += sigma * bar;
-        if (k == 0 || k == last) continue;
-        const ChartPoint& node = step.nodes[static_cast<std::size_t>(k)][body];
-        const Vector3 offset = node.position - (1 - sigma) * start.position - sigma * end.position;
-        const Vector3 twist = node.rotation_vector - sigma * end.rotation_vector;
-        to_start.tail<3>() += offset.cross(bar.head<3>()) + twist.cross(bar.tail<3>());
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vector6 of_end = shares[i].cwiseProduct(on.node_bar[i]);
+        to_start.head<3>() += (on.node_bar[i] - of_end).head<3>();
+        to_end += of_end;
     }
-    const Vector3 theta = end.rotation_vector;
+    const Vector3 theta = trajectory.steps[w.step].nodes.back()[body].rotation_vector;
     const Vector3 torque = core::kinematics::left_jacobian(theta).inverse().transpose() * to_end.tail<3>();
     FETTLE_ASSERT(torque.allFinite(), "a whole turn in one step has no derivative by its end pose");
     to_end.tail<3>() = torque;
@@ -135,17 +125,19 @@ void add_to_ends(const Trajectory& trajectory, const Witness& w, int body, doubl
     out.poses.push_back({w.step + 1, body, to_end});
 }
 
-}  // namespace
-
-double node_fraction(const TrajectoryStep& step, int k, int body, double radius) {
-    const auto coordinates = [&](const std::vector<ChartPoint>& node) {
-        return stacked(node[body].position, radius * node[body].rotation_vector);
-    };
-    const Vector6 start = coordinates(step.nodes.front()), chord = coordinates(step.nodes.back()) - start;
-    const double length_squared = chord.squaredNorm();
-    if (!(length_squared > 0)) return k / static_cast<double>(step.nodes.size() - 1);
-    return std::clamp(chord.dot(coordinates(step.nodes[static_cast<std::size_t>(k)]) - start) / length_squared, 0.0, 1.0);
+// Of the bodies at the segment's two nodes. A node that the witness does not depend on counts as the start.
+std::array<std::array<NodeShare, 2>, 2> shares_at(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
+                                                  const Witness& w) {
+    std::array<std::array<NodeShare, 2>, 2> out;
+    for (int i = 0; i < 2; ++i) {
+        const auto node = node_shares(model, trajectory, w.step, w.segment + i, a, b);
+        for (std::size_t body = 0; body < 2; ++body)
+            out[body][static_cast<std::size_t>(i)] = node ? (*node)[body] : NodeShare(NodeShare::Zero());
+    }
+    return out;
 }
+
+}  // namespace
 
 std::optional<SegmentGradient> segment_gradient(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
                                                 const Witness& witness, int body) {
@@ -159,27 +151,30 @@ ClearanceGradient clearance_gradient(const core::model::Model& model, const Traj
     ClearanceGradient out;
     auto forces = witness_forces(model, trajectory, a, b, witness);
     if (!forces) return out;
+    out.refusal = no_derivative_at(model, trajectory, a, b, witness);
+    if (!out.refusal.empty()) return out;
     out.vertices = std::move(forces->vertices);
-    for (const int body : {a, b}) {
-        const Wrench& wrench = body == a ? forces->on_a : forces->on_b;
-        if (witness.step < 0) {
-            out.poses.push_back({0, body, stacked(wrench.force, wrench.torque)});
-        } else {
-            add_to_ends(trajectory, witness, body, model.bodies[body].radius, on_segment(trajectory, witness, body, wrench), out);
-        }
+    if (witness.step < 0) {
+        out.poses.push_back({0, a, stacked(forces->on_a.force, forces->on_a.torque)});
+        out.poses.push_back({0, b, stacked(forces->on_b.force, forces->on_b.torque)});
+        return out;
     }
+    const auto shares = shares_at(model, trajectory, a, b, witness);
+    add_to_ends(trajectory, witness, a, shares[0], on_segment(trajectory, witness, a, forces->on_a), out);
+    add_to_ends(trajectory, witness, b, shares[1], on_segment(trajectory, witness, b, forces->on_b), out);
     return out;
 }
 
-void clearance_adjoint(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair, double scale,
-                       TrajectoryGradient& trajectory_bar, ModelGradient& model_bar) {
-    const ClearanceGradient gradient = clearance_gradient(model, trajectory, pair.a, pair.b, pair.witness);
+std::string clearance_adjoint(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair, double scale,
+                              TrajectoryGradient& trajectory_bar, ModelGradient& model_bar) {
+    ClearanceGradient gradient = clearance_gradient(model, trajectory, pair.a, pair.b, pair.witness);
     for (const auto& part : gradient.vertices) model_bar.bodies[part.body].vertices_bar.col(part.vertex) += scale * part.bar;
     for (const auto& part : gradient.poses) {
         Matrix34& bar = trajectory_bar.pose_bar[part.t][part.body];
         bar.leftCols<3>() += 0.5 * scale * cross_matrix(part.bar.tail<3>()) * trajectory.poses[part.t][part.body].rotation;
         bar.col(3) += scale * part.bar.head<3>();
     }
+    return std::move(gradient.refusal);
 }
 
 double directional(const ClearanceGradient& gradient, const ClearanceDirection& direction) {
@@ -190,8 +185,8 @@ double directional(const ClearanceGradient& gradient, const ClearanceDirection& 
     return sum;
 }
 
-double clearance_derivative(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair,
-                            const ClearanceDirection& direction, double tolerance) {
+std::optional<double> clearance_derivative(const core::model::Model& model, const Trajectory& trajectory, const PairClearance& pair,
+                                           const ClearanceDirection& direction, double tolerance) {
     if (!(pair.upper > 0)) return 0;
     const std::vector<Witness> only{pair.witness};
     const std::vector<Witness>& witnesses = pair.witnesses.empty() ? only : pair.witnesses;
@@ -200,6 +195,7 @@ double clearance_derivative(const core::model::Model& model, const Trajectory& t
         const Witness& at = witnesses[i];
         const auto same = [&](const Witness& w) { return w.step == at.step && w.segment == at.segment && w.s == at.s; };
         if (std::any_of(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;  // seen: one instant
+        if (!no_derivative_at(model, trajectory, pair.a, pair.b, at).empty()) return std::nullopt;
         for (const Witness& tied : tied_features(model, trajectory, pair.a, pair.b, at, tolerance))
             least = std::min(least, directional(clearance_gradient(model, trajectory, pair.a, pair.b, tied), direction));
     }

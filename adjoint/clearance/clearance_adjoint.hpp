@@ -12,17 +12,17 @@
 ///   phi = exp(theta(s)) phi_t + J(theta(s)) ((1 - s) dtheta_k + s dtheta_{k+1}),   dq = (1 - s) dq_k + s dq_{k+1},
 /// J the left Jacobian. This is exact for the path as stored, its nodes taken as free: segment_gradient().
 /// A step's first and last node are its start and end poses; theta_n = log(R_{t+1} R_t^T), so dtheta_n = J(theta_n)^-1 (phi_{t+1} -
-/// exp(theta_n) phi_t). The nodes in between are accepted points of a line search and say nothing of how they would move with the poses.
-/// The convention here: each keeps its fraction sigma_k of the straight path (node_fraction()) and its offset from it, the offset turning
-/// with the body's start pose:
-///   q_k = (1 - sigma_k) q_t + sigma_k q_{t+1} + R_t e_k,   theta_k = sigma_k theta_n + R_t c_k,   sigma_k, e_k, c_k held.
-/// It is exact for a step without intermediate nodes and for moving everything together, and it is what clearance_gradient() chains.
+/// exp(theta_n) phi_t). Nodes between them move by a share of the ends' motions where that is known (path_nodes.hpp):
+///   dq_k = (1 - share) dq_t + share dq_{t+1},   dtheta_k = share dtheta_n   (entry by entry).
+/// Where it is not known there is no derivative, and that is said with the step.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "fettle/adjoint/clearance/path_nodes.hpp"
 #include "fettle/adjoint/model_gradient.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 
@@ -41,10 +41,11 @@ struct ClearanceGradient {
     };
     std::vector<VertexPart> vertices;
     std::vector<PosePart> poses;
+    std::string refusal;  ///< why there is no derivative, with the step (no_derivative_at); empty: there is one
 };
 
-/// At one witness of a pair (bodies a, b); empty if the distance there is 0, which has no direction.
-/// A witness as assembled (step -1) moves with poses[0] alone.
+/// At one witness of a pair (bodies a, b); empty if the distance there is 0, which has no direction, and but for `refusal` if it has no
+/// derivative. A witness as assembled (step -1) moves with poses[0] alone.
 /// Contract: |theta_n| is not a multiple of 2 pi other than 0 (there the end pose does not determine the path).
 ClearanceGradient clearance_gradient(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
                                      const core::clearance::Witness& witness);
@@ -58,29 +59,28 @@ struct SegmentGradient {
 std::optional<SegmentGradient> segment_gradient(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
                                                 const core::clearance::Witness& witness, int body);
 
-/// Where along the straight path from the first to the last node the k-th stands: the fraction of the nearest point, in [0, 1], rotation
-/// vectors measured in units of 1 / radius [m]. k / n where the straight path has no length.
-double node_fraction(const core::stepper::TrajectoryStep& step, int k, int body, double radius);
-
 /// Adds scale * clearance_gradient at pair.witness: on poses to `trajectory_bar`, on vertices to `model_bar`.
 /// @param trajectory_bar  entries G of pose_bar are those of the 3x4 matrix with <G, [[phi] R, dq]> = tau.phi + f.dq: defined for motions
 ///                        of a rigid body only, G = [[tau] R / 2, f].
-void clearance_adjoint(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
-                       const core::clearance::PairClearance& pair, double scale, TrajectoryGradient& trajectory_bar,
-                       ModelGradient& model_bar);
+/// @return                ClearanceGradient::refusal: if not empty, nothing was added.
+[[nodiscard]] std::string clearance_adjoint(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                            const core::clearance::PairClearance& pair, double scale, TrajectoryGradient& trajectory_bar,
+                                            ModelGradient& model_bar);
 
 /// A direction: tangents (dq, phi) of each pose [t][body] (tangent_sweep.hpp makes them), and of the model's vertices.
 struct ClearanceDirection {
     std::vector<std::vector<Vector6>> pose_dot;
     std::vector<Matrix3X> vertices_dot;  ///< [body]; empty: shapes held
 };
+/// Contract: there is a derivative.
 double directional(const ClearanceGradient& gradient, const ClearanceDirection& direction);
 
 /// lim (d(x + h direction) - d(x)) / h as h -> 0+: the least over all features (tied_features.hpp) that come within `tolerance` [m] of
 /// the least distance at the instants of pair.witnesses (of pair.witness if there are none); 0 if the bodies touch.
 /// Exact if those are all the instants that tie: certify with a witness_tolerance. Faces that slide along each other at one distance tie
-/// at all times; then this is an upper bound.
-double clearance_derivative(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
-                            const core::clearance::PairClearance& pair, const ClearanceDirection& direction, double tolerance);
+/// at all times; then this is an upper bound. Nothing: one of them has no derivative (no_derivative_at).
+std::optional<double> clearance_derivative(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                           const core::clearance::PairClearance& pair, const ClearanceDirection& direction,
+                                           double tolerance);
 
 }  // namespace fettle::adjoint::clearance

@@ -31,6 +31,8 @@ void add_start(const TrajectoryGradient& seed, ModelGradient& sum) {
 
 Result<std::vector<ModelGradient>> seeded_sweep(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                 std::vector<Seeds> seeds) {
+    for (const Seeds& seed : seeds)
+        if (!seed.refusal.empty()) return core::base::Error{core::base::ErrorCode::unsupported, "gradient", seed.refusal};
     std::vector<ModelGradient> result;
     std::vector<TrajectoryGradient> moving;
     std::vector<std::size_t> of;

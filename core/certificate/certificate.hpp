@@ -3,6 +3,8 @@
 /// search that made it. It claims, for each pair of bodies and over all the time asked for,
 ///   lower <= min dist(A(t), B(t)) <= upper   of their surfaces, and what is known of their solids: `Solids`,
 /// about the meshes and the path of a trajectory (records/trajectory_io.hpp), both of which must be at hand to check it: hashes name them.
+/// With `joints` it claims, too, how far the bodies are from that path where the joints are met at all times: bounds of their distances are
+/// those of the path, wider by joint_charge.
 /// Pairs that it does not list it says nothing of: uncovered_pairs.
 ///
 /// How it proves `lower`. For every path segment there is a tree of cells. A cell is an interval of the segment's parameter s, a piece of
@@ -28,11 +30,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/certificate/ideal_joints.hpp"
 
 namespace fettle::core::certificate {
 
@@ -98,6 +102,8 @@ struct Certificate {
     std::vector<BodyPieces> bodies;   ///< one per body of the model; empty lists for those of no pair
     std::vector<PairCertificate> pairs;
     std::vector<ExportedFile> exports{};
+    /// That hold the bodies at all times, and how far from the path; nothing: the bounds are of the path as stored, and of nothing else.
+    std::optional<IdealJoints> joints{};
 };
 
 /// Pairs of `bodies` bodies that the certificate says nothing of, a < b.
@@ -105,7 +111,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 
 /// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
 ///   fettle_certificate 2, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
-///   exports (optional) [{file, hash, rounding}],
+///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp),
 ///   pairs [{a, b, lower, upper, solids, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
 /// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
 /// others, which it writes `:`. Written whole or not at all.

@@ -10,6 +10,7 @@
 #include "fettle/core/certificate/certified_body.hpp"
 #include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/core/certificate/joint_prover.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -32,6 +33,7 @@ public:
         if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
         if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
         if (!report_.accepted()) return report_;
+        check_deviations();
         find_places();
         bodies_.resize(model_.bodies.size());
         solids_.resize(model_.bodies.size());
@@ -60,6 +62,19 @@ private:
             fault("/path_hash", "stale: the certificate is about another path");
             report_.stale = true;
         }
+    }
+
+    void check_deviations() {
+        if (!certificate_.joints) return;
+        const IdealJoints& joints = *certificate_.joints;
+        const base::Errors errors = check_joints(joints, model_.bodies.size());
+        for (const base::Error& e : errors) fault(e.where, e.message);
+        if (!errors.empty()) return;
+        const ProvenDeviations proven = prove_deviations(joints, model_, trajectory_);
+        if (!proven.fault.empty()) return fault("/joints", proven.fault);
+        for (std::size_t i = 0; i < joints.bodies.size(); ++i)
+            if (!(joints.deviations[i] >= proven.of_body[i]))
+                fault("/joints/deviations/" + std::to_string(i), "joints may have the body farther from the path than is claimed");
     }
 
     const SolidMesh& solid(int body) {

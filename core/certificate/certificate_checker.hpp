@@ -12,6 +12,8 @@
 /// - what is claimed of the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): of a body
 ///   inside another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
 /// - there is a pair;
+/// - no body is farther from where the joints have it, if the certificate has joints, than it claims: joint_prover.hpp (whether they are a
+///   scene's is for whoever has the scene to compare);
 /// - the upper bound is attained by its witness: not below the distance there, nor above it by more than rounding.
 /// The cost is linear in the certificate: a few microseconds a leaf, on all threads. A false leaf ends at its first piece without proof.
 ///

@@ -198,6 +198,10 @@ base::Errors write_certificate(const std::filesystem::path& path, const Certific
         out.key("exports");
         out.list(certificate.exports.size(), ",\n ", [&](std::size_t i) { write_export(out, certificate.exports[i]); });
     }
+    if (certificate.joints) {
+        out.key("joints");
+        write_joints(out, *certificate.joints);
+    }
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
@@ -208,7 +212,8 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     auto document = files::JsonDocument::read(path.string());
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    root.allow_keys({"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "exports", "pairs"});
+    root.allow_keys(
+        {"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "exports", "joints", "pairs"});
     root.require("fettle_certificate").integer(2, 2);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate;
@@ -221,6 +226,7 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     for (const JsonNode& exported : root["exports"].elements())
         certificate.exports.push_back({exported.require("file").string().value_or(""), exported.require("hash").string().value_or(""),
                                        exported.require("rounding").number(files::not_negative).value_or(0)});
+    if (root["joints"].exists()) certificate.joints = read_joints(root["joints"]);
     for (const JsonNode& pair : root.require("pairs").elements()) certificate.pairs.push_back(read_pair(pair));
     if (!document->errors().empty()) return document->errors();
     return certificate;

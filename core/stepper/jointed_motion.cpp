@@ -25,6 +25,17 @@ using kinematics::ChartPoint;
 using kinematics::Pose;
 
 constexpr int most_parts = 256;
+constexpr double widest_turn = 0.5;  // of a body between two nodes, so that angles can be counted with room [rad]
+
+// Of what no script moves.
+bool turns_far(const model::Model& model, const TrajectoryStep& step) {
+    for (std::size_t k = 1; k < step.nodes.size(); ++k)
+        for (std::size_t i = 0; i < step.nodes[k].size(); ++i) {
+            const Vector3 turn = step.nodes[k][i].rotation_vector - step.nodes[k - 1][i].rotation_vector;
+            if (turn.norm() > widest_turn && !is_scripted(model.bodies[i])) return true;
+        }
+    return false;
+}
 
 bool is_steady(const scene::Curve& curve) {
     return curve.rate == 0 && std::all_of(curve.values.begin(), curve.values.end(), [&](double v) { return v == curve.values.front(); });
@@ -256,6 +267,12 @@ private:
 
 }  // namespace
 
+std::vector<std::string> undriven_bodies(const model::Model& model) {
+    Groups groups(model);
+    groups.judge();
+    return {groups.held.begin(), groups.held.end()};
+}
+
 base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, double allowed_gap) {
     Groups groups(model);
     groups.judge();
@@ -279,16 +296,17 @@ base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, 
         for (const model::Body& body : model.bodies) trajectory.body_names.push_back(body.name);
         trajectory.poses.push_back(start_state(model).history.poses);
         out.joint_gap = 0;
+        bool is_coarse = false;
         std::optional<std::string> fault;
-        for (int t = 0; !fault && t < count * out.parts; ++t) {
+        for (int t = 0; !fault && t < count * out.parts && !is_coarse; ++t) {
             fault = follower.advance(t * finer.timestep, finer.timestep, trajectory);
-            if (!fault)
-                out.joint_gap =
-                    std::max(out.joint_gap, path_gap_bound(model, trajectory.poses[trajectory.poses.size() - 2], trajectory.steps.back()));
-            if (out.joint_gap > allowed_gap && out.parts < most_parts) break;
+            if (fault) break;
+            const TrajectoryStep& step = trajectory.steps.back();
+            out.joint_gap = std::max(out.joint_gap, path_gap_bound(model, trajectory.poses[trajectory.poses.size() - 2], step));
+            is_coarse = out.parts < most_parts && (out.joint_gap > allowed_gap || turns_far(model, step));
         }
         if (fault && out.parts >= most_parts) return base::Error{ErrorCode::inconsistent, where, *fault};
-        if (fault || (out.joint_gap > allowed_gap && out.parts < most_parts)) continue;
+        if (fault || is_coarse) continue;
         out.trajectory = std::move(trajectory);
         return out;
     }

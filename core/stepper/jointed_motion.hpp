@@ -7,7 +7,7 @@
 /// have to decide, and that is an error that names them.
 ///
 /// Between nodes the path is straight in each body's chart, and joints part by at most `joint_gap` (joint_outputs.hpp). Steps are halved,
-/// all of them, until that is at most what is asked for, or a step is 1/256 of the model's.
+/// all of them, until that is at most what is asked for and no body turns by more than 0.5 rad, or a step is 1/256 of the model's.
 #pragma once
 
 #include <string>
@@ -25,6 +25,9 @@ struct JointedMotion {
     double joint_gap = 0;           ///< between nodes, over the whole motion [m]
     std::vector<std::string> held;  ///< bodies that stay where they start although they could move
 };
+
+/// Bodies that could move, but that no motor and no script drives: follow_joints holds them.
+std::vector<std::string> undriven_bodies(const model::Model& model);
 
 /// @param steps        of the model; negative: its end_time, or 1000 steps if it has none.
 /// @param allowed_gap  [m] > 0

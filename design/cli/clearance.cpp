@@ -103,7 +103,7 @@ std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& s
     for (const PairSpec& pair : selection.left_out) {
         for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0, certify.enough});
     }
-    const auto found = core::clearance::certify_clearance(subject.model, subject.trajectory, requests, certify);
+    const auto found = certified(subject, requests, certify);
     std::vector<core::clearance::PairClearance> clashes;
     std::vector<PairSpec> apart;
     auto first = found.begin();
@@ -194,8 +194,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     certify.should_stop = interrupted;
     core::certificate::Certificate certificate;
     if (!options.certificate.empty()) certify.certificate = &certificate;
-    auto results =
-        core::clearance::certify_clearance(subject->model, subject->trajectory, requests_of(*selection, certify.margin_curve), certify);
+    auto results = certified(*subject, requests_of(*selection, certify.margin_curve), certify);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
     certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;

@@ -125,6 +125,7 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
     json["point_a"] = answers::vector_json(least.witness.point_a);
     json["point_b"] = answers::vector_json(least.witness.point_b);
     json["gap"] = least.upper - least.lower;
+    if (subject.joints) json["joint_charge"] = subject.joints->joints ? Json(joint_charge(subject, least.a, least.b)) : Json();
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
     if (!pair.overlap.empty()) json["overlap"] = pair.overlap;

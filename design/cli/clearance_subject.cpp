@@ -82,6 +82,25 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
     return {};
 }
 
+std::string joints_note(const Subject& subject, const core::stepper::JointedMotion& followed) {
+    const double unit = subject.model.length_unit;
+    const std::string name = answers::unit_name(unit);
+    std::string note = formatted(
+        "--kinematic: joints and motors are met at every node, each step in %d; between nodes joints of the path "
+        "as stored part by at most %.2g %s",
+        followed.parts, followed.joint_gap / unit, name.c_str());
+    if (!subject.joints->joints)
+        return note + "; where joints met at all times would have the bodies is not proven: " + subject.joints->refusal;
+    const auto& deviations = subject.joints->joints->deviations;
+    const auto most = std::max_element(deviations.begin(), deviations.end());
+    if (most == deviations.end()) return note;
+    const int body = subject.joints->joints->bodies[static_cast<size_t>(most - deviations.begin())];
+    return note + formatted(
+                      "; bounds are of joints met at all times, which have the bodies within %.2g %s of that path (the most: %s): each "
+                      "bound is wider by what its two bodies are off",
+                      *most / unit, name.c_str(), subject.model.bodies[static_cast<size_t>(body)].name.c_str());
+}
+
 // Where joints and motors have the bodies.
 Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
     constexpr double allowed_gap = 1e-6;  // [m]
@@ -91,16 +110,13 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
         for (Error& error : errors) error.where = options.path + ": " + error.where;
         return errors;
     }
+    subject.joints = core::clearance::jointed_path(subject.model, *followed);
     subject.trajectory = std::move(followed->trajectory);
     subject.source = SubjectSource::scripted;
     if (!followed->held.empty())
         subject.notes.push_back("--kinematic: no motor and no script drives these, which are held at their start poses: " +
                                 joined(followed->held));
-    const double unit = subject.model.length_unit;
-    subject.notes.push_back(
-        formatted("--kinematic: joints and motors are met at every node, each step in %d; between nodes, where bounds are "
-                  "of the path as stored, joints part by at most %.2g %s",
-                  followed->parts, followed->joint_gap / unit, answers::unit_name(unit).c_str()));
+    subject.notes.push_back(joints_note(subject, *followed));
     mark_as_scripted(subject);
     return {};
 }
@@ -206,6 +222,17 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     if (subject.source != SubjectSource::as_assembled && !subject.motion())
         subject.notes.push_back("there is no motion, only a start: judged as assembled");
     return subject;
+}
+
+std::vector<core::clearance::PairClearance> certified(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                      const core::clearance::ClearanceOptions& certify) {
+    if (!subject.joints) return core::clearance::certify_clearance(subject.model, subject.trajectory, pairs, certify);
+    return core::clearance::certify_jointed(subject.model, subject.trajectory, pairs, certify, *subject.joints);
+}
+
+double joint_charge(const Subject& subject, int a, int b) {
+    if (!subject.joints || !subject.joints->joints) return 0;
+    return core::certificate::joint_charge(*subject.joints->joints, a, b);
 }
 
 bool judged_by_default(const core::model::Model& model, int a, int b) {

@@ -2,10 +2,12 @@
 /// What `fettle clearance` judges: bodies and the path that they take, from any of the sources of motion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 #include "fettle/design/cli/session.hpp"
@@ -31,13 +33,21 @@ struct Subject {
     core::stepper::Trajectory trajectory;
     SubjectSource source = SubjectSource::as_assembled;
     std::string scene_path;
-    std::string incomplete;          ///< why the motion is not whole; empty: it is, or there is none
-    std::vector<std::string> notes;  ///< what the reader of a report should know
-    std::vector<std::string> files;  ///< the meshes, where nothing else was read
+    std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
+    std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
+    std::vector<std::string> notes;                      ///< what the reader of a report should know
+    std::vector<std::string> files;                      ///< the meshes, where nothing else was read
 
     /// Without steps there is none, wherever the poses come from.
     bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
 };
+
+/// Certified bounds: of the path, or of the joints beside it. `certify.certificate` gets the joints, too.
+std::vector<core::clearance::PairClearance> certified(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                      const core::clearance::ClearanceOptions& certify);
+
+/// By how much joints widen the bounds of two bodies [m].
+double joint_charge(const Subject& subject, int a, int b);
 
 /// Errors: of the files and options, all with their places.
 Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console);

@@ -111,6 +111,8 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
             " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)" +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
+    if (const double charge = joint_charge(subject, least.a, least.b); charge > 0)
+        text += "   each wider by " + lengths.rough(charge) + " " + lengths.unit() + ": what joints part by between the path's nodes\n";
     if (pair.finding == Finding::undecided && !least.reason.empty()) text += "   undecided: " + least.reason + "\n";
     if (pair.finding == Finding::clash) text += clash(pair, subject, lengths);
     if (least.solids == core::clearance::Solids::overlap && !least.intersecting) return text;

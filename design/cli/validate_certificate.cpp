@@ -9,6 +9,7 @@
 #include "fettle/core/certificate/range_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
+#include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -39,7 +40,8 @@ struct Checked {
     double length_unit = 1;
     std::string source;
     bool motion = false;
-    std::optional<core::certificate::Linkage> linkage;  // of one over ranges of joints
+    std::optional<core::certificate::Linkage> linkage;     // of one over ranges of joints
+    std::optional<core::certificate::IdealJoints> joints;  // met at all times, beside the path
     std::vector<Claim> claims;
     std::vector<std::array<int, 2>> uncovered;
     std::vector<core::certificate::ExportedFile> exports;
@@ -71,6 +73,14 @@ Result<Checked> read_and_check(const std::string& path, const core::records::Sto
     Checked out = checked(*certificate, stored.model, core::certificate::check_certificate(*certificate, stored));
     out.motion = certificate->motion;
     out.exports = certificate->exports;
+    out.joints = certificate->joints;
+    if (!out.joints) return out;
+    for (Claim& claim : out.claims) {
+        const double charge = joint_charge(*out.joints, claim.a, claim.b);
+        claim.lower = std::max(0.0, claim.lower - charge);
+        claim.upper += charge;
+        if (!(claim.lower > 0) && claim.solids == Solids::disjoint) claim.solids = Solids::unproven;
+    }
     return out;
 }
 
@@ -132,6 +142,13 @@ SourceCheck check_source(const Checked& certificate, const std::string& path, co
     if (!loaded) return {false, certificate.source + ", which it was made from, cannot be read" + untold};
     if (core::records::geometry_hash(loaded->model) != certificate.geometry_hash)
         return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+    if (certificate.joints) {
+        const auto joints = core::clearance::ideal_joints(loaded->model, core::stepper::undriven_bodies(loaded->model));
+        if (joints && same_joints(*joints, *certificate.joints)) return {};
+        return {true, "stale: the joints or motors of " + certificate.source + " have changed since"};
+    }
+    if (certificate.motion && !loaded->model.mechanism.rows.empty())
+        return {false, "its bounds are of the path as stored, between whose nodes joints may part"};
     if (!certificate.linkage) return {};
     const auto ranges = core::clearance::joint_ranges(loaded->model);
     const bool same_start = core::records::path_hash(core::clearance::as_assembled(loaded->model)) == certificate.path_hash;
@@ -229,6 +246,7 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
     answer.code = exit_done;
     answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
                              certificate.linkage  ? "over all positions of the joints"
+                             : certificate.joints ? "over the motion, of joints met at all times"
                              : certificate.motion ? "over the motion"
                                                   : "as assembled") +
                    claims_text(answer.json["pairs"], certificate);

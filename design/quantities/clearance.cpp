@@ -34,6 +34,12 @@ constexpr double window_accuracy = 1e-3;  // of the value, to which the nearest 
 // Surfaces apart, solids not.
 bool one_lies_inside(const PairClearance& pair) { return pair.solids == core::certificate::Solids::overlap && !pair.intersecting; }
 
+void add_clearance_seeds(const Simulated& s, const PairClearance& pair, double scale, description::Seeds& seeds) {
+    const std::string refusal =
+        adjoint::clearance::clearance_adjoint(s.model, s.trajectory, pair, scale, seeds.trajectory_bar, seeds.model_bar);
+    if (seeds.refusal.empty()) seeds.refusal = refusal;
+}
+
 }  // namespace
 
 std::pair<int, int> window_steps(int steps, int window, int windows) {
@@ -72,7 +78,7 @@ Measurement Clearance::value(const Simulated& s) const {
 
 void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
     const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
-    adjoint::clearance::clearance_adjoint(s.model, s.trajectory, *measured.clearance, sign * scale, seeds.trajectory_bar, seeds.model_bar);
+    add_clearance_seeds(s, *measured.clearance, sign * scale, seeds);
 }
 
 // Those at most `room` farther apart than the witness is.
@@ -85,6 +91,10 @@ std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairCl
                                                pair.witness.distance + room, std::min(window_accuracy * pair.upper, room));
         near.insert(near.end(), later.begin(), later.end());
     }
+    const auto has_none = [&](const Witness& w) {
+        return !adjoint::clearance::no_derivative_at(s.model, s.trajectory, pair.a, pair.b, w).empty();
+    };
+    near.erase(std::remove_if(near.begin(), near.end(), has_none), near.end());
     return adjoint::clearance::distinct_witnesses(s.model, s.trajectory, {pair.a, pair.b}, pair.witness, near,
                                                   (range_.motion ? most_branches : most_branches_at_rest) - 1);
 }
@@ -97,10 +107,8 @@ std::vector<Branch> Clearance::branches(const Simulated& s, const Measurement& m
     for (const Witness& witness : other_witnesses(s, pair, limit - measured.value)) {
         PairClearance other = pair;
         other.witness = witness;
-        branches.push_back({std::max(measured.value, witness.distance + rounding), [&s, other](double scale, description::Seeds& seeds) {
-                                adjoint::clearance::clearance_adjoint(s.model, s.trajectory, other, scale, seeds.trajectory_bar,
-                                                                      seeds.model_bar);
-                            }});
+        branches.push_back({std::max(measured.value, witness.distance + rounding),
+                            [&s, other](double scale, description::Seeds& seeds) { add_clearance_seeds(s, other, scale, seeds); }});
     }
     return branches;
 }

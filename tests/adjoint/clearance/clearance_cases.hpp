@@ -110,7 +110,7 @@ inline VectorX gradient_of(const Case& c, const PairClearance& pair, double scal
     const auto trajectory = c.trajectory();
     auto trajectory_bar = zero_like(trajectory);
     auto model_bar = zero_like(c.model);
-    adjoint::clearance::clearance_adjoint(c.model, trajectory, pair, scale, trajectory_bar, model_bar);
+    REQUIRE(adjoint::clearance::clearance_adjoint(c.model, trajectory, pair, scale, trajectory_bar, model_bar).empty());
     VectorX g = VectorX::Zero(coordinate_count(c));
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < c.poses.size(); ++t)

@@ -3,6 +3,7 @@
 #include "fettle/core/clearance/range_clearance.hpp"
 
 #include <chrono>
+#include <sstream>
 
 #include "fettle/core/clearance/range_bound.hpp"
 #include "fettle/tests/core/clearance/random_trees.hpp"
@@ -63,7 +64,10 @@ struct Campaign {
     int trees = 0, clashes = 0;
     long samples = 0, below = 0;
     std::array<int, most_coordinates + 1> by_coordinates{};
-    double longest = 0;  // [s]
+    int geared = 0;                                           // of the trees: some coordinate of the pair moves two joints or more
+    std::array<double, most_coordinates + 1> widest{};        // upper - lower [m]
+    std::array<double, most_coordinates + 1> widest_share{};  // of the bodies' size
+    double longest = 0;                                       // [s]
 };
 
 // Bounds as close as was asked for, no sample below them, the upper one attained.
@@ -80,7 +84,12 @@ void look_at(const Tree& tree, int samples, std::mt19937& random, Campaign& camp
         return;
     }
     ++campaign.trees;
-    ++campaign.by_coordinates[static_cast<std::size_t>(count)];
+    const auto k = static_cast<std::size_t>(count);
+    ++campaign.by_coordinates[k];
+    campaign.widest[k] = std::max(campaign.widest[k], found.upper - found.lower);
+    campaign.widest_share[k] = std::max(campaign.widest_share[k], (found.upper - found.lower) / size_of(tree));
+    campaign.geared += std::any_of(found.coordinates.begin(), found.coordinates.end(),
+                                   [&](int c) { return tree.ranges.linkage.coordinates[static_cast<std::size_t>(c)].joints.size() > 1; });
     CHECK(found.complete);
     CHECK(found.upper - found.lower <= tolerance);
     const std::vector<double> worst = at_witness(tree, found);
@@ -212,7 +221,13 @@ TEST_CASE("ranges: 100 random trees, 100,000 sampled combinations", "[ranges][sl
     for (std::size_t k = 1; k < campaign.by_coordinates.size(); ++k) CHECK(campaign.by_coordinates[k] >= 5);
     CHECK(campaign.samples == 100'000);
     CHECK(campaign.below == 0);
-    WARN(campaign.clashes << " more trees clash; " << campaign.longest << " s for the slowest");
+    CHECK(campaign.geared >= 5);
+    std::ostringstream told;
+    for (std::size_t k = 0; k < campaign.by_coordinates.size(); ++k)
+        told << "; " << campaign.by_coordinates[k] << " of " << k << " coordinates, bounds at most " << campaign.widest[k] << " m apart, "
+             << campaign.widest_share[k] << " of the size";
+    WARN(campaign.clashes << " more trees clash; " << campaign.geared << " are geared; " << campaign.longest << " s for the slowest"
+                          << told.str());
 }
 
 }  // namespace fettle::core::clearance::range_clearance_test

@@ -204,6 +204,31 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
     CHECK(ranges.pair("post", "left_hand")["coordinates"].size() == 2);  // one free coordinate, two joints that it moves
     CHECK(ranges.pair("post", "left_hand")["lower"].get<double>() <= pair["upper"].get<double>());
     CHECK(followed.pair("left_arm", "left_hand").is_null());
+
+    // Bounds are of joints met at all times, and so is the certificate.
+    CHECK(pair["joint_charge"].get<double>() > 0);
+    CHECK(pair["joint_charge"].get<double>() < 1e-4);
+    CHECK(followed.says("bounds are of joints met at all times"));
+    const std::string proof = folder.file("fit.certificate.json");
+    CHECK(run(command + "--kinematic --steps 50 --pairs post:left_hand --certificate " + proof).code == 0);
+    const Answer valid = run("validate " + proof + " --json");
+    CHECK(valid.code == 0);
+    const Json claim = valid.json()["pairs"][0];
+    CHECK(claim["lower"].get<double>() > 0);
+    CHECK(claim["upper"].get<double>() - claim["lower"].get<double>() > 2 * pair["joint_charge"].get<double>());
+    CHECK(run("validate " + proof).says("over the motion, of joints met at all times"));
+    Json doctored = Json::parse(text_of(proof));
+    for (Json& deviation : doctored["joints"]["deviations"]) deviation = 0;
+    const Answer rejected =
+        run("validate " + folder.write("less.certificate.json", doctored.dump()) + " --trajectory " + folder.file("fit.trajectory.json"));
+    CHECK(rejected.code == 1);
+    CHECK(rejected.says("joints may have the body farther from the path than is claimed"));
+    scene["motors"][0]["name"] = "other";  // a name is none of the mathematics; a joint's place is
+    folder.write("small.scene.json", scene.dump());
+    CHECK(run("validate " + proof).code == 0);
+    scene["joints"].back()["ratio"] = 0.6;
+    folder.write("small.scene.json", scene.dump());
+    CHECK(run("validate " + proof).says("stale: the joints or motors"));
 }
 
 }  // namespace fettle::design::cli::clearance_ranges_command_test

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/clearance/jointed_clearance.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "fettle/core/certificate/joint_prover.hpp"
+
+namespace fettle::core::clearance {
+namespace {
+
+using certificate::IdealJoints;
+
+constexpr double claimed_room = 1 + 1e-6;  // for another processor's library of sines
+
+bool is_wholly(const model::Body& body, bool free) {
+    for (int dof = 0; dof < 6; ++dof)
+        if (is_free(body, dof) != free) return false;
+    return true;
+}
+
+// The frames and measures that rows use, renumbered.
+class Gathering {
+public:
+    explicit Gathering(const model::Mechanism& mechanism) : mechanism_(mechanism) {}
+
+    IdealJoints joints;
+
+    std::set<int> bodies_of(const constraint::Row& row) const {
+        std::set<int> out;
+        for (const constraint::RowPart& part : row.parts) {
+            const measure::Measure& m = mechanism_.set.measures[static_cast<std::size_t>(part.measure)];
+            for (const int frame : {m.a, m.b}) out.insert(mechanism_.set.frames[static_cast<std::size_t>(frame)].body);
+        }
+        out.erase(measure::world);
+        return out;
+    }
+
+    void add(const constraint::Row& row) {
+        constraint::Row copy = row;
+        for (constraint::RowPart& part : copy.parts) part.measure = place_of_measure(part.measure);
+        copy.owner = -1;
+        copy.length = 1;
+        joints.rows.push_back(std::move(copy));
+    }
+
+private:
+    int place_of_measure(int measure) {
+        const auto [known, is_new] = measures_.try_emplace(measure, static_cast<int>(joints.set.measures.size()));
+        if (is_new) {
+            measure::Measure copy = mechanism_.set.measures[static_cast<std::size_t>(measure)];
+            copy.a = place_of_frame(copy.a);
+            copy.b = place_of_frame(copy.b);
+            joints.set.measures.push_back(copy);
+        }
+        return known->second;
+    }
+
+    int place_of_frame(int frame) {
+        const auto [known, is_new] = frames_.try_emplace(frame, static_cast<int>(joints.set.frames.size()));
+        if (is_new) joints.set.frames.push_back(mechanism_.set.frames[static_cast<std::size_t>(frame)]);
+        return known->second;
+    }
+
+    const model::Mechanism& mechanism_;
+    std::map<int, int> frames_, measures_;
+};
+
+PairClearance undecided(PairClearance pair, const std::string& reason) {
+    pair.intersecting = false;
+    pair.overlap.reset();
+    if (pair.solids == Solids::overlap || !(pair.lower > 0)) pair.solids = Solids::unproven;
+    pair.status = PairStatus::undecided;
+    pair.reason = reason;
+    return pair;
+}
+
+const char* const between_nodes = "joints part between the nodes of the path by too much to tell: shorter steps tell";
+
+// From bounds along the path, judged with a minimum raised by the charge.
+PairClearance charged(PairClearance pair, double minimum, double charge) {
+    pair.minimum = minimum;
+    if (!(charge > 0)) return pair;
+    const bool was_clash = pair.is_clash(), is_deep = pair.overlap && pair.overlap->depth_lower > charge;
+    pair.lower = std::max(0.0, pair.lower - charge);
+    pair.upper += charge;
+    for (MarginInterval& interval : pair.margin) {
+        interval.lower = std::max(0.0, interval.lower - charge);
+        interval.upper += charge;
+    }
+    pair.clash_not_before = 0;  // of the path's own clash
+    if (was_clash) return is_deep ? pair : undecided(std::move(pair), between_nodes);
+    if (pair.status == PairStatus::undecided) return pair.lower > 0 ? pair : undecided(pair, pair.reason);
+    if (pair.status == PairStatus::violated ? pair.upper < minimum : pair.lower > 0 && pair.lower >= minimum) return pair;
+    return undecided(std::move(pair), between_nodes);
+}
+
+}  // namespace
+
+base::Result<IdealJoints> ideal_joints(const model::Model& model, const std::vector<std::string>& held) {
+    Gathering gathering(model.mechanism);
+    const std::set<std::string> still(held.begin(), held.end());
+    const auto body_of = [&](int i) -> const model::Body& { return model.bodies[static_cast<std::size_t>(i)]; };
+    std::set<int> moved;
+    for (const constraint::Row& row : model.mechanism.rows) {
+        const std::set<int> bodies = gathering.bodies_of(row);
+        if (std::any_of(bodies.begin(), bodies.end(), [&](int i) { return still.count(body_of(i).name) > 0; })) continue;
+        gathering.add(row);
+        for (const int i : bodies) {
+            if (is_wholly(body_of(i), false)) continue;
+            if (!is_wholly(body_of(i), true))
+                return base::Error{base::ErrorCode::unsupported, "joints",
+                                   "'" + body_of(i).name + "' has prescribed coordinates beside joints"};
+            moved.insert(i);
+        }
+    }
+    gathering.joints.bodies.assign(moved.begin(), moved.end());
+    if (gathering.joints.rows.size() != 6 * moved.size())
+        return base::Error{base::ErrorCode::unsupported, "joints", "joints and motors do not determine every body that they move"};
+    return std::move(gathering.joints);
+}
+
+JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion& motion) {
+    JointedPath out;
+    auto joints = ideal_joints(model, motion.held);
+    if (!joints) {
+        out.refusal = joints.errors().front().message;
+        return out;
+    }
+    joints->deviations.assign(joints->bodies.size(), 0.0);
+    if (const base::Errors errors = check_joints(*joints, model.bodies.size()); !errors.empty()) {
+        out.refusal = errors.front().message;
+        return out;
+    }
+    certificate::ProvenDeviations proven = prove_deviations(*joints, model, motion.trajectory);
+    out.refusal = proven.fault;
+    if (!out.refusal.empty()) return out;
+    for (std::size_t i = 0; i < proven.of_body.size(); ++i) joints->deviations[i] = claimed_room * proven.of_body[i];
+    out.joints = std::move(joints).value();
+    return out;
+}
+
+std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
+                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
+                                           const JointedPath& path) {
+    std::vector<PairRequest> asked = pairs;
+    const auto charge_of = [&](const PairRequest& pair) { return path.joints ? joint_charge(*path.joints, pair.a, pair.b) : 0; };
+    for (PairRequest& pair : asked) {
+        const double charge = charge_of(pair);
+        if (pair.minimum > 0) pair.minimum += charge;
+        pair.far += charge;
+    }
+    std::vector<PairClearance> results = certify_clearance(model, trajectory, asked, options);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        results[i] = charged(std::move(results[i]), pairs[i].minimum, charge_of(pairs[i]));
+        if (!path.joints) results[i] = undecided(std::move(results[i]), "of joints between the nodes of the path: " + path.refusal);
+    }
+    if (options.certificate != nullptr) options.certificate->joints = path.joints;
+    return results;
+}
+
+}  // namespace fettle::core::clearance

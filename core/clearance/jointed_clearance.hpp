@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+/// Clearance of bodies that joints hold and motors drive, at all times and not only at the nodes of a path (stepper/jointed_motion.hpp):
+/// bounds along the path as stored, charged with how far joints and motors would have the bodies from it between its nodes
+/// (certificate/ideal_joints.hpp), which is proven.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/certificate/ideal_joints.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/stepper/jointed_motion.hpp"
+
+namespace fettle::core::clearance {
+
+/// Of everything but what is held: as data, without deviations. Errors: a body that joints move has prescribed coordinates besides, or they
+/// do not determine it.
+base::Result<certificate::IdealJoints> ideal_joints(const model::Model& model, const std::vector<std::string>& held);
+
+struct JointedPath {
+    std::optional<certificate::IdealJoints> joints;  ///< with deviations that are proven for the path; nothing where there are none
+    std::string refusal;                             ///< why there are none; empty: there are
+};
+JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion& motion);
+
+/// As certify_clearance, of the bodies where the joints have them: of each pair lower less its charge, upper more; clear or violated only
+/// where that is proven of these, too. A recorded certificate has the path's own bounds, and the joints beside them.
+std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
+                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options, const JointedPath& path);
+
+}  // namespace fettle::core::clearance
