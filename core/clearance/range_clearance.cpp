@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
@@ -226,16 +227,30 @@ std::vector<RangeClearance> certify_ranges(const model::Model& model, const Join
 }
 
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const RangeClearance& pair, int body) {
-    const certificate::LinkedPair linked = linked_pair(ranges.linkage, pair.a, pair.b);
+    const certificate::Linkage& linkage = ranges.linkage;
+    const auto parent = [&](int of) { return linkage.bodies[static_cast<std::size_t>(of)].parent; };
+    // What moves both of the pair stays as at the start, for all bodies.
+    std::set<int> of_a, of_both;
+    for (int k = pair.a; k >= 0; k = parent(k)) of_a.insert(k);
+    for (int k = pair.b; k >= 0; k = parent(k))
+        if (of_a.count(k) > 0) of_both.insert(k);
+    std::vector<int> line;
+    for (int k = body; k >= 0; k = parent(k))
+        if (of_both.count(k) == 0) line.push_back(k);
     ScrewedBody moved;
-    moved.screws = body == pair.a ? linked.a : linked.b;
     moved.start = model.bodies[static_cast<std::size_t>(body)].pose_start;
+    for (auto k = line.rbegin(); k != line.rend(); ++k) {
+        for (certificate::Screw screw : linkage.bodies[static_cast<std::size_t>(*k)].screws) {
+            const auto place = std::find(pair.coordinates.begin(), pair.coordinates.end(), screw.coordinate);
+            if (place == pair.coordinates.end()) continue;
+            moved.starts.push_back(linkage.coordinates[static_cast<std::size_t>(screw.coordinate)].start);
+            screw.coordinate = static_cast<int>(place - pair.coordinates.begin());
+            moved.screws.push_back(screw);
+        }
+    }
     Coordinates at{};
-    std::copy_n(pair.at.begin(), std::min<std::size_t>(pair.at.size(), at.size()), at.begin());
-    for (const certificate::Screw& screw : moved.screws)
-        moved.starts.push_back(
-            ranges.linkage.coordinates[static_cast<std::size_t>(linked.coordinates[static_cast<std::size_t>(screw.coordinate)])].start);
     if (pair.at.size() > at.size()) return moved.start;
+    std::copy(pair.at.begin(), pair.at.end(), at.begin());
     return pose_of(moved, at);
 }
 

@@ -45,7 +45,7 @@ struct RangeClearance {
 std::vector<RangeClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                            const RangeClearanceOptions& options);
 
-/// A body's pose at a witness.
+/// Pose of a body, of any, at a pair's witness: what moves both of the pair stays where it is at the start.
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const RangeClearance& pair, int body);
 
 }  // namespace fettle::core::clearance

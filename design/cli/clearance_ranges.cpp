@@ -143,6 +143,18 @@ Json pose_at(const Model& model, const JointRanges& ranges, const RangeClearance
     return {{"position", answers::vector_json(place)}, {"rotation", rotation}};
 }
 
+// Of all bodies that the pair's joints move there.
+Json moved_poses(const Model& model, const JointRanges& ranges, const RangeClearance& pair) {
+    Json json = Json::object();
+    for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
+        const core::kinematics::Pose at = pose_at_witness(model, ranges, pair, body);
+        const core::kinematics::Pose& start = model.bodies[static_cast<size_t>(body)].pose_start;
+        if (at.position == start.position && at.rotation == start.rotation) continue;
+        json[model.bodies[static_cast<size_t>(body)].name] = pose_at(model, ranges, pair, body);
+    }
+    return json;
+}
+
 Json feature_json(core::clearance::Primitive kind, int index) {
     const char* words[] = {"vertex", "edge", "triangle"};
     return {{"kind", words[static_cast<int>(kind)]}, {"index", index}};
@@ -174,6 +186,7 @@ Json row_json(const RangeRow& row, const Model& model, const JointRanges& ranges
     json["point_b"] = answers::vector_json(least.witness.point_b);
     json["pose_a"] = pose_at(model, ranges, least, least.a);
     json["pose_b"] = pose_at(model, ranges, least, least.b);
+    json["poses"] = moved_poses(model, ranges, least);
     json["witness"] = {{"feature_a", feature_json(least.witness.kind_a, least.witness.primitive_a)},
                        {"feature_b", feature_json(least.witness.kind_b, least.witness.primitive_b)}};
     return json;

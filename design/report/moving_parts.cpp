@@ -42,20 +42,6 @@ Json mesh_json(const core::geometry::Mesh& mesh) {
     return {{"vertices", packed(vertices)}, {"triangles", packed(triangles)}, {"edges", packed(loose_edges(mesh))}};
 }
 
-// Numbers of a pose after those of the one before.
-void append(std::vector<float>& numbers, const Pose& pose) {
-    Eigen::Quaterniond q(pose.rotation);
-    q.normalize();
-    if (numbers.size() >= 7) {
-        const float* before = &numbers[numbers.size() - 4];
-        const double dot = q.x() * before[0] + q.y() * before[1] + q.z() * before[2] + q.w() * before[3];
-        if (dot < 0) q.coeffs() = -q.coeffs();
-    }
-    for (const double x :
-         {pose.position.x() / millimetre, pose.position.y() / millimetre, pose.position.z() / millimetre, q.x(), q.y(), q.z(), q.w()})
-        numbers.push_back(static_cast<float>(x));
-}
-
 // A node of the path: of step -1 the start.
 struct Node {
     int step = -1, node = 0;
@@ -104,6 +90,19 @@ const char* word(core::scene::BodyType type) {
 
 }  // namespace
 
+void append_pose(std::vector<float>& numbers, const Pose& pose) {
+    Eigen::Quaterniond q(pose.rotation);
+    q.normalize();
+    if (numbers.size() >= 7) {
+        const float* before = &numbers[numbers.size() - 4];
+        const double dot = q.x() * before[0] + q.y() * before[1] + q.z() * before[2] + q.w() * before[3];
+        if (dot < 0) q.coeffs() = -q.coeffs();
+    }
+    for (const double x :
+         {pose.position.x() / millimetre, pose.position.y() / millimetre, pose.position.z() / millimetre, q.x(), q.y(), q.z(), q.w()})
+        numbers.push_back(static_cast<float>(x));
+}
+
 void add_view(Json& data, const std::string& name, const core::model::Model& model, const Trajectory& trajectory) {
     const std::size_t all = std::max<std::size_t>(1, model.bodies.size() * trajectory.poses.size());
     const auto every = static_cast<int>((all + most_poses - 1) / most_poses);
@@ -122,9 +121,9 @@ void add_view(Json& data, const std::string& name, const core::model::Model& mod
         std::vector<float> poses;
         if (moves(trajectory, i)) {
             poses.reserve(7 * nodes.size());
-            for (const Node& node : nodes) append(poses, pose_of(trajectory, node, static_cast<int>(i)));
+            for (const Node& node : nodes) append_pose(poses, pose_of(trajectory, node, static_cast<int>(i)));
         } else {
-            append(poses, trajectory.poses.front()[i]);
+            append_pose(poses, trajectory.poses.front()[i]);
         }
         bodies.push_back({{"name", body.name}, {"type", word(body.type)}, {"mesh", mesh_of_first[first]}, {"poses", packed(poses)}});
     }

@@ -15,6 +15,9 @@ namespace fettle::design::report {
 /// At most so many poses of bodies are put into a report, by leaving out steps evenly: 16 MB.
 inline constexpr std::size_t most_poses = 400'000;
 
+/// Appends the seven numbers of a pose: x y z [mm] and the quaternion x y z w, on the side of that of the seven before.
+void append_pose(std::vector<float>& numbers, const core::kinematics::Pose& pose);
+
 /// Adds to `data`:
 ///   meshes  list of {vertices f32 [mm], triangles u32, edges u32: those of no triangle}; bodies of one shape share one
 ///   views   list of {name, every: each so manieth step is there, times f64 [s], bodies: list of {name, type, mesh: index, poses f32:

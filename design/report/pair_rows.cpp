@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/report/answer_values.hpp"
+#include "fettle/design/report/moving_parts.hpp"
 #include "fettle/design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
@@ -106,6 +107,23 @@ Json worst_place(const Json& coordinates) {
     return text.empty() ? Json() : Json(text);
 }
 
+Vector3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
+
+// All bodies where a pair is worst over the ranges of the joints, of an answer's `poses`, which has those that moved. Null: it has none.
+Json worst_poses(const Json& poses, const core::model::Model& model) {
+    if (!poses.is_object()) return {};
+    std::vector<float> numbers;
+    for (const core::model::Body& body : model.bodies) {
+        core::kinematics::Pose pose = body.pose_start;
+        if (const auto moved = poses.find(body.name); moved != poses.end()) {
+            for (int row = 0; row < 3; ++row) pose.rotation.row(row) = vector_of(moved->at("rotation").at(static_cast<std::size_t>(row)));
+            pose.position = vector_of(moved->at("position")) + pose.rotation * body.reference_point;
+        }
+        append_pose(numbers, pose);
+    }
+    return packed(numbers);
+}
+
 float rounded_down(double x) {
     const auto y = static_cast<float>(x);
     return static_cast<double>(y) > x ? std::nextafter(y, -std::numeric_limits<float>::infinity()) : y;
@@ -138,6 +156,7 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
                         {"time", time},
                         {"point_a", millimetres(member(pair, "point_a"))},
                         {"point_b", millimetres(member(pair, "point_b"))},
+                        {"poses", worst_poses(member(pair, "poses"), model)},
                         {"note", note}});
     }
     return rows;

@@ -14,8 +14,9 @@ namespace fettle::design::report {
 inline constexpr std::size_t most_pairs = 200, most_margins = 8;
 
 /// A row {a, b, body_a, body_b: indices, -1: none, motion, minimum: null if none is required, lower, upper: null if not measured, status,
-/// finding, time [s], point_a, point_b: null if not measured, note} of each pair of an answer (docs/interface.md), up to most_pairs. The
-/// note of a pair over the ranges of joints is where it is worst.
+/// finding, time [s], point_a, point_b: null if not measured, poses, note} of each pair of an answer (docs/interface.md), up to most_pairs.
+/// Of a pair over the ranges of joints `poses` are those of all bodies where it is worst (seven numbers of each, as moving_parts.hpp has
+/// them), else null, and the note says where that is.
 /// @param pairs   `pairs` of `fettle clearance`, or of `clearance` of `fettle optimise`.
 /// @param motion  per pair: is it over the motion?
 nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model, const std::vector<bool>& motion);

@@ -52,6 +52,15 @@ TEST_CASE("ranges: the two-armed robot's worst combination, by hand") {
     CHECK(coordinate(pair, "left_elbow")["value"].get<double>() == Approx(-std::atan2(6, 40)).margin(2e-2));
     CHECK(coordinate(pair, "left_elbow")["unit"] == "rad");
     CHECK(pair["point_b"].is_array());
+    // Of all bodies that the pair's joints move: the hand where `pose_b` has it, the arm turned by the shoulder alone.
+    const Json& poses = pair["poses"];
+    CHECK(poses.size() == 2);
+    CHECK(poses["left_hand"] == pair["pose_b"]);
+    const double shoulder = coordinate(pair, "left_shoulder")["value"].get<double>();
+    const Json& arm = poses["left_arm"];
+    CHECK(arm["rotation"][0][0].get<double>() == Approx(std::cos(shoulder)).margin(1e-12));
+    CHECK(arm["position"][0].get<double>() == Approx(-0.12 - 0.03 * std::sin(shoulder)).margin(1e-12));
+    CHECK(arm["position"][1].get<double>() == Approx(0.03 * std::cos(shoulder)).margin(1e-12));
     CHECK(run(std::string("clearance ") + two_arms + " --ranges --minimum 10mm --pairs 'post:*_hand'").code == 1);
 }
 

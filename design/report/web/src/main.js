@@ -56,7 +56,7 @@ function fillSections(data, motion) {
   if (data.requirements.length) {
     section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
   } else if (data.pairs.length) {
-    const shown = data.ranges ? "" : " A row shows its narrowest gap in the picture above.";
+    const shown = data.ranges ? " A row shows its worst position in the picture above." : " A row shows its narrowest gap in the picture above.";
     const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : `Worst first.${shown}`;
     section("Clearances", data.pair_count > data.pairs.length ? `${intro} ${data.pair_count - data.pairs.length} more pairs are in result.json.` : intro, pairTable(data, show));
   }

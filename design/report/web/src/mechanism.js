@@ -45,12 +45,13 @@ export class Mechanism {
     });
   }
 
-  setTime(t, exploded) {
+  // `held`: poses to be at instead, of each part the seven numbers of a pose.
+  setTime(t, exploded, held = null) {
     const k = indexAt(this.times, t), last = this.times.length - 1;
     const span = k < last ? this.times[k + 1] - this.times[k] : 0;
     const share = span > 0 ? Math.min(1, Math.max(0, (t - this.times[k]) / span)) : 0;
-    for (const part of this.parts) {
-      const still = part.poses.length === 7, i = still ? 0 : 7 * k, j = still || k === last ? i : i + 7, p = part.poses;
+    for (const [n, part] of this.parts.entries()) {
+      const still = held || part.poses.length === 7, i = held ? 7 * n : still ? 0 : 7 * k, j = still || k === last ? i : i + 7, p = held ?? part.poses;
       a.set(p[i + 3], p[i + 4], p[i + 5], p[i + 6]);
       b.set(p[j + 3], p[j + 4], p[j + 5], p[j + 6]);
       if (share > 0) a.slerp(b, share);

@@ -209,10 +209,10 @@ class Motion {
 
   canShow(k) {
     const pair = this.data.pairs[k];
-    return !!pair?.point_a && !!pair.point_b && pair.time !== null;
+    return !!pair?.point_a && !!pair.point_b && (pair.time !== null || !!pair.poses);
   }
 
-  // The gap of a pair: its instant, a section through it along its normal, seen from near.
+  // The gap of a pair: its instant or its worst position, a section through it along its normal, seen from near.
   show(k) {
     const pair = this.data.pairs[k], { viewer } = this;
     this.pause();
@@ -231,7 +231,9 @@ class Motion {
     this.gapOffset = middle.dot(normal) + 0.003 * radius;  // nearest points often lie in a face, which is not to be the section's
     this.chosen = k;
     const near = Math.max(1e-9, 0.51 * (this.data.step || 0));
-    viewer.marked = { a, b, time: pair.time, near, label: `${withUnit(upperBound(pair.upper), "mm")}` };
+    const time = pair.time ?? this.time;
+    viewer.held = pair.poses ?? null;
+    viewer.marked = { a, b, time, near, label: `${withUnit(upperBound(pair.upper), "mm")}` };
     viewer.emphasise([pair.body_a, pair.body_b].every((i) => i >= 0) ? [pair.body_a, pair.body_b] : null);
     for (const i of [pair.body_a, pair.body_b]) viewer.hidden.delete(i);
     [...byId("parts").querySelectorAll("input")].forEach((box, i) => (box.checked = !viewer.hidden.has(i)));
@@ -244,9 +246,9 @@ class Motion {
     const height = Math.max(gap * 9, radius * 0.16);
     const tilt = this.gapNormal.clone().addScaledVector(new THREE.Vector3().crossVectors(viewer.up, this.gapNormal), 0.18).addScaledVector(viewer.up, 0.12).normalize();
     viewer.fly(middle, tilt, height / (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)));
-    this.seek(pair.time);
+    this.seek(time);
     this.highlight();
-    announce(`Shown: ${pair.a} and ${pair.b}, ${withUnit(upperBound(pair.upper), "mm")} apart at ${seconds(pair.time, this.data.step)}`);
+    announce(`Shown: ${pair.a} and ${pair.b}, ${withUnit(upperBound(pair.upper), "mm")} apart ${pair.poses ? pair.note ?? "at the start" : `at ${seconds(time, this.data.step)}`}`);
     byId("viewport").scrollIntoView({ block: "nearest" });
   }
 
@@ -257,7 +259,7 @@ class Motion {
   // Nothing chosen, everything seen.
   whole() {
     this.chosen = null;
-    this.viewer.marked = null;
+    this.viewer.marked = this.viewer.held = null;
     this.viewer.emphasise(null);
     byId("section-axis").querySelector('[value="witness"]').hidden = true;
     if (byId("section-axis").value === "witness") {

@@ -25,6 +25,7 @@ export class Viewer {
     this.hidden = new Set();
     this.section = null;
     this.marked = null;
+    this.held = null;  // poses of a pair's worst position among the joints'
     this.coarse = false;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -136,7 +137,7 @@ export class Viewer {
   drawOne(name) {
     for (const [other, mechanism] of this.mechanisms) mechanism.root.visible = other === name;
     const mechanism = this.mechanisms.get(name);
-    mechanism.setTime(this.time, this.exploded);
+    mechanism.setTime(this.time, this.exploded, this.held);
     mechanism.parts.forEach((part, i) => (part.group.visible = !this.hidden.has(i)));
     this.renderer.render(this.scene, this.camera);
   }
