@@ -21,7 +21,7 @@ using measure::MeasureKind;
 
 constexpr int most_halvings = 6, most_boxes = 12, tightening_halvings = 3;
 constexpr double largest_turn = 1.4;     // of both bodies of an angle, over a segment [rad]: it changes by less than 3
-constexpr double inflation = 1 + 1e-10;  // of sums of up to 600 products that are not negative: far more than their rounding
+constexpr double inflation = 1 + 1e-10;  // of sums of up to 300 products that are not negative: far more than their rounding
 constexpr double unit = 0x1p-52;
 
 Interval3 exactly(const Vector3& v) { return {v.x(), v.y(), v.z()}; }

@@ -31,7 +31,7 @@ struct ProvenDeviations {
 };
 
 /// Of bodies that rows connect, more rows than this are not dealt with.
-inline constexpr int most_rows = 600;
+inline constexpr int most_rows = 300;
 
 /// Contract: check_joints found nothing; the trajectory is the model's. Deviations claimed are not looked at.
 ProvenDeviations prove_deviations(const IdealJoints& joints, const model::Model& model, const stepper::Trajectory& trajectory);
