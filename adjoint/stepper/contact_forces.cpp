@@ -109,10 +109,21 @@ Matrix34 pose_entries_of(const Vector6& gradient, const Matrix3& rotation) {
 
 }  // namespace
 
+namespace {
+
+// Of the contacts' energy: its gradient along translations, or along turns about the point.
+Vector3 load_of(const core::kinematics::PoseGradient& g, const ContactForceOf& of, const Matrix3& rotation) {
+    if (!of.about) return g.force;
+    return tangent_gradient(g).tail<3>() - (rotation * *of.about).cross(g.force);
+}
+
+}  // namespace
+
 std::vector<Vector3> contact_forces(const Model& model, const Trajectory& trajectory, const ContactForceOf& of) {
     std::vector<Vector3> out;
     for_each_step(model, trajectory, of, all_steps, [&](std::size_t, const ContactsOf& at) {
-        out.push_back(-at.derivatives(HessianKind::none).gradient[static_cast<std::size_t>(of.body)].force / at.problem.weight);
+        const auto body = static_cast<std::size_t>(of.body);
+        out.push_back(-load_of(at.derivatives(HessianKind::none).gradient[body], of, at.end.poses[body].rotation) / at.problem.weight);
     });
     return out;
 }
@@ -122,8 +133,8 @@ namespace {
 // Of all steps, for one seed: what is linear in the forces' weights.
 class ForceSeeds {
 public:
-    ForceSeeds(const Model& model, int body, Seeds& seeds)
-        : model_(model), body_(static_cast<std::size_t>(body)), seeds_(seeds), model_bar_{std::move(seeds.model_bar)} {
+    ForceSeeds(const Model& model, const ContactForceOf& of, Seeds& seeds)
+        : model_(model), body_(static_cast<std::size_t>(of.body)), about_(of.about), seeds_(seeds), model_bar_{std::move(seeds.model_bar)} {
         areas_bar_.resize(1);
         for (std::size_t i = 0; model.area_weighted && i < model.bodies.size(); ++i)
             areas_bar_[0].push_back(contact::zero_areas(model.bodies[i]));
@@ -132,16 +143,18 @@ public:
     void add(std::size_t t, const ContactsOf& at, const Vector3& weight) {
         const std::size_t n = model_.bodies.size();
         std::vector<std::vector<Vector6>> motion(1, std::vector<Vector6>(n, Vector6::Zero()));
-        motion[0][body_].head<3>() = weight / at.problem.weight;
+        motion[0][body_] = motion_of(at, weight / at.problem.weight);
         std::vector<std::vector<Matrix34>> start_bar(1, std::vector<Matrix34>(n, Matrix34::Zero()));
         contact::subtract_contact_vertices_adjoint(at.barrier(), motion, model_bar_, areas_bar_);
         if (at.is_damped()) contact::subtract_contact_damping_adjoint(at.damping(), motion, {start_bar, areas_bar_, model_bar_});
         if (at.lag) add_friction(t, at, motion);
-        const std::vector<Vector6> end_bar = core::solver::multiply(at.derivatives(HessianKind::exact).hessian, motion[0]);
+        const ContactsOf::Derivatives d = at.derivatives(HessianKind::exact);
+        const std::vector<Vector6> end_bar = core::solver::multiply(d.hessian, motion[0]);
         for (std::size_t i = 0; i < n; ++i) {
             seeds_.trajectory_bar.pose_bar[t + 1][i] -= pose_entries_of(end_bar[i], at.end.poses[i].rotation);
             seeds_.trajectory_bar.pose_bar[t][i] += start_bar[0][i];
         }
+        if (about_) subtract_change_of_turn(d.gradient[body_], at.end.poses[body_].rotation, motion[0][body_].tail<3>(), t);
     }
 
     void finish() {
@@ -154,6 +167,21 @@ public:
     }
 
 private:
+    // The translation, or the turn about the point.
+    Vector6 motion_of(const ContactsOf& at, const Vector3& along) const {
+        Vector6 motion = Vector6::Zero();
+        if (about_)
+            motion << (at.end.poses[body_].rotation * *about_).cross(along), along;
+        else
+            motion.head<3>() = along;
+        return motion;
+    }
+
+    void subtract_change_of_turn(const core::kinematics::PoseGradient& g, const Matrix3& rotation, const Vector3& turn, std::size_t t) {
+        seeds_.trajectory_bar.pose_bar[t + 1][body_].leftCols<3>() -=
+            cross_matrix(turn).transpose() * g.arm * rotation + turn.cross(g.force) * about_->transpose();
+    }
+
     void add_friction(std::size_t t, const ContactsOf& at, const std::vector<std::vector<Vector6>>& motion) {
         const std::vector<std::vector<Matrix34>> zero(1, std::vector<Matrix34>(model_.bodies.size(), Matrix34::Zero()));
         std::vector<std::vector<Matrix34>> slip_bar = zero, lag_bar = zero;
@@ -167,6 +195,7 @@ private:
 
     const Model& model_;
     std::size_t body_;
+    std::optional<Vector3> about_;
     Seeds& seeds_;
     std::vector<ModelGradient> model_bar_;
     std::vector<std::vector<contact::AreaChange>> areas_bar_;
@@ -177,12 +206,25 @@ private:
 
 void add_contact_force_seeds(const Model& model, const Trajectory& trajectory, const ContactForceOf& of,
                              const std::vector<Vector3>& weights, Seeds& seeds) {
-    ForceSeeds sum(model, of.body, seeds);
+    ForceSeeds sum(model, of, seeds);
     for_each_step(
         model, trajectory, of, [&](std::size_t t) { return !weights[t].isZero(0); },
         [&](std::size_t t, const ContactsOf& at) { sum.add(t, at, weights[t]); });
     sum.finish();
 }
+
+namespace {
+
+// Of load_of, from dE/dP and its change.
+Vector3 load_tangent(const Matrix34& value, const Matrix34& dot, const ContactForceOf& of, const Matrix3& rotation,
+                     const Matrix34& pose_dot) {
+    if (!of.about) return dot.col(3);
+    const Matrix3 turned = dot.leftCols<3>() * rotation.transpose() + value.leftCols<3>() * pose_dot.leftCols<3>().transpose();
+    const Vector3 torque(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
+    return torque - (pose_dot.leftCols<3>() * *of.about).cross(value.col(3)) - (rotation * *of.about).cross(dot.col(3));
+}
+
+}  // namespace
 
 std::vector<Vector3> contact_force_tangents(const Model& model, const Trajectory& trajectory, const ContactForceOf& of,
                                             const TangentMotion& motion) {
@@ -198,7 +240,9 @@ std::vector<Vector3> contact_force_tangents(const Model& model, const Trajectory
         contact::PoseGradientTangent energy{zero, zero};
         contact::add_contact_gradient_tangent(at.barrier(), end_dot, motion.direction, areas_dot, energy);
         if (at.is_damped()) contact::add_contact_damping_tangent(at.damping(), {end_dot, start_dot, areas_dot}, motion.direction, energy);
-        out.push_back(-energy.dot[static_cast<std::size_t>(of.body)].col(3) / at.problem.weight);
+        const auto body = static_cast<std::size_t>(of.body);
+        out.push_back(-load_tangent(energy.value[body], energy.dot[body], of, at.end.poses[body].rotation, end_dot[body]) /
+                      at.problem.weight);
     });
     return out;
 }

@@ -210,7 +210,8 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
         return std::make_shared<JointLoad>(std::move(of), over());
     }
     if (is("ContactLoad")) {
-        ContactForce::Of of{body(), q.attr("other").cast<std::optional<int>>(), q.attr("axis").cast<Vector3>()};
+        ContactForce::Of of{body(), q.attr("other").cast<std::optional<int>>(), q.attr("axis").cast<Vector3>(),
+                            q.attr("about").cast<std::optional<Vector3>>()};
         return std::make_shared<ContactForce>(of, over());
     }
     if (is("Energy")) return std::make_shared<Energy>(q.attr("kind").cast<EnergyKind>(), over());
@@ -248,7 +249,7 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
         return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
     if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))
-        return record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis);
+        return record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis, q->of().about);
     if (const auto* q = dynamic_cast<const Energy*>(quantity.get())) return record_class("Energy")(q->kind(), q->over());
     return py::cast(OpaqueQuantity{quantity});
 }

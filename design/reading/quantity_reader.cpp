@@ -167,6 +167,16 @@ std::shared_ptr<const Quantity> read_contact_force(const JsonNode& node, const R
     return std::make_shared<quantities::ContactForce>(quantities::ContactForce::Of{*body, other, *axis}, over);
 }
 
+std::shared_ptr<const Quantity> read_contact_torque(const JsonNode& node, const ReadContext& context) {
+    const std::shared_ptr<const Quantity> force = read_contact_force(node, context);
+    const auto point = node.require("point").length3(context.length_unit);
+    if (!force || !point) return nullptr;
+    const auto& load = static_cast<const quantities::ContactForce&>(*force);
+    quantities::ContactForce::Of of = load.of();
+    of.about = *point;
+    return std::make_shared<quantities::ContactForce>(of, load.over());
+}
+
 std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadContext&) {
     static const std::vector<std::string_view> names{"kinetic", "potential", "spring", "total"};
     const auto name = node.require("of").choice(names);
@@ -194,9 +204,9 @@ std::string mass_name(const JsonNode& node) {
 std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
 std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
 std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
-std::string contact_force_name(const JsonNode& node) {
-    return "contact_force " + text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : "");
-}
+std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : ""); }
+std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
+std::string contact_torque_name(const JsonNode& node) { return "contact_torque " + contact_of(node); }
 std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
 
 }  // namespace
@@ -253,6 +263,12 @@ const std::vector<QuantityType>& quantity_table() {
          contact_force_name,
          "N",
          "resultant force of contact on a body, `of` another or of all, at the steps' ends: along an `axis`, else its magnitude"},
+        {"contact_torque",
+         {"body", "of", "point", "axis", "over"},
+         read_contact_torque,
+         contact_torque_name,
+         "N m",
+         "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
         {"energy", {"of", "over"}, read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"}};
     return table;
 }

@@ -190,6 +190,7 @@ class ContactLoad(Record):
     other: Optional[int] = None
     over: str = "end"
     axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
+    about: Optional[Vector] = None  #: the torque about this point of the body's file frame [N m], in place of the force
 
 
 @dataclasses.dataclass(eq=False)

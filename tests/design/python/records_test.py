@@ -95,13 +95,15 @@ def test_forces_of_contact_have_a_class(tmp_path):
     names = [body["name"] for body in json.loads((EXAMPLES / "slider_crank" / "slider_crank.scene.json").read_text())["bodies"]]
     text["scene"] = str(EXAMPLES / "slider_crank" / "slider_crank.scene.json")
     text["objective"] = [{"type": "contact_force", "body": names[1], "over": "mean"},
-                         {"type": "contact_force", "body": names[1], "of": names[0], "axis": [0, 0, 1]}]
+                         {"type": "contact_force", "body": names[1], "of": names[0], "axis": [0, 0, 1]},
+                         {"type": "contact_torque", "body": names[1], "point": [0, 0, 2]}]
     path = tmp_path / "forces.design.json"
     path.write_text(json.dumps(text))
     design = fettle.read_design(str(path)).design
-    whole, part = (term.quantity for term in design.objective)
+    whole, part, torque = (term.quantity for term in design.objective)
     assert whole == fettle.ContactLoad(1, None, "mean")
     assert part == fettle.ContactLoad(1, 0, axis=np.array([0, 0, 1]))
+    assert torque == fettle.ContactLoad(1, about=np.array([0, 0, 0.002]))
     assert pickle.loads(pickle.dumps(design)) == design
     assert _fettle.as_library_has_it(design) == design
 

@@ -401,7 +401,9 @@ Design falling_blocks(Integrator integrator, double mu = 0) {
     const std::vector<std::pair<Of, Over>> asked{{Of{1, 0, z_axis}, Over::mean},
                                                  {Of{2, std::nullopt, Vector3::Zero()}, Over::sum},
                                                  {Of{0, 1, Vector3::Zero()}, Over::largest},
-                                                 {Of{1, std::nullopt, Vector3(0, 0.6, 0.8)}, Over::mean}};
+                                                 {Of{1, std::nullopt, Vector3(0, 0.6, 0.8)}, Over::mean},
+                                                 {Of{1, std::nullopt, Vector3::Zero(), Vector3(0.02, 0, 0)}, Over::mean},
+                                                 {Of{2, 1, y_axis, Vector3(0, 0.01, 0.03)}, Over::sum}};
     for (const auto& [of, over] : asked)
         design.constraints.push_back({"force " + std::to_string(design.constraints.size()), {}, std::make_shared<ContactForce>(of, over)});
     return design;
