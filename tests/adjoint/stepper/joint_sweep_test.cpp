@@ -154,6 +154,17 @@ SweepScene wheels(Integrator integrator = Integrator::implicit_euler) {
     return sweep(integrator == Integrator::bdf2 ? "wheels, BDF2" : "wheels", scene, 10);
 }
 
+// A bar fixed to one that is hinged, under a load at its tip.
+SweepScene welded() {
+    core::scene::Scene scene = scene_of({bar("arm", 0.3), bar("tip", 0.2, Vector3(0.3, 0, 0), Vector3(0.2, 0.4, 0.1))}, 0.01);
+    scene.gravity = Vector3(0.2, 0.4, -9.81);
+    scene.mechanism.joints = {
+        joint("hinge", JointKind::revolute, {"", Vector3::Zero(), Vector3(0.1, 1, 0)}, {"arm", Vector3::Zero(), Vector3(0.1, 1, 0)}),
+        joint("weld", JointKind::fixed, {"arm", Vector3(0.3, 0, 0), z_axis}, {"tip", Vector3::Zero(), z_axis})};
+    scene.mechanism.loads = {{"load", "", "tip", Vector3(0.2, 0.01, 0), Vector3(1, -2, 0.5)}};
+    return sweep("welded", scene, 12);
+}
+
 // A hinged bar falls on a block that lies on the plate.
 SweepScene hinged_contact() {
     core::scene::Scene scene =
@@ -179,6 +190,7 @@ std::vector<SweepScene> joint_scenes() {
             slider_crank(),
             wheels(),
             wheels(Integrator::bdf2),
+            welded(),
             hinged_contact(),
             rubbed(hinged_contact())};
 }
