@@ -4,6 +4,7 @@
 #pragma once
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::design::studies {

@@ -241,8 +241,8 @@ public:
     /// @param slopes  of the quantities along the direction, by the adjoint. @return empty if the line cannot be simulated
     std::vector<LineRow> run(const VectorX& slopes, const std::function<void()>& on_simulation) {
         const int count = options_.line_sizes;
-        std::vector<double> t;
-        for (int k = 0; k < count; ++k) t.push_back(steps_.first * std::pow(ratio, -k));
+        std::vector<double> t(static_cast<size_t>(count), steps_.first);
+        for (size_t k = 1; k < t.size(); ++k) t[k] = t[k - 1] / ratio;
         std::vector<VectorX> above(static_cast<size_t>(count)), below = above;
         core::base::parallel_for(2 * count, 1, [&](int k) {
             const size_t at = static_cast<size_t>(k % count);
