@@ -199,13 +199,13 @@ private:
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
         if (solved && !options_.to_rounding) return stop(NewtonStatus::converged);
-        if (result_.iterations >= options_.max_iterations)
-            return stop(failure(*direction), failure_message(*direction, "too many Newton iterations"));
+        const char* too_rough = "rounding stops the solve before it is accurate enough for a gradient";
+        if (result_.iterations >= options_.max_iterations)  // solved, in numbers that jump by more than such accuracy at each step
+            return stop(failure(*direction), failure_message(*direction, solved ? too_rough : "too many Newton iterations"));
         if (solved && is_stagnant(*direction)) {
             if (direction->residual <= usable_residual || is_as_near_as_numbers(*direction)) return stop(NewtonStatus::converged);
             if (direction->residual <= saddle_growth * least_residual_)
-                return stop(NewtonStatus::not_converged,
-                            failure_message(*direction, "rounding stops the solve before it is accurate enough for a gradient"));
+                return stop(NewtonStatus::not_converged, failure_message(*direction, too_rough));
             since_least_ = 0;  // leaving a saddle, whose first gains are below rounding
         }
         ++result_.iterations;
