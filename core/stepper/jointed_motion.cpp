@@ -2,6 +2,7 @@
 #include "fettle/core/stepper/jointed_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -25,7 +26,8 @@ using kinematics::ChartPoint;
 using kinematics::Pose;
 
 constexpr int most_parts = 256;
-constexpr double widest_turn = 0.5;  // of a body between two nodes, so that angles can be counted with room [rad]
+constexpr double followed_gap = 1e-9;  // of the scene's size, by rows that follow from others
+constexpr double widest_turn = 0.5;    // of a body between two nodes, so that angles can be counted with room [rad]
 
 // Of what no script moves.
 bool turns_far(const model::Model& model, const TrajectoryStep& step) {
@@ -73,6 +75,7 @@ public:
                 if (!is_free(body, k) && !is_still(*body.prescribed[static_cast<std::size_t>(k)])) counts_[root(i)].is_driven = true;
             }
         for (const constraint::Row& row : model.mechanism.rows) count(row);
+        for (const constraint::Row& row : model.mechanism.dependent) count_drive(row);
     }
 
     std::set<std::string> held, open;
@@ -100,6 +103,13 @@ private:
     int root(int i) const {
         while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
         return i;
+    }
+
+    // A motor that determines nothing at the start, as at a dead centre, drives all the same.
+    void count_drive(const constraint::Row& row) {
+        if (is_steady(row.curve)) return;
+        for (const int body : bodies_of_row(model_, row))
+            if (!is_scripted(model_.bodies[static_cast<std::size_t>(body)])) counts_[root(body)].is_driven = true;
     }
 
     void count(const constraint::Row& row) {
@@ -164,6 +174,7 @@ public:
             remember(at, *found, share);
             at = *found;
         }
+        if (auto fault = unmet_dependent(at, time + h)) return fault;
         if (step.nodes.size() == 2) step.fractions.clear();
         out.steps.push_back(std::move(step));
         out.poses.emplace_back();
@@ -243,6 +254,23 @@ private:
             out.push_back(point);
         }
         return out;
+    }
+
+    // Rows that follow from others at the start do so all along, or there is no such motion.
+    std::optional<std::string> unmet_dependent(const std::vector<Pose>& poses, double time) const {
+        const model::Mechanism& mechanism = model_.mechanism;
+        if (mechanism.dependent.empty()) return std::nullopt;
+        const VectorX values = row_values(mechanism.set, mechanism.dependent, placed(mechanism.set.frames, poses), angles_);
+        for (std::size_t i = 0; i < mechanism.dependent.size(); ++i) {
+            const constraint::Row& row = mechanism.dependent[i];
+            const double gap = std::abs(values[static_cast<Eigen::Index>(i)] - target_at(row, time)) * row.length;
+            if (gap <= followed_gap * model_.diagonal) continue;
+            std::ostringstream message;
+            message << "at " << time << " s `" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "` is " << gap
+                    << " m from being met: at the start it followed from the others, here it does not";
+            return message.str();
+        }
+        return std::nullopt;
     }
 
     std::string unmet(double time) const {

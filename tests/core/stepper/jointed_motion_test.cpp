@@ -68,6 +68,20 @@ TEST_CASE("jointed motion: joints part between nodes by less than is told, and a
     CHECK(worst > 0.2 * coarse->joint_gap);
 }
 
+TEST_CASE("jointed motion: a motor that tells nothing at a dead centre is not left out", "[mechanism]") {
+    scene::Scene scene = slider_crank();  // it begins at one
+    const auto travel = motor("pull", "guide", at_rate(-0.1));
+    scene.mechanism.motors = {travel};
+    const auto alone = follow_joints(built(scene), 50, 1e-6);
+    REQUIRE(!alone);
+    for (const char* body : {"crank", "rod", "piston"}) CHECK(contains(alone.errors()[0].message, body));
+    scene.mechanism.motors = {motor("drive", "main", at_rate(3 * M_PI)), travel};
+    const auto both = follow_joints(built(scene), 50, 1e-6);
+    REQUIRE(!both);
+    CHECK(contains(both.errors()[0].message, "`pull` is"));
+    CHECK(contains(both.errors()[0].message, "here it does not"));
+}
+
 TEST_CASE("jointed motion: what nothing drives is held, what is not determined is refused by name", "[mechanism]") {
     scene::Scene still = slider_crank();
     still.mechanism.motors.clear();
