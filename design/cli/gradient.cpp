@@ -269,13 +269,16 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
     if (lines.empty()) text += "  none\n";
     for (size_t k = 0; k < std::min(most, lines.size()); ++k) text += lines[k] + "\n";
     if (lines.size() > most) text += formatted("  and %zu more (--json has all)\n", lines.size() - most);
-    for (size_t k = 0; k < design.parameters.size(); ++k)
+    for (size_t k = 0; k < design.parameters.size(); ++k) {
+        const std::string& name = design.parameters[k].name;
+        if (std::find(report.left_out.begin(), report.left_out.end(), name) != report.left_out.end()) continue;
         for (const int side : {0, 1}) {
             const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
-            if (looked < reach)
-                text += formatted("  looked at %s %s by up to %.3g %% alone\n", side == 0 ? "less" : "more",
-                                  design.parameters[k].name.c_str(), 100 * looked);
+            if (looked >= reach) continue;
+            text += "  not looked at: " + name + (side == 0 ? " falling" : " growing");
+            text += looked > 0 ? formatted(" by more than %.3g %%\n", 100 * looked) : "\n";
         }
+    }
     return text;
 }
 
