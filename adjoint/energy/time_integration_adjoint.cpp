@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 
-#include <Eigen/Cholesky>
 #include <array>
 
 #include "fettle/adjoint/energy/damping_adjoint.hpp"
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
@@ -56,16 +56,7 @@ Vector6 along_motions(const Matrix34& g, const Matrix3& R) {
 // Newton's and Euler's equations of one body at one rotation: the free accelerations that balance a given F = N M, or forces besides.
 class Balance {
 public:
-    Balance(const Body& body, const Matrix3& R) : body_(body), R_(R) {
-        Matrix6 h = core::energy::mass_matrix(R, body.moments);
-        for (int k = 0; k < 6; ++k) {
-            if (is_free(body, k)) continue;
-            h.row(k).setZero();
-            h.col(k).setZero();
-            h(k, k) = 1;
-        }
-        factor_.compute(h);
-    }
+    Balance(const Body& body, const Matrix3& R) : body_(body), R_(R), factor_(free_part(body, R)) {}
 
     // @param loads  <N M, unit motions> and what acts besides.  @param held  prescribed accelerations, others of no matter
     Vector6 accelerations(const Vector3& omega, const Vector6& loads, const Vector6& held) const {
@@ -88,9 +79,21 @@ public:
     }
 
 private:
+    // Of the mass matrix; where nothing is free that of the identity.
+    static Matrix6 free_part(const Body& body, const Matrix3& R) {
+        Matrix6 h = core::energy::mass_matrix(R, body.moments);
+        for (int k = 0; k < 6; ++k) {
+            if (is_free(body, k)) continue;
+            h.row(k).setZero();
+            h.col(k).setZero();
+            h(k, k) = 1;
+        }
+        return h;
+    }
+
     const Body& body_;
     Matrix3 R_;
-    Eigen::LDLT<Matrix6> factor_;
+    SymmetricFactor factor_;
 };
 
 // Everything that newmark_rates comes by.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/model/body_mass.hpp"
 
 namespace fettle::adjoint::model {
@@ -29,12 +29,12 @@ struct AddedInertia {
         first = moments.col(3);
         mass = first[3];
         const Matrix3 central = moments.topLeftCorner<3, 3>() - first.head<3>() * first.head<3>().transpose() / mass;
-        const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(central);
-        longest = eigen.eigenvectors().col(2);
+        const SymmetricEigen<3> eigen = symmetric_eigen<3>(central);
+        longest = eigen.vectors.col(2);
         body.mesh.vertices.colwise().squaredNorm().maxCoeff(&farthest);
         if (!(body.radius > dhat)) farthest = -1;
         radius = std::max(body.radius, dhat);
-        is_any = least_inertia * mass * radius * radius > eigen.eigenvalues()[0] + eigen.eigenvalues()[1];
+        is_any = least_inertia * mass * radius * radius > eigen.values[0] + eigen.values[1];
     }
 
     // d(lacking)/dM, symmetric, r held.

@@ -196,9 +196,7 @@ Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t,
         if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
     } else {
         if (saddle_->factorise(step.derivatives.hessian, step.rows)) return {};
-        indefinite_ = std::make_shared<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
-        indefinite_->compute(saddle_matrix(step, dofs_));
-        if (indefinite_->info() == Eigen::Success) return {};
+        if (indefinite_.emplace().factorise(saddle_matrix(step, dofs_))) return {};
     }
     return unsolved(trajectory, t);
 }

@@ -4,12 +4,12 @@
 /// the rounds of friction ended.
 #pragma once
 
-#include <Eigen/SparseLU>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
@@ -84,7 +84,7 @@ private:
     mutable SweepCounts counts_;
     core::solver::LinearSolver linear_;
     std::optional<core::constraint::SaddleSolver> saddle_;
-    std::shared_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> indefinite_;  ///< where H is not positive definite on the rows
+    std::optional<SparseLu> indefinite_;  ///< where H is not positive definite on the rows
 };
 
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.

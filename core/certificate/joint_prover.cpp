@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/certificate/joint_prover.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
@@ -427,7 +427,9 @@ private:
         if (!over || !middle) return false;
         const auto residual = residual_over(segment, part, *over);
         if (!residual) return false;
-        const MatrixX A = Eigen::PartialPivLU<MatrixX>(middles(*middle)).inverse();
+        DenseLu lu;
+        lu.factorise(middles(*middle));
+        const MatrixX A = lu.inverse();
         if (!A.allFinite()) return false;
         const VectorX v = inflation * (product_bound(A, residual->low).cwiseMax(product_bound(A, residual->high)) +
                                        product_bound(A, residual->bent) + A.cwiseAbs() * residual->off);

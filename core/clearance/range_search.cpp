@@ -11,7 +11,7 @@
 namespace fettle::core::clearance {
 namespace {
 
-struct Cell {
+struct RangeCell {
     CoordinateBox box;
     int a = 0, b = 0;
     double lower = 0;
@@ -34,10 +34,10 @@ public:
 
     RangeSearchResult result;
 
-    Cell root() const { return {pair_.ranges, 0, 0, 0, 0, 0}; }
+    RangeCell root() const { return {pair_.ranges, 0, 0, 0, 0, 0}; }
 
     /// Sets the cell's bound and what to split it by. `wanted`: a bound of this much is enough.
-    CellProof evaluate(const BoxBound& box, Cell& cell, double wanted) {
+    CellProof evaluate(const BoxBound& box, RangeCell& cell, double wanted) {
         ++result.bounds;
         const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
         const Corners *element_a = element(pair_.a, a), *element_b = element(pair_.b, b);
@@ -71,7 +71,7 @@ public:
     }
 
     /// '0' + k, 'a', 'b', or no_split: at the limit of rounding.
-    char choice(const Cell& cell) const {
+    char choice(const RangeCell& cell) const {
         const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
         const double size_a = a.is_element() ? -1 : a.size, size_b = b.is_element() ? -1 : b.size, size = std::max(size_a, size_b);
         if (size < 0 || cell.loosened > 0.5 * size)
@@ -85,8 +85,8 @@ public:
     }
 
     /// Contract: a choice but no_split.
-    std::array<Cell, 2> split(const Cell& cell, char by) const {
-        std::array<Cell, 2> out{cell, cell};
+    std::array<RangeCell, 2> split(const RangeCell& cell, char by) const {
+        std::array<RangeCell, 2> out{cell, cell};
         const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
         if (by == 'a') {
             out[0].a = a.left;
@@ -116,7 +116,7 @@ private:
         return piece.is_element() ? &tree.elements[static_cast<std::size_t>(piece.first)].corners : nullptr;
     }
 
-    std::vector<Vector3> corner_normals(const BoxBound& box, const Cell& cell, const Corners& a, const Corners& b) {
+    std::vector<Vector3> corner_normals(const BoxBound& box, const RangeCell& cell, const Corners& a, const Corners& b) {
         std::vector<Vector3> normals;
         for (int c = 0; c < box.corners(); ++c) {
             const ElementPairDistance found = box.distance(a, b, c);
@@ -214,7 +214,7 @@ public:
 
     RangeSearchResult run() {
         Descent(pair_, cells_).run();
-        Cell root = cells_.root();
+        RangeCell root = cells_.root();
         cells_.evaluate(BoxBound(pair_, root.box), root, infinity);
         push(root);
         while (!is_settled()) {
@@ -238,12 +238,12 @@ private:
     };
     static bool is_later(const Key& x, const Key& y) { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
 
-    void push(const Cell& cell) {
+    void push(const RangeCell& cell) {
         if (cell.lower >= cells_.result.upper) return;
         queue_.push_back({cell.lower, made_++, static_cast<std::uint32_t>(pool_.add(cell))});
         std::push_heap(queue_.begin(), queue_.end(), is_later);
     }
-    Cell pop() {
+    RangeCell pop() {
         std::pop_heap(queue_.begin(), queue_.end(), is_later);
         const Key key = queue_.back();
         queue_.pop_back();
@@ -264,26 +264,26 @@ private:
         return !(options_.minimum > lower && options_.minimum <= upper) || upper - lower <= finest;
     }
 
-    void expand(const Cell& cell) {
+    void expand(const RangeCell& cell) {
         const char by = cells_.choice(cell);
         if (by == no_split) {
             aside_ = std::min(aside_, cell.lower);
             return;
         }
-        std::array<Cell, 2> parts = cells_.split(cell, by);
+        std::array<RangeCell, 2> parts = cells_.split(cell, by);
         if (by == 'a' || by == 'b') {
             const BoxBound box(pair_, cell.box);
-            for (Cell& part : parts) cells_.evaluate(box, part, cells_.result.upper);
+            for (RangeCell& part : parts) cells_.evaluate(box, part, cells_.result.upper);
         } else {
-            for (Cell& part : parts) cells_.evaluate(BoxBound(pair_, part.box), part, cells_.result.upper);
+            for (RangeCell& part : parts) cells_.evaluate(BoxBound(pair_, part.box), part, cells_.result.upper);
         }
-        for (const Cell& part : parts) push(part);
+        for (const RangeCell& part : parts) push(part);
     }
 
     const ScrewedPair& pair_;
     const RangeSearchOptions& options_;
     CellBounds cells_;
-    EntryPool<Cell> pool_;
+    EntryPool<RangeCell> pool_;
     std::vector<Key> queue_;   // a heap
     double aside_ = infinity;  // least bound of what cannot be split
     std::uint32_t made_ = 0;
@@ -296,9 +296,9 @@ RangeSearchResult search_ranges(const ScrewedPair& pair, const RangeSearchOption
 certificate::RangeProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options) {
     CellBounds cells(pair);
     certificate::RangeProof proof;
-    std::vector<Cell> pending{cells.root()};
+    std::vector<RangeCell> pending{cells.root()};
     while (!pending.empty()) {
-        Cell cell = pending.back();
+        RangeCell cell = pending.back();
         pending.pop_back();
         const CellProof found = cells.evaluate(BoxBound(pair, cell.box), cell, distance);
         if (found.lower >= distance) {
@@ -310,7 +310,7 @@ certificate::RangeProof prove_ranges(const ScrewedPair& pair, double distance, c
         const bool stopped = options.should_stop && cells.result.bounds % 256 == 0 && options.should_stop();
         if (by == no_split || cells.result.bounds > 2 * options.max_bounds || stopped) return {};
         proof.splits += by;
-        const std::array<Cell, 2> parts = cells.split(cell, by);
+        const std::array<RangeCell, 2> parts = cells.split(cell, by);
         pending.push_back(parts[1]);
         pending.push_back(parts[0]);
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/contact/contact_pair.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
+
+#include "fettle/core/base/factorisations.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -278,10 +279,10 @@ void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) 
 }
 
 PairMatrix positive_part(const PairMatrix& lower) {
-    const Eigen::SelfAdjointEigenSolver<PairMatrix> eigen(lower);
-    if (eigen.eigenvalues()[0] >= 0) return lower;
-    const PairVector positive = eigen.eigenvalues().cwiseMax(0.0);
-    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen<9> eigen = symmetric_eigen<9>(lower);
+    if (eigen.values[0] >= 0) return lower;
+    const PairVector positive = eigen.values.cwiseMax(0.0);
+    return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
 }
 
 Matrix12 in_both_bodies(const PairMatrix& hessian) {

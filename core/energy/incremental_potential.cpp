@@ -2,9 +2,9 @@
 #include "fettle/core/energy/incremental_potential.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <array>
 
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/barrier.hpp"
 #include "fettle/core/energy/contact_damping.hpp"
@@ -25,9 +25,9 @@ constexpr int bodies_a_piece = 16;  // that a thread takes at a time
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);
     if (cholesky.info() == Eigen::Success) return h;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(h);
-    const Vector6 positive = eigen.eigenvalues().cwiseMax(0.0);
-    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen<6> eigen = symmetric_eigen<6>(h);
+    const Vector6 positive = eigen.values.cwiseMax(0.0);
+    return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
 }
 
 // h from (dq, phi) of the rows' and of the columns' body to (dq, dtheta): phi = J dtheta.

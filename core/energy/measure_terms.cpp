@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/energy/measure_terms.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "fettle/core/base/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -23,8 +23,8 @@ void add_measures_value(const ValueAt& at, TermValues& values) {
 }
 
 Matrix12 positive_part_of(const Matrix12& h) {
-    const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(h);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen<12> eigen = symmetric_eigen<12>(h);
+    return eigen.vectors * eigen.values.cwiseMax(0.0).asDiagonal() * eigen.vectors.transpose();
 }
 
 // Of one term in the bodies of its measure.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/energy/time_integration.hpp"
 
-#include <Eigen/Cholesky>
-
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
@@ -43,7 +42,7 @@ Vector6 rigid_acceleration(const model::Body& body, const Matrix3& R, const Vect
         h(k, k) = 1;
         rhs[k] = held[k];
     }
-    return h.ldlt().solve(rhs);
+    return SymmetricFactor(h).solve(rhs);
 }
 
 Matrix34 pose_acceleration(const Matrix3& R, const Vector3& omega, const Vector6& a) {

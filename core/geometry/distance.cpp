@@ -9,6 +9,8 @@ namespace {
 
 using Vertices = std::array<const Vector3*, 4>;
 
+constexpr unsigned all_sides = ~0U;
+
 // Closest point of vertex `p` (weight sign, index) to the segment of the vertices (i0, i1), whose weights carry the other sign.
 struct PointEdge {
     int point, e0, e1;
@@ -54,14 +56,15 @@ void turn_to(const Vector3& n, double nn, double sine_squared, double size_squar
     c.distance_squared = c.difference.squaredNorm();
 }
 
-// The least of the cases; only that one is worked out.
+// The least of those cases whose bits are set, one at least; only that one is worked out.
 template <std::size_t N>
-ClosestPoints best_of(const Vertices& x, const std::array<PointEdge, N>& cases) {
-    std::size_t best = 0;
+ClosestPoints best_of(const Vertices& x, const std::array<PointEdge, N>& cases, unsigned wanted = all_sides) {
+    std::size_t best = N;
     OnSegment on{};
     for (std::size_t i = 0; i < N; ++i) {
+        if ((wanted >> i & 1U) == 0) continue;
         const OnSegment other = closest_on_segment(*x[cases[i].point], *x[cases[i].e0], *x[cases[i].e1]);
-        if (i > 0 && !(other.distance_squared < on.distance_squared)) continue;
+        if (best < N && !(other.distance_squared < on.distance_squared)) continue;
         best = i;
         on = other;
     }
@@ -85,10 +88,18 @@ struct InPlane {
     double along_u, along_v;
 };
 
-// The optimum of a convex function over the square or the triangle of parameters lies on its boundary when it is not inside.
+// Are the coordinates sure to 3e-8? Rounding puts them off by at most 24 u |w| / (|u| sine).
+bool are_sure(double uu, double vv, double ww, double nn) { return nn >= 1e-6 * (uu * vv) && ww <= 1e8 * std::min(uu, vv); }
+
+// By how much a coordinate has to be on its side of a bound to be so surely.
+constexpr double surely = 1e-6;
+
+// The optimum of a convex function over the square or the triangle of parameters lies on its boundary when it is not inside, and there on a
+// side that parts it from the optimum over the plane: along the straight way from the one to the other the function falls.
 // @param interior  what the coordinates of w make of the closest points; nothing if they are not strictly inside.
-template <class Interior, std::size_t N>
-ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, const Vector3& w, const Interior& interior,
+// @param sides     of coordinates that are sure: which of the cases of `boundary` may hold the optimum
+template <class Interior, class Sides, std::size_t N>
+ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, const Vector3& w, const Interior& interior, const Sides& sides,
                       const std::array<PointEdge, N>& boundary) {
     // By cross products rather than a e - b^2: resolves angles down to rounding instead of its square root.
     const Vector3 n = u.cross(v);
@@ -97,9 +108,11 @@ ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, con
     constexpr double parallel = 64 * unit_roundoff * unit_roundoff, least_square = 1e-290;
     if (!(nn > parallel * (uu * vv) + least_square)) return best_of(x, boundary);
     ClosestPoints c;
-    if (!interior({w.cross(v).dot(n) / nn, u.cross(w).dot(n) / nn}, c)) return best_of(x, boundary);
+    const double ww = w.squaredNorm();
+    const InPlane at{w.cross(v).dot(n) / nn, u.cross(w).dot(n) / nn};
+    if (!interior(at, c)) return best_of(x, boundary, are_sure(uu, vv, ww, nn) ? sides(at) : all_sides);
     finish(x, c);
-    const double sine_squared = nn / (uu * vv), size_squared = uu + vv + w.squaredNorm();
+    const double sine_squared = nn / (uu * vv), size_squared = uu + vv + ww;
     constexpr double trusted = 1024 * unit_roundoff;
     if (c.distance_squared * (sine_squared * sine_squared) >= trusted * trusted * size_squared) {
         turn_to(n, nn, sine_squared, size_squared, c);
@@ -141,8 +154,16 @@ ClosestPoints point_triangle_closest(const Vector3& p, const Vector3& t0, const 
         c.free_weight[1] = {0, 1, 0, -1};
         return true;
     };
-    return closest<decltype(interior), 3>(x, *x[corner[1]] - c0, *x[corner[2]] - c0, p - c0, interior,
-                                          {{{0, 1, 2, 1.0}, {0, 2, 3, 1.0}, {0, 3, 1, 1.0}}});
+    const auto sides = [&corner](const InPlane& b) {
+        // Case k lies across from corner k, of corners 1 to 3 that numbered 3 first.
+        const double weight[] = {1 - b.along_u - b.along_v, b.along_u, b.along_v};
+        unsigned wanted = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!(weight[k] > surely)) wanted |= 1U << (corner[k] % 3);
+        return wanted;
+    };
+    return closest<decltype(interior), decltype(sides), 3>(x, *x[corner[1]] - c0, *x[corner[2]] - c0, p - c0, interior, sides,
+                                                           {{{0, 1, 2, 1.0}, {0, 2, 3, 1.0}, {0, 3, 1, 1.0}}});
 }
 
 ClosestPoints edge_edge_closest(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {
@@ -156,8 +177,12 @@ ClosestPoints edge_edge_closest(const Vector3& ea0, const Vector3& ea1, const Ve
         c.free_weight[1] = {0, 0, 1, -1};
         return true;
     };
-    return closest<decltype(interior), 4>(x, ea1 - ea0, eb1 - eb0, eb0 - ea0, interior,
-                                          {{{0, 2, 3, 1.0}, {1, 2, 3, 1.0}, {2, 0, 1, -1.0}, {3, 0, 1, -1.0}}});
+    const auto sides = [](const InPlane& b) {
+        const double s = b.along_u, t = -b.along_v;
+        return unsigned{!(s > surely)} | unsigned{!(1 - s > surely)} << 1 | unsigned{!(t > surely)} << 2 | unsigned{!(1 - t > surely)} << 3;
+    };
+    return closest<decltype(interior), decltype(sides), 4>(x, ea1 - ea0, eb1 - eb0, eb0 - ea0, interior, sides,
+                                                           {{{0, 2, 3, 1.0}, {1, 2, 3, 1.0}, {2, 0, 1, -1.0}, {3, 0, 1, -1.0}}});
 }
 
 }  // namespace fettle::core::geometry

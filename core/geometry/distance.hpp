@@ -11,7 +11,9 @@
 ///  - Differences of vertices are off by u each, which moves the vertices by 3 u L in all. Convex weights of either sign sum to 1 within u,
 ///    so that |r| is that of two points of the primitives within 11 u L: it is too small by no more, and too large only where the
 ///    weights are not the best.
-///  - Vertex against edge: the weights put the point off its best place by 4 u L.
+///  - Vertex against edge: the weights put the point off its best place by 4 u L. Of the edges round the plane's inside only those are
+///    looked at that part it from the optimum over the whole plane, where that is sure (sin theta >= 1e-3, differences within 1e4 of one
+///    another): the true optimum is in one of them, the others are no nearer.
 ///  - Inside, by cross products: off by at most 24 u L / sin theta within the plane (+ 3 u h / sin theta). Right-angled to r that adds its
 ///    square over the distance, less than u L if distance sin^2 theta >= 1024 u L: then it is taken as it is.
 ///  - Else cross products to 2 units in the last place (Kahan) leave 6 u (L + h / sin theta), which adds at most

@@ -226,6 +226,18 @@ Vector3 rotation_vector(const Matrix3& rotation) {
     return (2 * std::atan2(sine, w) / sine) * v;
 }
 
+Eigen::Quaterniond turn_between(const Vector3& from, const Vector3& to) {
+    constexpr double opposite = 1e-8;
+    const Vector3 a = from.normalized(), b = to.normalized();
+    const double sum_squared = (a + b).squaredNorm();  // 2 (1 + cos), without its cancellation
+    if (sum_squared < opposite * opposite) {
+        const Vector3 axis = a.unitOrthogonal();
+        return {0, axis.x(), axis.y(), axis.z()};
+    }
+    const Vector3 axis = a.cross(b);
+    return Eigen::Quaterniond(0.5 * sum_squared, axis.x(), axis.y(), axis.z()).normalized();
+}
+
 Matrix3 orthonormalised(const Matrix3& nearly_a_rotation) {
     // Written as R - R (R^T R - I)/2, which keeps small off-diagonal entries to full relative accuracy.
     const Matrix3 excess = nearly_a_rotation.transpose() * nearly_a_rotation - Matrix3::Identity();

@@ -37,6 +37,10 @@ Matrix3 left_jacobian_inverse(const Vector3& theta);
 /// Rotation vector with |theta| <= pi of a rotation matrix (orthonormal to about 1e-6; the nearest rotation is used).
 Vector3 rotation_vector(const Matrix3& rotation);
 
+/// The shortest turn that takes one direction to another, good to 1e-15 over the length of the sum of the two unit vectors; of directions
+/// that are opposite to 1e-8, a half turn about an axis that is normal to the first. Contract: neither is zero.
+Eigen::Quaterniond turn_between(const Vector3& from, const Vector3& to);
+
 /// One Newton step towards the nearest rotation, R (3 I - R^T R) / 2: keeps a product of many rotations orthonormal.
 Matrix3 orthonormalised(const Matrix3& nearly_a_rotation);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/solver/linear_solver.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SparseLU>
+#include <Eigen/SparseCore>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/solver/block_cholesky.hpp"
 
 namespace fettle::core::solver {
@@ -52,8 +52,8 @@ struct LinearSolver::Implementation {
     FreeDofs dofs;
     Factor factor = Factor::none;
     BlockCholesky cholesky;
-    Eigen::PartialPivLU<MatrixX> dense_lu;
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_lu;
+    DenseLu dense_lu;
+    SparseLu sparse_lu;
 };
 
 LinearSolver::LinearSolver(const FreeDofs& dofs) : implementation_(std::make_unique<Implementation>()) { implementation_->dofs = dofs; }
@@ -74,8 +74,8 @@ bool LinearSolver::factorise_indefinite(const kinematics::BlockHessian& hessian)
     Implementation& self = *implementation_;
     if (self.dofs.count <= largest_dense) {
         const MatrixX lower = dense_matrix(hessian, self.dofs);
-        self.dense_lu.compute(lower.selfadjointView<Eigen::Lower>());
-        if (!(self.dense_lu.rcond() > 1e-300)) return false;
+        self.dense_lu.factorise(lower.selfadjointView<Eigen::Lower>());
+        if (!(self.dense_lu.reciprocal_condition() > 1e-300)) return false;
         self.factor = Implementation::Factor::dense_lu;
         return true;
     }
@@ -86,8 +86,7 @@ bool LinearSolver::factorise_indefinite(const kinematics::BlockHessian& hessian)
     });
     Eigen::SparseMatrix<double> matrix(self.dofs.count, self.dofs.count);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    self.sparse_lu.compute(matrix);
-    if (self.sparse_lu.info() != Eigen::Success) return false;
+    if (!self.sparse_lu.factorise(matrix)) return false;
     self.factor = Implementation::Factor::sparse_lu;
     return true;
 }

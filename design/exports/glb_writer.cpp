@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/kinematics/rotation.hpp"
 
 namespace fettle::design::exports {
 
@@ -56,7 +57,7 @@ public:
 private:
     Json root() const {
         Json node{{"name", "fettle"}};
-        const Quaternion turn = Quaternion::FromTwoVectors(assembly_.up, Vector3::UnitY());
+        const Quaternion turn = core::kinematics::turn_between(assembly_.up, Vector3::UnitY());
         node["rotation"] = rotation_json(turn);
         node["children"] = Json::array();
         for (std::size_t i = 0; i < assembly_.parts.size(); ++i) node["children"].push_back(i + 1);

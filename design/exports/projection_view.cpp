@@ -8,6 +8,7 @@
 
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/text_lines.hpp"
+#include "fettle/core/kinematics/rotation.hpp"
 
 namespace fettle::design::exports {
 
@@ -60,7 +61,7 @@ Result<ProjectionView> projection_view(const std::string& name, const Vector3& u
     // With Z up the viewer stands at (sin a cos e, -cos a cos e, sin e).
     const double ca = cosine(view->azimuth), sa = sine(view->azimuth), ce = cosine(view->elevation), se = sine(view->elevation);
     const Vector3 towards(sa * ce, -ca * ce, se), right(ca, sa, 0);
-    const Matrix3 to_world = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), up).toRotationMatrix();
+    const Matrix3 to_world = core::kinematics::turn_between(Vector3::UnitZ(), up).toRotationMatrix();
     return ProjectionView{to_world * right, to_world * towards.cross(right), to_world * towards};
 }
 

@@ -154,7 +154,7 @@ const Evaluator::Record& Evaluator::asked(const VectorX& point, Wanted wanted) {
     const auto found = index_.find(bits_of(clamped));
     if (found == index_.end()) return evaluate_new(clamped, wanted);
     const Record& known = records_[static_cast<size_t>(found->second)];
-    if (wanted == Wanted::values || !known.evaluation.usable || known.evaluation.has_derivatives) return known;
+    if (wanted != Wanted::derivatives || !known.evaluation.usable || known.evaluation.has_derivatives) return known;
     const bool was_best = best_index_ == found->second;
     const Record& complete = evaluate_new(clamped, wanted);
     if (was_best && complete.evaluation.usable) best_index_ = evaluations() - 1;
@@ -165,11 +165,11 @@ const Evaluation& Evaluator::at(const VectorX& point) { return asked(point, Want
 
 const Evaluation& Evaluator::values_at(const VectorX& point) { return asked(point, Wanted::values).scaled_evaluation; }
 
-const Evaluation& Evaluator::look(const VectorX& point) { return asked(point, Wanted::derivatives_of_no_candidate).scaled_evaluation; }
+const Evaluation& Evaluator::look(const VectorX& point) { return asked(point, Wanted::values_of_no_candidate).scaled_evaluation; }
 
 void Evaluator::evaluate(Record& record, Wanted wanted) const {
     const auto relations = static_cast<int>(problem_.relation_lower.size());
-    const bool values = wanted == Wanted::values && problem_.values;
+    const bool values = wanted != Wanted::derivatives && problem_.values;
     record.evaluation =
         checked(values ? problem_.values(record.point) : problem_.evaluate(record.point), variables(), constraints() - relations);
     record.relations.jacobian.resize(0, variables());
@@ -202,7 +202,7 @@ const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, Wa
     records_.push_back(std::move(record));
     index_[bits_of(scaled_point)] = evaluations() - 1;
     const int best_before = best_index_;
-    if (wanted != Wanted::derivatives_of_no_candidate) keep_best();
+    if (wanted != Wanted::values_of_no_candidate) keep_best();
     if (options_.on_evaluation) {
         const Record& last = records_.back();
         options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);

@@ -56,7 +56,7 @@ public:
     /// Asked for them later, at() evaluates the point again.
     const Evaluation& values_at(const VectorX& scaled);
 
-    /// The same as at(), but the point does not become the best one: to find out how rough the problem is.
+    /// The same as values_at(), but the point does not become the best one: to find out how rough the problem is.
     const Evaluation& look(const VectorX& scaled);
 
     /// Why a point cannot be evaluated, without the cost of an evaluation; empty: nothing known against it.
@@ -96,7 +96,7 @@ private:
         Evaluation evaluation, scaled_evaluation;
         Rows relations;
     };
-    enum class Wanted { derivatives, values, derivatives_of_no_candidate };
+    enum class Wanted { derivatives, values, values_of_no_candidate };
     const Record& asked(const VectorX& scaled, Wanted wanted);
     void evaluate(Record& record, Wanted wanted) const;
     Evaluation scaled(const Record& record) const;

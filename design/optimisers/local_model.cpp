@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/optimisers/local_model.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "fettle/core/base/factorisations.hpp"
 
 namespace fettle::design::optimisers {
 
 namespace {
 
 MatrixX positive_part(const MatrixX& symmetric) {
-    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(symmetric);
-    const VectorX values = eigen.eigenvalues().cwiseMax(0);
-    return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(symmetric);
+    const VectorX values = eigen.values.cwiseMax(0);
+    return eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
 }
 
 bool is_first(const Branches& b, size_t k) { return k == 0 || b.of[k] != b.of[k - 1]; }

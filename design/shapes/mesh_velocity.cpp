@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/geometry/distance.hpp"
 
 namespace fettle::design::shapes {
@@ -105,11 +106,10 @@ struct NormalSum {
 };
 
 Vector3 least_velocity(const NormalSum& sum) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(sum.matrix);
+    const SymmetricEigen<3> eigen = symmetric_eigen<3>(sum.matrix);
     Vector3 v = Vector3::Zero();
     for (int i = 0; i < 3; ++i) {  // directions that hardly any normal has are left at rest
-        if (eigen.eigenvalues()[i] > 1e-3 * eigen.eigenvalues()[2])
-            v += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(sum.right) / eigen.eigenvalues()[i]);
+        if (eigen.values[i] > 1e-3 * eigen.values[2]) v += eigen.vectors.col(i) * (eigen.vectors.col(i).dot(sum.right) / eigen.values[i]);
     }
     return v;
 }

@@ -236,6 +236,22 @@ TEST_CASE("rotation_vector inverts rotation") {
     CHECK((rotation_vector(off) - theta).norm() < 1e-14);
 }
 
+TEST_CASE("turn_between takes one direction to the other by the shortest way") {
+    const Vector3 a(0.3, -2, 0.7);
+    for (const Vector3& b : {Vector3(1, 0, 0), Vector3(0.6, -4, 1.4), Vector3(-5, 1, 1e-3), Vector3(-0.3, 2, -0.7 + 1e-5)}) {
+        const Eigen::Quaterniond q = turn_between(a, b);
+        CAPTURE(b.transpose());
+        const double near_opposite = (a.normalized() + b.normalized()).norm();
+        CHECK((q * a.normalized() - b.normalized()).norm() < 1e-15 + 1e-15 / near_opposite);
+        const double angle = std::acos(a.normalized().dot(b.normalized()));
+        CHECK(2 * std::atan2(q.vec().norm(), q.w()) == Approx(angle).margin(3e-8));
+    }
+    const Eigen::Quaterniond half = turn_between(a, -2 * a);
+    CHECK((half * a + a).norm() < 1e-15);
+    CHECK(half.norm() == Approx(1).epsilon(1e-15));
+    CHECK(turn_between(a, 3 * a).vec().norm() < 1e-16);
+}
+
 TEST_CASE("orthonormalised squares the departure from a rotation") {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> uniform(-1e-5, 1e-5);
