@@ -41,6 +41,9 @@ public:
     /// Are the mesh's triangles the same for all values? Where not, each trial has its own.
     virtual bool has_fixed_triangles() const { return true; }
 
+    /// Does it take seconds to make a mesh, as where a program makes it? Then fewer are made where fewer will do.
+    virtual bool is_costly() const { return false; }
+
     /// What is to be said of the part at these dimensions: how its derivative was found, and how exact it is. A sentence each.
     virtual std::vector<std::string> remarks(const std::vector<double>& values) const;
 

@@ -15,8 +15,8 @@ struct Reach {
     Errors obstacles;  ///< right behind it; none: all the way can be built, as far as was tried
 };
 
-/// Moves one parameter from p towards `end`, the others as in p, and tries designs at each quarter of the way and, once one cannot be
-/// built, where that begins. Contract: p can be built.
+/// Moves one parameter from p towards `end`, the others as in p, and tries designs at each quarter of the way (at its end alone where parts
+/// are costly to make, Shape::is_costly) and, once one cannot be built, where that begins. Contract: p can be built.
 Reach reach(const DesignProblem& problem, const VectorX& p, int parameter, double end);
 
 /// An end of a parameter's range that cannot be reached from the start.
@@ -39,10 +39,11 @@ struct BoundsReport {
     std::vector<Obstacle> obstacles;            ///< of those, the commonest first
 };
 
-/// Tries the designs that differ from the start in one parameter, at each end of its bounds, and samples of all parameters together (8 per
-/// parameter, at most 64, the same ones on every run: multiples of the powers of a generalised golden ratio, modulo 1). What an inequality
-/// between parameters excludes is not tried: it is no trap if the design says so itself.
-/// Empty if the start itself cannot be built: its evaluation says why.
+/// Tries the designs that differ from the start in one parameter, on the way to each end of its bounds, and samples of all parameters
+/// together (8 per parameter, at most 64, the same ones on every run: multiples of the powers of a generalised golden ratio, modulo 1).
+/// What an inequality between parameters excludes is not tried: it is no trap if the design says so itself. Of parts that are costly to
+/// make (Shape::is_costly) the ends themselves are tried, and 2 samples per parameter. Empty if the start itself cannot be built: its
+/// evaluation says why.
 BoundsReport try_bounds(const DesignProblem& problem);
 
 /// The commonest first; of as many the first one met first.

@@ -35,6 +35,7 @@ public:
 
     const std::vector<description::ShapeDimension>& dimensions() const override { return dimensions_; }
     bool has_fixed_triangles() const override { return false; }
+    bool is_costly() const override { return true; }
     Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const override;
     /// Errors: what the maker says, here or beside; a topology that changes beside.
     Result<description::ShapeInstance> at(const std::vector<double>& values) const override;

@@ -495,18 +495,6 @@ TEST_CASE("an optimiser without derivatives is not charged for any, but for the 
     CHECK(without > 3 * with);
     CHECK(report.best.has_derivatives);  // what the verdict is of
     CHECK(report.optimality.step.size() == 4);
-
-    // Values asked for again are not computed again; derivatives asked for later are.
-    with = without = 0;
-    Evaluator evaluator(problem, {20, {}, {}, {}});
-    const VectorX point = VectorX::Constant(4, 0.4);
-    CHECK_FALSE(evaluator.values_at(point).has_derivatives);
-    CHECK_FALSE(evaluator.values_at(point).has_derivatives);
-    CHECK(without == 1);
-    CHECK(evaluator.at(point).has_derivatives);
-    CHECK(evaluator.values_at(point).has_derivatives);  // better than what was asked for
-    CHECK(with == 2);                                   // the start's, and this
-    CHECK(evaluator.evaluations() == 3);
 }
 
 }  // namespace fettle::design::optimisers::optimisation_test

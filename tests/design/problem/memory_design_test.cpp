@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
@@ -290,6 +291,29 @@ TEST_CASE("a trial whose shape is no solid, or has other triangles, cannot be bu
     const DesignEvaluation low = problem->evaluate(p);
     CHECK_FALSE(low.usable);
     CHECK(low.reason.find("other triangles") != std::string::npos);
+}
+
+TEST_CASE("of parts that are costly to make the bounds alone and few designs between them are tried") {
+    class Costly : public Frustum {
+    public:
+        Costly() : Frustum(8e-3, 5e-3, 8e-3) {}
+        bool is_costly() const override { return true; }
+        Result<ShapeInstance> at(const std::vector<double>& d) const override {
+            if (d[1] > 8e-3) return Error{ErrorCode::out_of_range, "foot", "too wide"};
+            return Frustum::at(d);
+        }
+    };
+    const auto tried = [](std::shared_ptr<const Shape> shape) {
+        Design design = tilted_plate();
+        design.shapes[1] = std::move(shape);
+        return try_bounds(DesignProblem::create(std::move(design)).value());
+    };
+    CHECK(tried(std::make_shared<Frustum>(8e-3, 5e-3, 8e-3)).samples == 32);
+    const BoundsReport report = tried(std::make_shared<Costly>());
+    CHECK(report.samples == 8);
+    REQUIRE(report.unreachable.size() == 1);  // found, to a thousandth of the way, all the same
+    CHECK(report.unreachable[0].parameter == 2);
+    CHECK(report.unreachable[0].reach.value == Approx(8e-3).margin(4e-6));
 }
 
 TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {

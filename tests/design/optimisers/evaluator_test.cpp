@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/optimisers/evaluator.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace fettle::design::optimisers::evaluator_test {
+
+namespace {
+
+// (x - 0.2)^2 for x in [0, 1], from 0.9, and how often it was asked for, with and without its derivative.
+struct Parabola {
+    Problem problem;
+    int with = 0, without = 0;
+
+    Parabola() {
+        problem.start = VectorX::Constant(1, 0.9);
+        problem.lower = VectorX::Zero(1);
+        problem.upper = VectorX::Ones(1);
+        problem.constraint_lower.resize(0);
+        problem.constraint_upper.resize(0);
+        problem.relation_lower.resize(0);
+        problem.relation_upper.resize(0);
+        problem.values = [this](const VectorX& x) {
+            ++without;
+            return value(x[0]);
+        };
+        problem.evaluate = [this](const VectorX& x) {
+            ++with;
+            Evaluation e = value(x[0]);
+            e.has_derivatives = true;
+            e.gradient = VectorX::Constant(1, 2 * (x[0] - 0.2));
+            e.jacobian.resize(0, 1);
+            return e;
+        };
+    }
+    Parabola(const Parabola&) = delete;
+
+private:
+    static Evaluation value(double x) {
+        Evaluation e;
+        e.usable = true;
+        e.has_derivatives = false;
+        e.objective = (x - 0.2) * (x - 0.2);
+        e.constraints.resize(0);
+        return e;
+    }
+};
+
+VectorX at(double x) { return VectorX::Constant(1, x); }
+
+}  // namespace
+
+TEST_CASE("values asked for again are not computed again, derivatives asked for later are") {
+    Parabola parabola;
+    Evaluator evaluator(parabola.problem, {20, {}, {}, {}});
+    CHECK_FALSE(evaluator.values_at(at(0.4)).has_derivatives);
+    CHECK_FALSE(evaluator.values_at(at(0.4)).has_derivatives);
+    CHECK(parabola.without == 1);
+    CHECK(evaluator.at(at(0.4)).has_derivatives);
+    CHECK(evaluator.values_at(at(0.4)).has_derivatives);  // better than what was asked for
+    CHECK(parabola.with == 2);                            // the start's, and this
+    CHECK(evaluator.evaluations() == 3);
+}
+
+TEST_CASE("a look costs values alone and does not become the best point") {
+    Parabola parabola;
+    Evaluator evaluator(parabola.problem, {20, {}, {}, {}});
+    evaluator.at(at(0.5));
+    CHECK_FALSE(evaluator.look(at(0.2)).has_derivatives);
+    CHECK(parabola.without == 1);
+    CHECK(evaluator.best_point() == at(0.5));
+    CHECK(evaluator.at(at(0.2)).has_derivatives);  // asked for as a candidate it is one
+    CHECK(evaluator.best_point() == at(0.2));
+}
+
+}  // namespace fettle::design::optimisers::evaluator_test
