@@ -91,14 +91,13 @@ void add_contact_damping_derivatives(const DampedContacts& damped, const std::ve
     const model::Model& model = damped.model;  // by name: clang 14 captures no structured bindings
     const ContactSet& set = damped.contacts;
     const ContactDamping& damping = damped.damping;
-    std::vector<BodyPairSum> sums(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
+    const auto make = [&](int k, BodyPairSum& sum) {
         const BodyPairContacts& list = set.pairs[k];
         for (const ContactPair& pair : list.contacts)
             add_damped_pair(damped_pair(model, damping, list, pair), damping.closeness, kind, poses[list.first].position,
-                            poses[list.second].position, sums[k]);
-    });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
+                            poses[list.second].position, sum);
+    };
+    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
 }
 
 }  // namespace fettle::core::contact

@@ -82,6 +82,7 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
     double least = std::numeric_limits<double>::infinity();
     for (ListContacts& list : found) {
         least = least_of(least, list.least);
+        if (std::isfinite(list.least)) set.distances.push_back({list.forward.first, list.forward.second, std::sqrt(list.least)});
         for (BodyPairContacts* contacts : {&list.forward, &list.backward}) {
             set.count += static_cast<int>(contacts->contacts.size());
             if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));
@@ -102,30 +103,44 @@ double barrier_potential(const ContactSet& set, const BarrierParameters& paramet
 
 void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& poses, const BarrierParameters& parameters, HessianKind kind,
                              std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
-    std::vector<BodyPairSum> sums(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_a_piece, [&](int k) {
+    const auto make = [&](int k, BodyPairSum& sum) {
         const BodyPairContacts& list = set.pairs[k];
         for (const ContactPair& pair : list.contacts)
-            add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sums[k]);
-    });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
+            add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sum);
+    };
+    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
 }
 
-void add_body_pair(int first, int second, const BodyPairSum& sum, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
-                   kinematics::BlockHessian& hessian) {
-    gradients[first].force += sum.first.force;
-    gradients[first].arm += sum.first.arm;
-    gradients[second].force += sum.second.force;
-    gradients[second].arm += sum.second.arm;
-    if (kind == HessianKind::none) return;
-    const Matrix12 full = in_both_bodies(sum.hessian);
-    hessian.diagonal[first] += full.topLeftCorner<6, 6>();
-    hessian.diagonal[second] += full.bottomRightCorner<6, 6>();
-    kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(first, second), std::max(first, second));
-    if (first < second)
-        block.block += full.topRightCorner<6, 6>();
-    else
-        block.block += full.bottomLeftCorner<6, 6>();
+void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::function<void(int k, BodyPairSum& sum)>& make,
+                   HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
+    struct Made {
+        kinematics::PoseGradient first, second;
+        Matrix12 hessian;
+    };
+    std::vector<Made> made(bodies.size());
+    base::parallel_for(static_cast<int>(bodies.size()), pairs_a_piece, [&](int k) {
+        BodyPairSum sum;
+        make(k, sum);
+        made[k].first = sum.first;
+        made[k].second = sum.second;
+        if (kind != HessianKind::none) made[k].hessian = in_both_bodies(sum.hessian);
+    });
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const auto [first, second] = bodies[k];
+        gradients[first].force += made[k].first.force;
+        gradients[first].arm += made[k].first.arm;
+        gradients[second].force += made[k].second.force;
+        gradients[second].arm += made[k].second.arm;
+        if (kind == HessianKind::none) continue;
+        const Matrix12& full = made[k].hessian;
+        hessian.diagonal[first] += full.topLeftCorner<6, 6>();
+        hessian.diagonal[second] += full.bottomRightCorner<6, 6>();
+        kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(first, second), std::max(first, second));
+        if (first < second)
+            block.block += full.topRightCorner<6, 6>();
+        else
+            block.block += full.bottomLeftCorner<6, 6>();
+    }
 }
 
 }  // namespace fettle::core::contact

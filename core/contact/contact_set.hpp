@@ -3,6 +3,8 @@
 /// Contacts are ordered by their primitives, so that sums do not depend on how and when the candidates were found.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <vector>
 
 #include "fettle/core/contact/barrier.hpp"
@@ -19,8 +21,16 @@ struct BodyPairContacts {
     std::vector<ContactPair> contacts;
 };
 
+/// Least distance of two bodies, a < b, that have contacts, computed, not proven: of all their primitives, but for flat edges, which are
+/// nearer by no more than the heights of the bodies' flat features (geometry/flat_features.hpp).
+struct BodyDistance {
+    int a = 0, b = 0;
+    double distance = 0;  ///< [m], finite
+};
+
 struct ContactSet {
     std::vector<BodyPairContacts> pairs;  ///< in the candidates' order; vertices on the higher body come as a pair of their own
+    std::vector<BodyDistance> distances;  ///< in the candidates' order
     int count = 0;
     double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
@@ -48,8 +58,18 @@ double barrier_potential(const ContactSet& set, const BarrierParameters& paramet
 void add_barrier_derivatives(const ContactSet& set, const std::vector<kinematics::Pose>& poses, const BarrierParameters& parameters,
                              HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
-/// Adds one pair of bodies' sums to the per-body ones. hessian.off_diagonal stays sorted.
-void add_body_pair(int first, int second, const BodyPairSum& sum, HessianKind kind, std::vector<kinematics::PoseGradient>& gradients,
-                   kinematics::BlockHessian& hessian);
+/// Makes sums for pairs of bodies, make(k, sum) for each, on all threads, and adds them, in their order, to the per-body ones.
+/// hessian.off_diagonal stays sorted. @param bodies  their numbers
+void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::function<void(int k, BodyPairSum& sum)>& make,
+                   HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
+
+/// The bodies of such pairs, for add_pair_sums.
+template <class Pairs>
+std::vector<std::array<int, 2>> bodies_of(const Pairs& pairs) {
+    std::vector<std::array<int, 2>> bodies;
+    bodies.reserve(pairs.size());
+    for (const auto& pair : pairs) bodies.push_back({pair.first, pair.second});
+    return bodies;
+}
 
 }  // namespace fettle::core::contact

@@ -87,10 +87,8 @@ double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses
 
 void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& poses, HessianKind kind,
                               std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
-    std::vector<BodyPairSum> sums(set.pairs.size());
-    base::parallel_for(static_cast<int>(sums.size()), frictional_pairs_a_piece, [&](int k) {
+    const auto make = [&](int k, BodyPairSum& sum) {
         const BodyPairFriction& pair = set.pairs[k];
-        BodyPairSum& sum = sums[k];
         for (const FrictionContact& c : pair.contacts) {
             const Slide s = slide_of(c, poses[pair.first], poses[pair.second]);
             const FrictionMollifier f = friction_mollifier(s.distance, set.slip_bound);
@@ -105,8 +103,8 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             add_rigid_stiffness(sum.hessian, c.load * stiffness, along, s.arm_first, s.arm_second);
             add_rigid_stiffness(sum.hessian, c.load * f.first_by_y, across, s.arm_first, s.arm_second);
         }
-    });
-    for (std::size_t k = 0; k < sums.size(); ++k) add_body_pair(set.pairs[k].first, set.pairs[k].second, sums[k], kind, gradients, hessian);
+    };
+    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
 }
 
 Vector3 friction_force(const FrictionSet& set, const BodyPairFriction& pair, const FrictionContact& c, const std::vector<Pose>& poses) {

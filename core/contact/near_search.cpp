@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
@@ -118,21 +119,28 @@ private:
 
 WorldVertices::WorldVertices(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses)
     : model_(model), poses_(poses), begin_(model.bodies.size(), -1) {
+    constexpr Eigen::Index small = 64;
+    constexpr int bodies_a_piece = 64;
+    int count = 0;
+    std::vector<int> placed;
     for (const BodyPairCandidates& list : candidates.pairs) {
         if (list.empty()) continue;
-        place(list.a);
-        place(list.b);
+        for (const int body : {list.a, list.b}) {
+            int& begin = begin_[static_cast<std::size_t>(body)];
+            const Eigen::Index vertices = model_.bodies[static_cast<std::size_t>(body)].mesh.vertices.cols();
+            if (begin >= 0 || vertices > small) continue;
+            begin = count;
+            count += static_cast<int>(vertices);
+            placed.push_back(body);
+        }
     }
-}
-
-void WorldVertices::place(int body) {
-    constexpr Eigen::Index small = 64;
-    int& begin = begin_[static_cast<std::size_t>(body)];
-    const auto& vertices = model_.bodies[static_cast<std::size_t>(body)].mesh.vertices;
-    if (begin >= 0 || vertices.cols() > small) return;
-    begin = static_cast<int>(vertices_.size());
-    for (Eigen::Index v = 0; v < vertices.cols(); ++v)
-        vertices_.push_back(world_position(poses_[static_cast<std::size_t>(body)], vertices.col(v)));
+    vertices_.resize(static_cast<std::size_t>(count));
+    base::parallel_for(static_cast<int>(placed.size()), bodies_a_piece, [&](int k) {
+        const auto body = static_cast<std::size_t>(placed[static_cast<std::size_t>(k)]);
+        const auto& vertices = model_.bodies[body].mesh.vertices;
+        Vector3* at = vertices_.data() + begin_[body];
+        for (Eigen::Index v = 0; v < vertices.cols(); ++v) at[v] = world_position(poses_[body], vertices.col(v));
+    });
 }
 
 double find_near(const NearAt& at, NearPairs& near) { return NearSearch(at.model, at.list, at.poses, at.vertices).find(near); }

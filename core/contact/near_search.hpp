@@ -23,8 +23,6 @@ public:
     }
 
 private:
-    void place(int body);
-
     const model::Model& model_;
     const std::vector<kinematics::Pose>& poses_;
     std::vector<int> begin_;  // [body] into vertices_; -1: not there

@@ -46,8 +46,8 @@ PlaceRounding place_rounding(const PathSegment& s) {
 // which pairs are looked at closely depends on how far the search has come, on all threads, but none of those passed over has the least.
 class StepSearch {
 public:
-    StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits)
-        : model_(model), segments_(segments), limits_(limits) {
+    StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits, const ContactSet* start = nullptr)
+        : model_(model), segments_(segments), limits_(limits), start_(start) {
         for (const PathSegment& s : segments_) {
             starts_.push_back(pose_at(s, 0));
             start_roundings_.push_back(place_rounding(s));
@@ -76,7 +76,7 @@ public:
 
 private:
     void visit(const BodyPairCandidates& list, SafeStep& shortest) {
-        if (list.empty()) return;
+        if (list.empty() || are_surely_free(list)) return;
         const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_);
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
@@ -102,6 +102,36 @@ private:
         }
     }
 
+    // The distance that a pair keeps.
+    double kept_of(double distance) const {
+        return model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
+    }
+
+    // Told from the bodies' least distance at the start, where it is known: primitives that are farther apart keep no more beside it. Off
+    // by the rounding of distances (64 u of their vertices' distances, geometry/distance.hpp) and of places, here and there, and by what
+    // flat edges are nearer.
+    bool are_surely_free(const BodyPairCandidates& list) const {
+        if (start_ == nullptr) return false;
+        const auto before = [](const BodyDistance& x, const std::pair<int, int>& key) { return std::pair(x.a, x.b) < key; };
+        const std::pair key(list.a, list.b);
+        const auto known = std::lower_bound(start_->distances.begin(), start_->distances.end(), key, before);
+        if (known == start_->distances.end() || std::pair(known->a, known->b) != key) return false;
+        const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
+        const PathSegment &sa = segments_[list.a], &sb = segments_[list.b];
+        const double size = 2 * (a.radius + b.radius), place = sa.position_t0.norm() + sb.position_t0.norm() + size;
+        const double heights = (a.flat ? a.flat->height : 0) + (b.flat ? b.flat->height : 0);
+        const double lost = heights + 256 * unit_roundoff * (size + known->distance) + 4 * usual_rounding * place +
+                            start_roundings_[list.a].of(a.radius) + start_roundings_[list.b].of(b.radius);
+        const double distance = std::min(known->distance, model_.dmin + model_.dhat) - lost;
+        return distance > kept_of(distance) + travel_of(sa, sb, a.radius, b.radius);
+    }
+
+    // Bound of how far points of two bodies, so far from their reference points, move relative to one another.
+    static double travel_of(const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
+        return (1 + 1e-12) * ((a.position_step - b.position_step).norm() + a.rotation_vector_step.norm() * radius_a +
+                              b.rotation_vector_step.norm() * radius_b);
+    }
+
     // The pair's fraction, or some larger one than the least of all.
     double free_fraction(PairType type, int first, int second, const PairVertices& X) {
         const PathSegment &sa = segments_[first], &sb = segments_[second];
@@ -119,9 +149,7 @@ private:
         const double seen = distance_lower_bound(type, x);
         const double needed = 8 * unit_roundoff * seen + start_roundings_[first].of(radius_a) + start_roundings_[second].of(radius_b);
         const double distance = seen - std::max(usual_rounding * (x[0].norm() + x[3].norm()), needed);
-        const double kept = model_.dmin + std::min(limits_.kept_fraction * std::max(0.0, distance - model_.dmin), limits_.kept_most);
-        const double travel = (1 + 1e-12) * ((sa.position_step - sb.position_step).norm() + sa.rotation_vector_step.norm() * radius_a +
-                                             sb.rotation_vector_step.norm() * radius_b);
+        const double kept = kept_of(distance), travel = travel_of(sa, sb, radius_a, radius_b);
         if (distance > kept + travel) return 1;
         const double surely_free = distance > kept ? (1 - 1e-12) * (distance - kept) / travel : 0;
         if (surely_free > least_) return 1;
@@ -136,6 +164,7 @@ private:
     const model::Model& model_;
     const std::vector<PathSegment>& segments_;
     const Limits limits_;
+    const ContactSet* start_;
     std::vector<Pose> starts_;
     std::vector<PlaceRounding> start_roundings_;
     std::atomic<double> least_ = 1;  // so far, on all threads
@@ -143,8 +172,9 @@ private:
 
 }  // namespace
 
-SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {
-    return StepSearch(model, segments, {0.1, 0.25 * model.dhat}).longest(candidates);
+SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments,
+                           const ContactSet* start) {
+    return StepSearch(model, segments, {0.1, 0.25 * model.dhat}, start).longest(candidates);
 }
 
 bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments) {

@@ -128,9 +128,25 @@ ClosestPoints closest(const Vertices& x, const Vector3& u, const Vector3& v, con
     return c.distance_squared <= best.distance_squared ? c : best;
 }
 
+// The corner, 1 to 3, that is closest because the triangle's whole wedge lies behind it; 0: none. `edge`: from corners 1, 2, 3 to the next.
+int closest_corner(const std::array<Vector3, 3>& edge, const std::array<Vector3, 3>& from_corner) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (edge[k].dot(from_corner[k]) <= 0 && edge[(k + 2) % 3].dot(from_corner[k]) >= 0) return static_cast<int>(k) + 1;
+    return 0;
+}
+
+ClosestPoints at_corner(const Vertices& x, int corner, const Vector3& difference) {
+    ClosestPoints c;
+    c.weight[0] = 1;
+    c.weight[corner] = -1;
+    c.difference = difference;
+    c.distance_squared = difference.squaredNorm() + 0 * (*x[0] + *x[1] + *x[2] + *x[3]).sum();  // as in best_of
+    return c;
+}
+
 // Indices 1, 2, 3 of a triangle's vertices, in order round it, the one across from the longest edge first.
-std::array<int, 3> across_from_longest_edge(const Vector3& t0, const Vector3& t1, const Vector3& t2) {
-    const double e01 = (t1 - t0).squaredNorm(), e12 = (t2 - t1).squaredNorm(), e20 = (t0 - t2).squaredNorm();
+std::array<int, 3> across_from_longest_edge(const std::array<Vector3, 3>& edge) {
+    const double e01 = edge[0].squaredNorm(), e12 = edge[1].squaredNorm(), e20 = edge[2].squaredNorm();
     const int first = e12 >= e01 ? (e12 >= e20 ? 0 : 1) : (e01 >= e20 ? 2 : 1);
     return {1 + first, 1 + (first + 1) % 3, 1 + (first + 2) % 3};
 }
@@ -139,8 +155,10 @@ std::array<int, 3> across_from_longest_edge(const Vector3& t0, const Vector3& t1
 
 ClosestPoints point_triangle_closest(const Vector3& p, const Vector3& t0, const Vector3& t1, const Vector3& t2) {
     const Vertices x{&p, &t0, &t1, &t2};
+    const std::array<Vector3, 3> edge{t1 - t0, t2 - t1, t0 - t2}, from_corner{p - t0, p - t1, p - t2};
+    if (const int k = closest_corner(edge, from_corner); k > 0) return at_corner(x, k, from_corner[static_cast<std::size_t>(k) - 1]);
     // From the vertex that the two shorter edges share: in a sliver the longer ones are parallel to rounding.
-    const std::array<int, 3> corner = across_from_longest_edge(t0, t1, t2);
+    const std::array<int, 3> corner = across_from_longest_edge(edge);
     const Vector3& c0 = *x[corner[0]];
     const auto interior = [&corner](const InPlane& b, ClosestPoints& c) {
         const double b0 = 1 - b.along_u - b.along_v;

@@ -5,10 +5,12 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -135,38 +137,76 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
     }
     diagonal_.resize(n);
     blocks_.resize(at(blocks));
-    place_.assign(n, -1);
-}
-
-void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
-    for (std::size_t k = 0; k < body_of_.size(); ++k) {
-        const std::size_t body = at(body_of_[k]);
-        diagonal_[k] = free_part(hessian.diagonal[body], dofs.index[body], dofs.index[body]);
-        for (int i = 0; i < 6; ++i)
-            if (dofs.index[body][at(i)] < 0) diagonal_[k](i, i) = 1;
-    }
-    std::fill(blocks_.begin(), blocks_.end(), Matrix6::Zero());
-    for (const kinematics::OffDiagonalBlock& b : hessian.off_diagonal) {
-        const int na = node_of_[at(b.a)], nb = node_of_[at(b.b)];
-        if (na < 0 || nb < 0) continue;
-        const Matrix6 block = free_part(b.block, dofs.index[at(b.a)], dofs.index[at(b.b)]);
+    block_of_.clear();
+    for (const auto& [a, b] : pattern_) {
+        const int na = node_of_[at(a)], nb = node_of_[at(b)];
+        if (na < 0 || nb < 0) {
+            block_of_.push_back(-1);
+            continue;
+        }
         const std::vector<Entry>& column = columns_[at(std::min(na, nb))];
         const auto entry =
             std::lower_bound(column.begin(), column.end(), std::max(na, nb), [](const Entry& e, int row) { return e.row < row; });
-        blocks_[at(entry->block)] = na > nb ? block : Matrix6(block.transpose());
+        block_of_.push_back(entry->block);
+    }
+    find_levels();
+}
+
+// A column needs those that have a row in it.
+void BlockCholesky::find_levels() {
+    constexpr int worthwhile = 150;  // products of blocks that a thread takes at a time
+    levels_.clear();
+    std::vector<std::size_t> level(columns_.size(), 0);
+    std::vector<std::size_t> work;
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+        std::size_t products = columns_[j].size() + 1;
+        for (const Entry& before : rows_[j]) {
+            level[j] = std::max(level[j], level[at(before.row)] + 1);
+            products += columns_[at(before.row)].size() - at(before.block);
+        }
+        if (level[j] >= levels_.size()) {
+            levels_.resize(level[j] + 1);
+            work.resize(level[j] + 1, 0);
+        }
+        levels_[level[j]].columns.push_back(static_cast<int>(j));
+        work[level[j]] += products;
+    }
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+        const double each = static_cast<double>(work[k]) / static_cast<double>(levels_[k].columns.size());
+        levels_[k].grain = std::max(1, static_cast<int>(worthwhile / each));
     }
 }
 
+void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+    constexpr int blocks_a_piece = 256;
+    base::parallel_for(static_cast<int>(body_of_.size()), blocks_a_piece, [&](int k) {
+        const std::size_t body = at(body_of_[at(k)]);
+        Matrix6& block = diagonal_[at(k)];
+        block = free_part(hessian.diagonal[body], dofs.index[body], dofs.index[body]);
+        for (int i = 0; i < 6; ++i)
+            if (dofs.index[body][at(i)] < 0) block(i, i) = 1;
+    });
+    std::fill(blocks_.begin(), blocks_.end(), Matrix6::Zero());
+    base::parallel_for(static_cast<int>(hessian.off_diagonal.size()), blocks_a_piece, [&](int k) {
+        if (block_of_[at(k)] < 0) return;
+        const kinematics::OffDiagonalBlock& b = hessian.off_diagonal[at(k)];
+        const Matrix6 block = free_part(b.block, dofs.index[at(b.a)], dofs.index[at(b.b)]);
+        blocks_[at(block_of_[at(k)])] = node_of_[at(b.a)] > node_of_[at(b.b)] ? block : Matrix6(block.transpose());
+    });
+}
+
 bool BlockCholesky::eliminate(int column) {
+    static thread_local std::vector<int> place;  // [node] where a row stands in the column at hand; of other rows anything
+    if (place.size() < columns_.size()) place.resize(columns_.size());
     Matrix6& pivot = diagonal_[at(column)];
     const std::vector<Entry>& below = columns_[at(column)];
-    for (const Entry& entry : below) place_[at(entry.row)] = entry.block;
+    for (const Entry& entry : below) place[at(entry.row)] = entry.block;
     for (const Entry& before : rows_[at(column)]) {
         const std::vector<Entry>& other = columns_[at(before.row)];
         const Matrix6& reach = blocks_[at(other[at(before.block)].block)];
         subtract_product(pivot, reach, reach);
         for (std::size_t k = at(before.block) + 1; k < other.size(); ++k)
-            subtract_product(blocks_[at(place_[at(other[k].row)])], blocks_[at(other[k].block)], reach);
+            subtract_product(blocks_[at(place[at(other[k].row)])], blocks_[at(other[k].block)], reach);
     }
     if (!cholesky(pivot)) return false;
     for (const Entry& entry : below) solve_from_right(pivot, blocks_[at(entry.block)]);
@@ -176,8 +216,13 @@ bool BlockCholesky::eliminate(int column) {
 bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
     analyse(hessian, dofs);
     fill(hessian, dofs);
-    for (int column = 0; column < static_cast<int>(columns_.size()); ++column)
-        if (!eliminate(column)) return false;
+    for (const Level& level : levels_) {
+        std::atomic<bool> is_positive = true;
+        base::parallel_for(static_cast<int>(level.columns.size()), level.grain, [&](int k) {
+            if (!eliminate(level.columns[at(k)])) is_positive = false;
+        });
+        if (!is_positive) return false;
+    }
     return true;
 }
 

@@ -2,7 +2,8 @@
 /// Cholesky factor L L^T of a sparse symmetric matrix of 6 x 6 blocks, one row of blocks per body, with the bodies ordered so that few
 /// blocks fill in (approximate minimum degree, Amestoy, Davis and Duff 1996, from Eigen). A library's factor would go by single numbers:
 /// 36 times the indices, and an ordering of six times as many unknowns.
-/// Left-looking, by columns of blocks. Same bits on every machine with the same instruction set; one thread.
+/// Left-looking, by columns of blocks; columns of which none needs another (branches of the elimination tree) on all threads, and each is
+/// made from those before it in their order: the same bits for any number of threads.
 #pragma once
 
 #include <utility>
@@ -32,6 +33,7 @@ private:
     void find_columns(const std::vector<std::vector<int>>& neighbours);
     void fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
     bool eliminate(int column);
+    void find_levels();
 
     std::vector<std::pair<int, int>> pattern_;  // bodies of the off-diagonal blocks that the analysis saw
     bool analysed_ = false;
@@ -40,7 +42,12 @@ private:
     std::vector<std::vector<Entry>> columns_;  // [node] rows below it, ascending
     std::vector<std::vector<Entry>> rows_;     // [node] columns before it that reach it: .row is the column, .block its place there
     std::vector<Matrix6> diagonal_, blocks_;   // the matrix, then its factor
-    std::vector<int> place_;                   // [node] scratch: where a row stands in the column at hand
+    std::vector<int> block_of_;                // [off-diagonal block of the matrix] into blocks_; -1: one of its bodies has nothing free
+    struct Level {
+        std::vector<int> columns;  // each needs columns of lower levels alone
+        int grain = 1;             // of them that a thread takes at a time
+    };
+    std::vector<Level> levels_;
 };
 
 }  // namespace fettle::core::solver

@@ -357,7 +357,7 @@ private:
         const std::vector<PathSegment> segments = segments_to(moved_by(direction, 1));
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(model_, workspace_.candidates, segments);
+        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts);
     }
 
     // From the straight step onto the rows, and whether the way there is clear too.
@@ -367,7 +367,7 @@ private:
         const std::vector<PathSegment> segments = segments_to(points);
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(model_, workspace_.candidates, segments).fraction == 1;
+        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts).fraction == 1;
     }
 
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.

@@ -60,6 +60,7 @@ py::dict defaults() {
     add_default<fettle::core::model::Origin>(all);
     add_default<fettle::design::description::OptimiserSettings>(all);
     add_default<fettle::design::description::Parameter>(all);
+    add_default<fettle::design::optimisers::NoiseLevel>(all);
     add_default<fettle::design::optimisers::Optimality>(all);
     add_default<fettle::design::optimisers::OptimiserReport>(all);
     add_default<fettle::design::optimisers::Rows>(all);
@@ -68,7 +69,15 @@ py::dict defaults() {
     add_default<fettle::design::reading::DesignFile>(all);
     add_default<fettle::design::studies::CheckReport>(all);
     add_default<fettle::design::studies::CheckRow>(all);
+    add_default<fettle::design::studies::ContactChange>(all);
+    add_default<fettle::design::studies::ContactDifference>(all);
+    add_default<fettle::design::studies::ContactFeature>(all);
+    add_default<fettle::design::studies::ContactState>(all);
+    add_default<fettle::design::studies::LineRow>(all);
     add_default<fettle::design::studies::OptimiseOutcome>(all);
+    add_default<fettle::design::studies::QuantityRoughness>(all);
+    add_default<fettle::design::studies::RoughnessReport>(all);
+    add_default<fettle::design::studies::SweepAgreement>(all);
     all["Relation"] = py::cast(description::Relation());
     return all;
 }

@@ -18,7 +18,8 @@ using studies::OptimiseOutcome;
 
 namespace {
 
-studies::CheckReport check_gradients(const DesignProblem& problem, const std::optional<VectorX>& p, const py::object& progress) {
+studies::CheckReport check_gradients(const DesignProblem& problem, const std::optional<VectorX>& p, int most_parameters,
+                                     const py::object& progress) {
     const VectorX point = p ? *p : description::values_of(problem.design().parameters);
     if (point.size() != problem.parameter_count()) throw py::value_error("one value for each of the design's parameters");
     Watch watch(progress);
@@ -27,6 +28,7 @@ studies::CheckReport check_gradients(const DesignProblem& problem, const std::op
     {
         const py::gil_scoped_release unlocked;
         studies::CheckOptions options;
+        options.most_parameters = most_parameters;
         options.on_simulation = watch.on_count();
         options.should_stop = watch.should_stop();
         problem::EvaluateOptions evaluate;
@@ -103,8 +105,12 @@ OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments,
 }  // namespace
 
 void bind_studies(py::module_& module) {
-    module.def("check_gradients", &check_gradients, py::arg("problem"), py::arg("p") = py::none(), py::arg("progress") = py::none(),
-               "The audit of a design's gradients by central differences: a CheckReport. progress(done, of).");
+    module.def(
+        "check_gradients", &check_gradients, py::arg("problem"), py::arg("p") = py::none(), py::arg("most_parameters") = 0,
+        py::arg("progress") = py::none(),
+        "The audit of a design's gradients by central differences, of the sweeps against one another, and of which contacts are about "
+        "to change: a CheckReport. most_parameters: those alone that the objective's gradient is largest in; 0: all. "
+        "progress(done, of).");
     module.def("optimise", &optimise_design, py::arg("problem"), py::arg("optimiser") = "", py::arg("seed") = 0, py::arg("repair") = false,
                py::arg("progress") = py::none(),
                "Optimises in memory: an OptimiseOutcome. seed 0 begins at the design's values, others at a random start. progress(line).");

@@ -293,10 +293,113 @@ class CheckRow(Record):
 
 
 @dataclasses.dataclass(eq=False)
+class LineRow(Record):
+    """As CheckRow, along roughness.direction; slope: about 2 where the gradient is right and the quantity smooth."""
+
+    quantity: str = ""
+    adjoint: float = 0.0
+    difference: float = 0.0
+    difference_error: float = 0.0
+    relative_error: float = 0.0
+    resolved: bool = True
+    slope: float = 0.0
+
+
+@dataclasses.dataclass(eq=False)
+class SweepAgreement(Record):
+    disagreement: float = 0.0  #: of the reverse and the forward sweep, relative
+    quantity: str = ""
+    failure: str = ""
+
+
+@dataclasses.dataclass(eq=False)
+class NoiseLevel(Record):
+    noise: float = 0.0
+    second_derivative: float = 0.0
+    third_derivative: float = 0.0
+    second_derivative_error: float = 0.0
+    third_derivative_error: float = 0.0
+    status: Literal["detected", "spacing_too_small", "spacing_too_large"] = "spacing_too_large"
+
+
+@dataclasses.dataclass(eq=False)
+class QuantityRoughness(Record):
+    name: str = ""
+    size: float = 0.0
+    slope: float = 0.0
+    noise: NoiseLevel = dataclasses.field(default_factory=NoiseLevel)
+    fine: NoiseLevel = dataclasses.field(default_factory=NoiseLevel)
+    rounding: float = 0.0
+    holds: float = 0.0  #: how far the gradient holds, in shares of the parameters' ranges
+    breaks: float = 0.0
+    tolerance: float = 0.0
+    rough: bool = False
+
+
+@dataclasses.dataclass(eq=False)
+class RoughnessReport(Record):
+    measured: bool = False
+    direction: Array = dataclasses.field(default_factory=_empty)
+    spacing: float = 0.0
+    fine_spacing: float = 0.0
+    quantities: List[QuantityRoughness] = dataclasses.field(default_factory=list)
+    simulations: int = 0
+    failures: List[str] = dataclasses.field(default_factory=list)
+    interrupted: bool = False
+
+
+@dataclasses.dataclass(eq=False)
+class ContactFeature(Record):
+    kind: Literal["vertex", "edge", "face"] = "vertex"
+    vertices: List[int] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False)
+class ContactState(Record):
+    a: int = 0
+    b: int = 0
+    on_a: ContactFeature = dataclasses.field(default_factory=ContactFeature)
+    on_b: ContactFeature = dataclasses.field(default_factory=ContactFeature)
+    place: Array = dataclasses.field(default_factory=_zero)  #: world [m]
+    is_mollified: bool = False
+    slides: bool = False
+
+
+@dataclasses.dataclass(eq=False)
+class ContactDifference(Record):
+    event: Literal["touch", "part", "new_features", "parallel", "crossing", "slide", "stick"] = "touch"
+    step: int = 0
+    was: ContactState = dataclasses.field(default_factory=ContactState)
+    is_: ContactState = dataclasses.field(default_factory=ContactState)
+    others: bool = False
+
+
+@dataclasses.dataclass(eq=False)
+class ContactChange(Record):
+    """The nearest change of one sort between two bodies as one parameter moves to one side: none at `from_`, one at `to` (SI, signed)."""
+
+    parameter: str = ""
+    from_: float = 0.0
+    to: float = 0.0
+    share: float = 0.0
+    at: ContactDifference = dataclasses.field(default_factory=ContactDifference)
+    body_a: str = ""
+    body_b: str = ""
+    time: float = 0.0
+    count: int = 1
+
+
+@dataclasses.dataclass(eq=False)
 class CheckReport(Record):
     rows: List[CheckRow] = dataclasses.field(default_factory=list)
+    along: List[LineRow] = dataclasses.field(default_factory=list)
+    sweeps: SweepAgreement = dataclasses.field(default_factory=SweepAgreement)
+    left_out: List[str] = dataclasses.field(default_factory=list)
     largest_relative_error: float = 0.0
+    roughness: RoughnessReport = dataclasses.field(default_factory=RoughnessReport)
     first_step: float = 0.0
+    contact_changes: List[ContactChange] = dataclasses.field(default_factory=list)
+    contacts_reach: Array = dataclasses.field(default_factory=_rows)  #: (n, 2) below and above, in shares of the range
     simulations: int = 0
     failures: List[str] = dataclasses.field(default_factory=list)
     interrupted: bool = False

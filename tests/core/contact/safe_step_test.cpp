@@ -15,6 +15,7 @@ namespace fettle::core::contact::safe_step_test {
 
 using namespace fettle::tests::support;
 using kinematics::PathSegment;
+using kinematics::Pose;
 
 namespace {
 
@@ -45,7 +46,15 @@ PathSegment segment(const Vector3& position, const Vector3& step, const Vector3&
 SafeStep step_of(const model::Model& model, const std::vector<PathSegment>& segments) {
     Candidates candidates;
     cover(model, segments, model.dhat, candidates);
-    return longest_safe_step(model, candidates, segments);
+    const SafeStep step = longest_safe_step(model, candidates, segments);
+    std::vector<Pose> start;
+    for (const PathSegment& s : segments) start.push_back(pose_at(s, 0));
+    const ContactSet contacts = find_contacts(model, candidates, start);
+    const SafeStep known = longest_safe_step(model, candidates, segments, &contacts);  // what is known at the start changes nothing
+    CHECK(known.fraction == step.fraction);
+    CHECK(known.limiting_a == step.limiting_a);
+    CHECK(known.limiting_b == step.limiting_b);
+    return step;
 }
 
 /// Vertices of a pair of edges at s, by a path of its own: long enough expressions in extended precision, rounded once.
@@ -105,6 +114,22 @@ TEST_CASE("bodies in contact at the start do not move towards one another") {
     const model::Model model = model_of({box, box});
     CHECK(step_of(model, {segment({0, 0, 0}, {0, 0, 0}), segment({1, 0, 0}, {-1, 0, 0})}).fraction == 0);
     CHECK(step_of(model, {segment({0, 0, 0}, {0, 0, 0}), segment({0.7, 0, 0}, {-1, 0, 0})}).fraction == 0);
+}
+
+TEST_CASE("bodies whose distance at the start is known are free as long as they cannot lose it") {
+    const geometry::Mesh box = box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+    const model::Model model = model_of({box, box});
+    const double gap = 0.6e-3, kept = 0.06e-3;
+    for (const double share : {0.0, 0.5, 0.99, 0.9999999, 1.0000001, 1.01, 2.0})
+        for (const Vector3& place : {Vector3(0, 0, 0), Vector3(30, -20, 10)}) {
+            const double travel = share * (gap - kept);
+            const SafeStep step = step_of(model, {segment(place, {0, 0, 0}), segment(place + Vector3(1 + gap, 0.1, 0.2), {-travel, 0, 0})});
+            INFO("share " << share);
+            CHECK((step.fraction == 1) == (share < 1));
+        }
+    // One that turns: corners go farther than the middle.
+    const SafeStep turning = step_of(model, {segment({0, 0, 0}, {0, 0, 0}), segment({1 + gap, 0.1, 0.2}, {0, 0, 0}, {0, 0, 4e-3})});
+    CHECK(turning.fraction < 1);
 }
 
 TEST_CASE("bodies of one group do not stop one another") {

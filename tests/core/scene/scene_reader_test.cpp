@@ -333,10 +333,10 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
     const Workshop shop;
     const json schema = json::parse(std::ifstream(FETTLE_SOURCE_DIR "/core/scene/scene.schema.json"));
     json scene = with("/contact", json::object());
-    scene["friction"] = {{"pairs", {json::object()}}};
+    scene["friction"]["pairs"] = json::array({json::object()});
     scene["materials"] = {{"PLA", json::object()}};
     scene["bodies"][0]["type"] = "kinematic";
-    scene["bodies"][0]["script"] = {json::object()};
+    scene["bodies"][0]["script"] = json::array({json::object()});
     scene["bodies"][0]["prescribed"] = {{"rz", json::object()}};
     json shaped = with("/bodies/0/shape", {{"generator", "x"}});
     shaped["bodies"][0].erase("mesh");

@@ -25,6 +25,16 @@ def test_evaluated_and_differentiated(tilted):
     for row in report.rows:
         assert row.relative_error < 1e-6, row
         assert row.adjoint != 0
+    assert [row.quantity for row in report.along] == ["objective", report.rows[-1].quantity]
+    assert report.sweeps.disagreement < 1e-9 and not report.sweeps.failure
+    assert report.contacts_reach.shape == (4, 2)
+    assert report.roughness.measured and len(report.roughness.quantities) == 2
+    for change in report.contact_changes:
+        assert {change.body_a, change.body_b} == {"plate", "part"}
+        assert abs(change.from_) < abs(change.to)
+    assert pickle.loads(pickle.dumps(report)) == report
+    some = fettle.check_gradients(tilted, most_parameters=1)
+    assert len(some.left_out) == 3 and {row.parameter for row in some.rows}.isdisjoint(some.left_out)
     assert pickle.loads(pickle.dumps(at)) == at
 
 
