@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Takes the pictures in pixels: the report of examples/slider_crank and examples/path_line in Chromium without a window, and the README's of
-the tuned slider-crank (a minute of one core): screenshots.py FETTLE [FOLDER], from the root of the repository. Needs chromium and
-python3-numpy."""
+the tuned slider-crank (a minute of one core): screenshots.py FETTLE [FOLDER], from the root of the repository. Needs chromium, fonts-inter,
+the font that the report asks for first, and python3-numpy."""
 import base64
 import pathlib
 import shutil
@@ -96,10 +96,22 @@ def take(browser, file, size, dark, prepare):
     return base64.b64decode(shot["data"])
 
 
+def what_is_missing():
+    """Why no pictures can be taken that look the same on every machine; empty: they can."""
+    if shutil.which("chromium") is None and shutil.which("chromium-browser") is None:
+        return "Chromium is not installed (apt-get install chromium)"
+    matched = shutil.which("fc-match") and subprocess.run(["fc-match", "--format=%{family}", "Inter"], capture_output=True, text=True, check=False)
+    if not matched or not matched.stdout.startswith("Inter"):
+        return "the font Inter is not installed (apt-get install fonts-inter fontconfig)"
+    if subprocess.run(["/usr/bin/python3", "-c", "import numpy"], capture_output=True, check=False).returncode:
+        return "/usr/bin/python3 has no numpy (apt-get install python3-numpy)"
+    return ""
+
+
 def main(program, folder=None):
+    if missing := what_is_missing():
+        sys.exit(missing)
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    if chromium is None:
-        sys.exit("Chromium is not installed (apt-get install chromium)")
     places = {name: pathlib.Path(folder) / pathlib.Path(path).name if folder else ROOT / path for name, path in PICTURES.items()}
     with tempfile.TemporaryDirectory() as temporary:
         out = pathlib.Path(temporary)
