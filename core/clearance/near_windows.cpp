@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "fettle/core/base/contract.hpp"
@@ -50,7 +51,8 @@ void take_segment(const kinematics::PathSegment& path, const BodyBox& box, Swept
     const double rounding = 2 * unit_roundoff * ((256 + 48 * theta) * radius + 64 * position);
     const Vector3 pad = Vector3::Constant((rest + rounding) * rounded_up + std::numeric_limits<double>::min());
     for (const double s : {0.0, 1.0}) {
-        const kinematics::Pose pose = kinematics::pose_at(path, s);
+        const bool at_base = s == 0 && path.rotation_vector_t0.isZero(0);
+        const kinematics::Pose pose = at_base ? kinematics::Pose{path.base, path.position_t0} : kinematics::pose_at(path, s);
         swept.take(pose.rotation * box.center + pose.position, pose.rotation.cwiseAbs() * box.half + pad);
         if (w == 0 && path.position_step == Vector3::Zero()) return;
     }
@@ -77,19 +79,33 @@ public:
     NearWindows run() {
         std::vector<std::vector<std::pair<int, int>>> near(static_cast<std::size_t>(spans_.count));
         parallel_for(spans_.count, 1, [&](int k) { near[k] = near_in(k); });
-        std::vector<std::tuple<int, int, int>> rows;  // a, b, span
+        std::vector<NearSpan> rows;
         for (int k = 0; k < spans_.count; ++k) {
-            for (const auto& [a, b] : near[static_cast<std::size_t>(k)]) rows.emplace_back(a, b, k);
+            for (const auto& [a, b] : near[static_cast<std::size_t>(k)]) rows.push_back({a, b, k});
         }
-        std::sort(rows.begin(), rows.end());
+        rows = sorted_by_body(sorted_by_body(rows, &NearSpan::b), &NearSpan::a);
         NearWindows result;
-        for (const auto& [a, b, k] : rows) take(result.windows, a, b, k);
+        for (const NearSpan& row : rows) take(result.windows, row.a, row.b, row.span);
         add_unmeasurable(result.windows);
         result.everything = covers_everything(result.windows);
         return result;
     }
 
 private:
+    struct NearSpan {
+        int a, b, span;
+    };
+
+    // Those of the same body stay in their order.
+    std::vector<NearSpan> sorted_by_body(const std::vector<NearSpan>& rows, int NearSpan::*body) const {
+        std::vector<std::size_t> next(static_cast<std::size_t>(bodies_) + 1, 0);
+        for (const NearSpan& row : rows) ++next[static_cast<std::size_t>(row.*body) + 1];
+        std::partial_sum(next.begin(), next.end(), next.begin());
+        std::vector<NearSpan> sorted(rows.size());
+        for (const NearSpan& row : rows) sorted[next[static_cast<std::size_t>(row.*body)]++] = row;
+        return sorted;
+    }
+
     Swept swept(int body, int span) const {
         Swept box;
         for (int i = spans_.first(span); i < spans_.first(span + 1); ++i)

@@ -101,7 +101,7 @@ private:
 };
 
 /// Do points of b leave the chords of their segments by less as seen from a than points of a as seen from b? Then bounds are better with a
-/// as the frame, of exchanged(segments).
+/// as the frame, of exchanged(segments). Told by some of the segments: either frame gives true bounds.
 bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b);
 
 /// The same pair with the bodies in the other order.

@@ -115,6 +115,10 @@ private:
             plan.absent.clear();
             return false;
         }
+        const auto of_second = std::count_if(plan.contacts.begin(), plan.contacts.end(),
+                                             [](const Contact& contact) { return contact.kind == Kind::of_second; });
+        backward.reserve(static_cast<std::size_t>(of_second));
+        forward.reserve(plan.contacts.size() - static_cast<std::size_t>(of_second));
         for (const Contact& contact : plan.contacts) emit_contact(contact, near, forward, backward);
         return true;
     }

@@ -9,13 +9,13 @@
 namespace fettle::core::energy {
 namespace {
 
-constexpr int bodies_a_call = 16;  // that a thread takes at a time
+constexpr int bodies_a_call = 16, values_a_call = 128;  // that a thread takes at a time
 
 void add_inertia_value(const ValueAt& at, TermValues& values) {
-    for (std::size_t i = 0; i < at.poses.size(); ++i) {
+    base::parallel_for(static_cast<int>(at.poses.size()), values_a_call, [&](int i) {
         const model::Body& body = at.problem.model->bodies[i];
         if (has_free_dof(body)) values.bodies[i] += inertia_potential(pose_matrix(at.poses[i]), at.problem.pose_hat[i], body.moments);
-    }
+    });
 }
 
 void add_inertia_derivatives(const DerivativesAt& at, TermDerivatives& d) {

@@ -2,6 +2,7 @@
 #include "fettle/core/energy/step_problem.hpp"
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::energy {
 
@@ -31,13 +32,14 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> 
 }
 
 std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points) {
+    constexpr int bodies_at_once = 64;  // that a thread takes
     std::vector<Pose> poses(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    base::parallel_for(static_cast<int>(points.size()), bodies_at_once, [&](int i) {
         const Vector3& theta = points[i].rotation_vector;
         const Matrix3& start = problem.poses_t0[i].rotation;
         poses[i].position = points[i].position;
         poses[i].rotation = theta.isZero(0) ? start : kinematics::orthonormalised(kinematics::rotation(theta) * start);
-    }
+    });
     return poses;
 }
 

@@ -135,10 +135,11 @@ int closest_corner(const std::array<Vector3, 3>& edge, const std::array<Vector3,
     return 0;
 }
 
-ClosestPoints at_corner(const Vertices& x, int corner, const Vector3& difference) {
+// Vertices `first` and `second` of x, of one primitive each; difference: x_first - x_second.
+ClosestPoints at_vertices(const Vertices& x, int first, int second, const Vector3& difference) {
     ClosestPoints c;
-    c.weight[0] = 1;
-    c.weight[corner] = -1;
+    c.weight[first] = 1;
+    c.weight[second] = -1;
     c.difference = difference;
     c.distance_squared = difference.squaredNorm() + 0 * (*x[0] + *x[1] + *x[2] + *x[3]).sum();  // as in best_of
     return c;
@@ -156,7 +157,7 @@ std::array<int, 3> across_from_longest_edge(const std::array<Vector3, 3>& edge) 
 ClosestPoints point_triangle_closest(const Vector3& p, const Vector3& t0, const Vector3& t1, const Vector3& t2) {
     const Vertices x{&p, &t0, &t1, &t2};
     const std::array<Vector3, 3> edge{t1 - t0, t2 - t1, t0 - t2}, from_corner{p - t0, p - t1, p - t2};
-    if (const int k = closest_corner(edge, from_corner); k > 0) return at_corner(x, k, from_corner[static_cast<std::size_t>(k) - 1]);
+    if (const int k = closest_corner(edge, from_corner); k > 0) return at_vertices(x, 0, k, from_corner[static_cast<std::size_t>(k) - 1]);
     // From the vertex that the two shorter edges share: in a sliver the longer ones are parallel to rounding.
     const std::array<int, 3> corner = across_from_longest_edge(edge);
     const Vector3& c0 = *x[corner[0]];
@@ -199,7 +200,16 @@ ClosestPoints edge_edge_closest(const Vector3& ea0, const Vector3& ea1, const Ve
         const double s = b.along_u, t = -b.along_v;
         return unsigned{!(s > surely)} | unsigned{!(1 - s > surely)} << 1 | unsigned{!(t > surely)} << 2 | unsigned{!(1 - t > surely)} << 3;
     };
-    return closest<decltype(interior), decltype(sides), 4>(x, ea1 - ea0, eb1 - eb0, eb0 - ea0, interior, sides,
+    // Two ends are closest where both edges lead away from one another there.
+    const Vector3 a = ea1 - ea0, b = eb1 - eb0;
+    for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) {
+            const Vector3 between = *x[i] - *x[2 + j];
+            const double along_a = a.dot(between), along_b = b.dot(between);
+            if ((i == 0 ? along_a >= 0 : along_a <= 0) && (j == 0 ? along_b <= 0 : along_b >= 0)) return at_vertices(x, i, 2 + j, between);
+        }
+    }
+    return closest<decltype(interior), decltype(sides), 4>(x, a, b, eb0 - ea0, interior, sides,
                                                            {{{0, 2, 3, 1.0}, {1, 2, 3, 1.0}, {2, 0, 1, -1.0}, {3, 0, 1, -1.0}}});
 }
 

@@ -11,8 +11,8 @@
 ///  - Differences of vertices are off by u each, which moves the vertices by 3 u L in all. Convex weights of either sign sum to 1 within u,
 ///    so that |r| is that of two points of the primitives within 11 u L: it is too small by no more, and too large only where the
 ///    weights are not the best.
-///  - Vertex against vertex, d apart, where both edges of the triangle lead away: told by signs of products e . d that are off by
-///    4 u |e| |d|. A wrong one puts the point off its best place by 4 u |d|.
+///  - Vertex against vertex, d apart, where all edges from there lead away: told by signs of products e . d that are off by
+///    4 u |e| |d|. A wrong one adds at most 4 u L for each edge: the distance is convex, and falls along it by no more than 4 u of the way.
 ///  - Vertex against edge: the weights put the point off its best place by 4 u L. Of the edges round the plane's inside only those are
 ///    looked at that part it from the optimum over the whole plane, where that is sure (sin theta >= 1e-3, differences within 1e4 of one
 ///    another): the true optimum is in one of them, the others are no nearer.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -69,12 +70,17 @@ double rounding_of(const ChartDerivatives& d, const model::Model& model, const s
 }
 
 bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
-    for (std::size_t i = 0; i < d.gradient.size(); ++i)
+    constexpr int blocks_at_once = 256;
+    std::atomic<bool> finite = true;
+    base::parallel_for(static_cast<int>(d.gradient.size()), blocks_at_once, [&](int i) {
+        if (d.gradient[i].allFinite() && d.hessian.diagonal[i].allFinite()) return;
         for (int k = 0; k < 6; ++k)
-            if (dofs.index[i][k] >= 0 && !(std::isfinite(d.gradient[i][k]) && d.hessian.diagonal[i].col(k).allFinite())) return false;
-    for (const kinematics::OffDiagonalBlock& b : d.hessian.off_diagonal)
-        if (!b.block.allFinite()) return false;
-    return true;
+            if (dofs.index[i][k] >= 0 && !(std::isfinite(d.gradient[i][k]) && d.hessian.diagonal[i].col(k).allFinite())) finite = false;
+    });
+    base::parallel_for(static_cast<int>(d.hessian.off_diagonal.size()), blocks_at_once, [&](int k) {
+        if (!d.hessian.off_diagonal[k].block.allFinite()) finite = false;
+    });
+    return finite;
 }
 
 // Of body i.

@@ -31,7 +31,11 @@ class BodyPath {
 public:
     BodyPath(const model::Body& body, const Pose& pose, double from, double to) : body_(body), pose_(pose), from_(from), to_(to) {}
 
+    // None where nothing is prescribed.
     std::vector<Waypoint> waypoints() const {
+        const auto& prescribed = body_.prescribed;
+        if (body_.script.empty() && std::none_of(prescribed.begin(), prescribed.end(), [](const auto& curve) { return bool(curve); }))
+            return {};
         const std::vector<double> inside = changes();
         if (!is_scripted()) return along_curves(inside);
         if (inside.empty()) return {{1, scripted_end()}};
@@ -143,6 +147,7 @@ Vector6 coordinates_at(const std::vector<Waypoint>& way, const Pose& start, doub
 
 std::vector<PrescribedNode> prescribed_path(const model::Model& model, const std::vector<Pose>& poses, double time) {
     std::vector<std::vector<Waypoint>> ways;
+    ways.reserve(poses.size());
     std::vector<double> fractions{1};
     for (std::size_t i = 0; i < poses.size(); ++i) {
         ways.push_back(BodyPath(model.bodies[i], poses[i], time, time + model.timestep).waypoints());
@@ -153,6 +158,7 @@ std::vector<PrescribedNode> prescribed_path(const model::Model& model, const std
     std::vector<PrescribedNode> out;
     for (const double fraction : fractions) {
         out.push_back({fraction, {}});
+        out.back().targets.reserve(poses.size());
         for (std::size_t i = 0; i < poses.size(); ++i) out.back().targets.push_back(coordinates_at(ways[i], poses[i], fraction));
     }
     return out;
