@@ -88,6 +88,7 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
         for (size_t i = 0; i < design.constraints.size(); ++i)
             json["noise"][design.constraints[i].name] = o.noise[static_cast<Eigen::Index>(i) + 1] / design.constraints[i].bounds.unit;
     }
+    json["refused"] = o.refused.empty() ? Json() : Json(o.refused);
     json["rough"] = o.roughest < 0 ? Json() : o.roughest == 0 ? Json("objective") : Json(roughest_name(design, o));
     return json;
 }

@@ -197,7 +197,8 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     auto results = certified(*subject, requests_of(*selection, certify.margin_curve), certify);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
-    certificate.source = subject->source == SubjectSource::trajectory || !subject->files.empty() ? "" : options.subject.path;
+    if (subject->source != SubjectSource::trajectory && subject->files.empty() && !options.certificate.empty())
+        certificate.source = name_from_certificate(options.certificate, options.subject.path);
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     if (baseline) compare_with(*std::move(baseline), report);
     const std::string unit = answers::unit_name(subject->model.length_unit);
@@ -274,7 +275,7 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
     return {app, [options, &common](Console& console) {
-                options->subject.path = options->files.front();
+                options->subject.path = trajectory_in(options->files.front()).value_or(options->files.front());
                 options->subject.more.assign(options->files.begin() + 1, options->files.end());
                 return run_clearance(*options, common, console);
             }};

@@ -317,7 +317,7 @@ double tolerance_of(const RangeQuestion& question, const PairSelection& selectio
 }
 
 Errors write_range_proof(const RangeQuestion& question, core::certificate::RangeCertificate& certificate, const LoadedModel& loaded) {
-    certificate.source = question.path;
+    certificate.source = name_from_certificate(question.certificate, question.path);
     if (Errors errors = core::certificate::write_range_certificate(question.certificate, certificate); !errors.empty()) return errors;
     return core::records::write_trajectory(certificate_trajectory(question.certificate), core::clearance::as_assembled(loaded.model),
                                            loaded.model, loaded.scene_path);

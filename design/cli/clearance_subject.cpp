@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
@@ -147,7 +148,8 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     if (meshes) return {};
     if (!options.more.empty())
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
-    if (!options.unit.empty()) return {{ErrorCode::inconsistent, "--unit", "is of meshes; this file says its own"}};
+    const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // of what is none it is told what it is
+    if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is of meshes; this file says its own"}};
     return {};
 }
 

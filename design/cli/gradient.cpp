@@ -312,7 +312,11 @@ std::string check_text(const Design& design, const CheckReport& report) {
     text += report.sweeps.failure.empty()
                 ? formatted("backwards and forwards through the simulation agree to %.2g\n", report.sweeps.disagreement)
                 : "backwards and forwards not compared: " + report.sweeps.failure + "\n";
-    return text + formatted("largest relative error %.3g, %d simulations\n", report.largest_relative_error, report.simulations) +
+    const bool resolved = std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved; }) &&
+                          std::all_of(report.along.begin(), report.along.end(), [](const auto& row) { return row.resolved; });
+    return text +
+           formatted("largest relative error%s %.3g, %d simulations\n", resolved ? "" : " that noise does not hide",
+                     report.largest_relative_error, report.simulations) +
            contact_changes_text(design, report) + roughness_text(design, report.roughness);
 }
 

@@ -138,6 +138,17 @@ std::string certificate_trajectory(const std::string& certificate) {
     return stem + ".trajectory.json";
 }
 
+std::string name_from_certificate(const std::string& certificate, const std::string& file) {
+    const auto whole = [](const std::filesystem::path& path) { return std::filesystem::absolute(path).lexically_normal(); };
+    const std::filesystem::path full = whole(file), near = full.lexically_relative(whole(certificate).parent_path());
+    const bool below = !near.empty() && *near.begin() != "..";
+    return below ? near.string() : full.string();
+}
+
+std::filesystem::path file_of_certificate(const std::string& certificate, const std::string& name) {
+    return std::filesystem::path(certificate).parent_path() / name;  // a whole path stays as it is
+}
+
 void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings) console.narrate("warning: " + warning);
 }

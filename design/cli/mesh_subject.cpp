@@ -11,6 +11,7 @@
 #include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
@@ -29,12 +30,22 @@ std::vector<std::string> meshes_in(const fs::path& folder) {
     return files;
 }
 
+// Folders below it that hold meshes, which are not looked at.
+std::vector<std::string> folders_left_out(const fs::path& folder) {
+    std::vector<std::string> folders;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code))
+        if (entry.is_directory(code) && !meshes_in(entry.path()).empty()) folders.push_back(entry.path().string());
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
 bool is_3mf(const std::string& path) {
     const std::string extension = fs::path(path).extension().string();
     return extension == ".3mf" || extension == ".3MF";
 }
 
-Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& paths) {
+Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& paths, std::vector<std::string>& warnings) {
     std::vector<std::string> files;
     Errors errors;
     for (const std::string& path : paths) {
@@ -42,7 +53,12 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
         if (fs::is_directory(path, code)) {
             const std::vector<std::string> found = meshes_in(path);
             files.insert(files.end(), found.begin(), found.end());
-            if (found.empty()) errors.push_back({ErrorCode::file_not_found, path, "there is no mesh in this folder"});
+            if (found.empty())
+                errors.push_back({ErrorCode::file_not_found, path,
+                                  "this folder has no mesh (.stl, .obj, .off, .ply, .3mf) and no trajectory.json; folders below it are not "
+                                  "looked into"});
+            for (const std::string& below : folders_left_out(path))
+                warnings.push_back(below + ": the meshes in this folder are left out; name it too if they belong together");
         } else if (file_kind(path) == FileKind::mesh) {
             files.push_back(path);
         } else {
@@ -80,16 +96,24 @@ core::scene::Body body_of(Mesh mesh, const std::string& path, const CommonOption
 
 }  // namespace
 
+std::optional<std::string> trajectory_in(const std::string& path) {
+    std::error_code code;
+    for (const char* name : {"trajectory.json", "trajectory.running.json"})
+        if (fs::exists(fs::path(path) / name, code)) return (fs::path(path) / name).string();
+    return std::nullopt;
+}
+
 bool are_meshes(const std::vector<std::string>& paths) {
     if (paths.empty()) return false;
     std::error_code code;
     const fs::path first = paths.front();
-    if (fs::is_directory(first, code)) return !fs::exists(first / "trajectory.json", code) && !meshes_in(first).empty();
+    if (fs::is_directory(first, code)) return !trajectory_in(first.string());
     return file_kind(paths.front()) == FileKind::mesh;
 }
 
 Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common) {
-    const Result<std::vector<std::string>> files = mesh_files(paths);
+    MeshSubject subject;
+    const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
     if (!files) return files.errors();
     core::scene::Scene scene;
     scene.length_unit = 1e-3;
@@ -99,7 +123,6 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
         if (!metres) return metres.errors();
         scene.length_unit = *metres;
     }
-    MeshSubject subject;
     subject.files = *files;
     std::set<std::string> taken;
     for (const std::string& path : *files) {
@@ -126,14 +149,11 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
 Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate) {
     std::vector<core::certificate::ExportedFile> named;
     Errors errors;
-    const fs::path folder = fs::absolute(certificate).parent_path();
     for (const std::string& file : files) {
         const Result<std::string> bytes = core::files::read_file(file);
         errors.insert(errors.end(), bytes.errors().begin(), bytes.errors().end());
         if (!bytes) continue;
-        const fs::path full = fs::absolute(file).lexically_normal(), near = full.lexically_relative(folder.lexically_normal());
-        const bool below = !near.empty() && *near.begin() != "..";
-        named.push_back({below ? near.string() : full.string(), core::files::hash_of(*bytes), 0});
+        named.push_back({name_from_certificate(certificate, file), core::files::hash_of(*bytes), 0});
     }
     if (!errors.empty()) return errors;
     return named;

@@ -43,6 +43,7 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
                           std::string(p.unit.name).c_str());
     }
     if (!o.improvable.empty()) text += formatted("predicted gain %.3g, %.3g counts\n", o.predicted_gain, o.worth);
+    if (!o.refused.empty()) text += "but designs there cannot be evaluated: " + o.refused + "\n";
     if (o.roughest >= 0) {
         text += formatted("too rough to tell an optimum: noise of %.3g in the objective, most of it by %s, %.3g counts; ",
                           o.noise_in_objective, answers::roughest_name(design, o).c_str(), o.worth);

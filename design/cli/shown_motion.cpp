@@ -22,12 +22,7 @@ const std::vector<std::string> up_names{"x", "-x", "y", "-y", "z", "-z"};
 Result<std::string> file_to_read(const ShownOptions& options, std::string& certificate) {
     const std::string& path = options.path;
     std::error_code code;
-    if (fs::is_directory(path, code) && !are_meshes({path})) {
-        for (const char* name : {"trajectory.json", "trajectory.running.json"})
-            if (fs::exists(fs::path(path) / name, code)) return (fs::path(path) / name).string();
-        return Error{ErrorCode::file_not_found, path,
-                     "this folder has no trajectory.json and no mesh; fettle simulate SCENE --out " + path + " writes a trajectory"};
-    }
+    if (const auto trajectory = trajectory_in(path)) return *trajectory;
     if (!fs::is_directory(path, code) && file_kind(path) == FileKind::certificate) {
         certificate = path;
         return options.trajectory.empty() ? certificate_trajectory(path) : options.trajectory;

@@ -134,12 +134,17 @@ struct SourceCheck {
 
 SourceCheck check_source(const Checked& certificate, const std::string& path, const CommonOptions& common) {
     if (certificate.source.empty()) return {};
-    std::filesystem::path source = certificate.source;
-    if (!std::filesystem::exists(source)) source = std::filesystem::path(path).parent_path() / certificate.source;
+    const std::filesystem::path source = file_of_certificate(path, certificate.source);
     const std::string untold = ": whether its meshes have changed since cannot be told";
     if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
     const Result<LoadedModel> loaded = load_model(source.string(), common, false);
-    if (!loaded) return {false, certificate.source + ", which it was made from, cannot be read" + untold};
+    if (!loaded) {
+        const Error& error = loaded.errors().front();
+        const std::string why = error.where + ": " + error.message;
+        // A file that is not found may be elsewhere (--mesh-dir), a program may not be allowed to run: neither says that something changed.
+        if (error.code == ErrorCode::file_not_found || error.code == ErrorCode::unsupported) return {false, why + untold};
+        return {true, "stale: " + certificate.source + ", which it was made from, can no longer be read: " + why};
+    }
     if (core::records::geometry_hash(loaded->model) != certificate.geometry_hash)
         return {true, "stale: the meshes of " + certificate.source + " have changed since"};
     if (certificate.joints) {
@@ -166,7 +171,7 @@ struct ExportCheck {
 ExportCheck check_exports(const Checked& certificate, const std::string& path) {
     ExportCheck check;
     for (const core::certificate::ExportedFile& exported : certificate.exports) {
-        const std::filesystem::path file = std::filesystem::path(path).parent_path() / exported.file;  // an absolute one stays as it is
+        const std::filesystem::path file = file_of_certificate(path, exported.file);
         const Result<std::string> bytes = core::files::read_file(file);
         const char* status = !bytes ? "not there" : core::files::hash_of(*bytes) == exported.hash ? "same" : "changed";
         check.list.push_back({{"file", exported.file}, {"status", status}, {"rounding", exported.rounding}});

@@ -27,8 +27,8 @@ struct Constraint {
     std::shared_ptr<const Quantity> quantity;
 };
 
-/// max(0, lower - measured.lower, measured.upper - upper) in `unit`s; at least 1 if the measurement has a fault. 0: the requirement is met,
-/// proven.
+/// max(0, lower - measured.lower, measured.upper - upper) in `unit`s; at least 1 if the measurement has a fault, infinity if it is no
+/// number. 0: the requirement is met, proven.
 double violation(const Bounds& bounds, const Measurement& measured);
 
 }  // namespace fettle::design::description

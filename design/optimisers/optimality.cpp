@@ -59,7 +59,7 @@ public:
         moved = false;
         try {
             moved = probe();
-            result_.judged = !moved && solution_.solved && measure_noise();
+            result_.judged = !moved && now_.solution.solved && measure_noise();
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
         tell();
@@ -67,41 +67,53 @@ public:
     }
 
 private:
+    struct Look {
+        QuadraticSolution solution;
+        double radius = 0, gain = 0;
+    };
+
     // @return whether a probe became the best point.
     bool probe() {
         double radius = first_radius;
+        Look refused;  // the last, if its probe could not be evaluated
         for (int k = 0;; ++k) {
             look(radius);
-            if (!solution_.solved || gain_ <= worth_ || k >= most_probes || radius < smallest_radius) return false;
+            if (!now_.solution.solved) return false;
+            if (now_.gain <= worth_ || k >= most_probes || radius < smallest_radius) {
+                if (!result_.refused.empty()) now_ = refused;  // nothing has told that there is no gain
+                return false;
+            }
             const VectorX before = evaluator_.best_point();
-            const Evaluation& seen = evaluator_.at(point_ + solution_.step);
+            const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
+            result_.refused = seen.usable ? std::string() : seen.reason;
+            if (!seen.usable) refused = now_;
             if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
                 return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
                 point_ = evaluator_.best_scaled_point();
                 at_ = evaluator_.best_scaled_evaluation();
             }
-            radius = step_shrink * std::min(radius, seen.usable ? solution_.step.lpNorm<Eigen::Infinity>() : 0.5 * radius);
+            radius = step_shrink * std::min(radius, seen.usable ? now_.solution.step.lpNorm<Eigen::Infinity>() : 0.5 * radius);
         }
     }
 
     void look(double radius) {
         worth_ = least_gain(evaluator_, options_, at_.objective);
-        radius_ = radius;
+        now_.radius = radius;
         at_ = with_telling_derivatives(evaluator_, point_, evaluator_.best_scaled_evaluation());
         const VectorX none = VectorX::Zero(evaluator_.constraints());
-        const VectorX y = solution_.multipliers.size() == none.size() ? smooth_multipliers(solution_) : none;
+        const VectorX y = now_.solution.multipliers.size() == none.size() ? smooth_multipliers(now_.solution) : none;
         RestCurvature rest = curvature_near(evaluator_, point_, at_, y);
-        solution_ = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
-        if (!solution_.solved) return;
-        gain_ = predicted_gain(at_, rest.matrix(), solution_);
+        now_.solution = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
+        if (!now_.solution.solved) return;
+        now_.gain = predicted_gain(at_, rest.matrix(), now_.solution);
     }
 
     // @return whether it could be: a point next to the best one may be none that can be evaluated.
     bool measure_noise() {
         const int m = evaluator_.constraints();
         MatrixX values(noise_values, 1 + m);
-        const VectorX direction = inward(point_), multipliers = whole_multipliers(solution_);
+        const VectorX direction = inward(point_), multipliers = whole_multipliers(now_.solution);
         for (int i = 0; i < noise_values; ++i) {
             const Evaluation& e = evaluator_.look(point_ + i * noise_spacing * direction);
             if (!e.usable) return false;
@@ -114,7 +126,7 @@ private:
             const double scale = q == 0 ? evaluator_.objective_scale() : evaluator_.constraint_scale()[q - 1];
             const NoiseLevel& level = levels[static_cast<size_t>(q)];
             result_.noise[q] = level.noise / scale;
-            const double weight = q == 0 ? 1 : solution_.solved ? std::abs(multipliers[q - 1]) : 0;
+            const double weight = q == 0 ? 1 : now_.solution.solved ? std::abs(multipliers[q - 1]) : 0;
             const double effect = weight * level.noise;
             if (level.status == NoiseStatus::spacing_too_large) continue;  // only a bound on it, made of what is smooth
             if (effect > worth_ && effect > result_.noise_in_objective) result_.roughest = q;
@@ -125,38 +137,38 @@ private:
     }
 
     Held what_holds(Eigen::Index k) const {
-        const double z = solution_.box_multipliers[k], d = solution_.step[k];
+        const double z = now_.solution.box_multipliers[k], d = now_.solution.step[k];
         const bool at_lower = point_[k] + d <= 1e-9, at_upper = point_[k] + d >= 1 - 1e-9;
         const double size = std::max({std::abs(at_.gradient[k]), 1e-12});
         if (std::abs(z) > 1e-6 + telling_share * size && (z > 0 ? at_lower : at_upper))
             return z > 0 ? Held::lower_bound : Held::upper_bound;
-        if (std::abs(d) >= radius_ * (1 - 1e-6) && gain_ > worth_) return Held::free;
-        for (Eigen::Index i = 0; i < solution_.multipliers.size(); ++i)
-            if (std::abs(solution_.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
-        for (Eigen::Index j = 0; j < solution_.cut_multipliers.size() && solution_.cut_of[static_cast<size_t>(j)] >= 0; ++j)
-            if (std::abs(solution_.cut_multipliers[j] * at_.constraint_branches.jacobian(j, k)) > telling_share * size)
+        if (std::abs(d) >= now_.radius * (1 - 1e-6) && now_.gain > worth_) return Held::free;
+        for (Eigen::Index i = 0; i < now_.solution.multipliers.size(); ++i)
+            if (std::abs(now_.solution.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
+        for (Eigen::Index j = 0; j < now_.solution.cut_multipliers.size() && now_.solution.cut_of[static_cast<size_t>(j)] >= 0; ++j)
+            if (std::abs(now_.solution.cut_multipliers[j] * at_.constraint_branches.jacobian(j, k)) > telling_share * size)
                 return Held::constraints;
         return Held::stationary;
     }
 
     void tell() {
-        if (!solution_.solved) return;
+        if (!now_.solution.solved) return;
         const double f = evaluator_.objective_scale();
         const auto n = point_.size();
         result_.worth = worth_ / f;
-        result_.predicted_gain = gain_ / f;
-        result_.radius = radius_;
-        result_.step = solution_.step.cwiseProduct(evaluator_.range());
-        result_.multipliers = whole_multipliers(solution_).cwiseProduct(evaluator_.constraint_scale()) / f;
+        result_.predicted_gain = now_.gain / f;
+        result_.radius = now_.radius;
+        result_.step = now_.solution.step.cwiseProduct(evaluator_.range());
+        result_.multipliers = whole_multipliers(now_.solution).cwiseProduct(evaluator_.constraint_scale()) / f;
         result_.residual = VectorX::Zero(n);
         result_.held.resize(static_cast<size_t>(n));
         for (Eigen::Index k = 0; k < n; ++k) {
             result_.held[static_cast<size_t>(k)] = what_holds(k);
             const Held held = result_.held[static_cast<size_t>(k)];
-            if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = solution_.box_multipliers[k] / f;
+            if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = now_.solution.box_multipliers[k] / f;
         }
-        if (gain_ <= worth_) return;
-        const VectorX share = (solution_.box_multipliers.cwiseProduct(solution_.step)).cwiseAbs();
+        if (now_.gain <= worth_) return;
+        const VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
         std::vector<int> order(static_cast<size_t>(n));
         std::iota(order.begin(), order.end(), 0);
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
@@ -168,8 +180,8 @@ private:
     const OptimiserOptions& options_;
     VectorX point_;
     Evaluation at_;
-    QuadraticSolution solution_;
-    double radius_ = 0, gain_ = 0, worth_ = 0;
+    Look now_;
+    double worth_ = 0;
     Optimality result_;
 };
 

@@ -6,10 +6,12 @@
 /// tolerance, the design is optimal. Where it is not, the step is tried: a gain that comes true is kept, and the run goes on from there; a
 /// gain that does not teaches the model, and the step is shortened. Where a clearance has several witnesses near its least one, the step
 /// keeps them all, and a term of the objective that is the greatest of several is taken as that: at a kink no single derivative tells.
-/// Values that scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show
-/// no optimum, whatever the derivatives say.
+/// A step that promises a gain and leads to designs that cannot be evaluated, however short it is made, shows no optimum either: what
+/// stands in the way is no requirement that was asked for. Values that scatter by more than the tolerance (noise.hpp: the objective's own
+/// noise, and each constraint's times its multiplier) show no optimum, whatever the derivatives say.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "fettle/design/optimisers/optimiser.hpp"
@@ -30,6 +32,7 @@ struct Optimality {
     VectorX multipliers;     ///< m: objective per unit of the bound, > 0: raising the lower bound costs, < 0: lowering the upper one does
     VectorX residual;        ///< n: objective per range that neither bounds nor constraints hold
     std::vector<Held> held;  ///< n
+    std::string refused;     ///< why the designs that this step leads to cannot be evaluated; empty: they can, or it promises nothing
     std::vector<int> improvable;    ///< variables that could still move, largest gain first; empty where the predicted gain does not count
     VectorX noise;                  ///< 1 + m: of objective and constraints; empty: not measured
     double noise_in_objective = 0;  ///< what the noise does to the objective at most

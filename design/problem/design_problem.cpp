@@ -40,6 +40,18 @@ core::model::TermScales term_scales_of(const Model& model) {
     return scales;
 }
 
+bool is_finite(const adjoint::TrajectoryGradient& seed) {
+    const auto is_finite_row = [](const auto& row) {
+        return std::all_of(row.begin(), row.end(), [](const auto& x) { return x.allFinite(); });
+    };
+    for (const auto* rows : {&seed.pose_bar, &seed.velocity_bar, &seed.lag_bar})
+        if (!std::all_of(rows->begin(), rows->end(), is_finite_row)) return false;
+    return is_finite_row(seed.multiplier_bar);
+}
+
+std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
+std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
+
 }  // namespace
 
 Result<DesignProblem> DesignProblem::create(Design design) {
@@ -147,9 +159,9 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
         return evaluation;
     }
     measure(evaluation);
-    evaluation.usable = true;
+    evaluation.usable = evaluation.reason.empty();
     evaluation.forward_seconds = forward.seconds();
-    if (options.gradients) {
+    if (options.gradients && evaluation.usable) {
         const Stopwatch backward;
         differentiate(*moved, options.branches, evaluation);
         evaluation.backward_seconds = backward.seconds();
@@ -212,14 +224,21 @@ void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& e
     evaluation.reason = report.message.empty() ? core::stepper::to_string(report.status) : report.message;
 }
 
+// Sets the reason where a value is no finite number. (A bound of it may be infinite: nothing is known on that side.)
 void DesignProblem::measure(DesignEvaluation& evaluation) const {
     const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
+    const auto look_at = [&](const auto& of, const description::Measurement& measured) {
+        if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
+        if (evaluation.reason.empty()) evaluation.reason = name_of(of) + ": its value is no finite number";
+    };
     for (const description::ObjectiveTerm& term : design_.objective) {
         evaluation.terms.push_back(term.quantity->value(simulated));
         evaluation.objective += term.weight * evaluation.terms.back().value / term.unit;
+        look_at(term, evaluation.terms.back());
     }
     for (const auto& constraint : design_.constraints) {
         evaluation.constraints.push_back(constraint.quantity->value(simulated));
+        look_at(constraint, evaluation.constraints.back());
         evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
     }
     for (size_t i = 0; i < design_.relations.size(); ++i) {
@@ -232,13 +251,20 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
     const auto zero = [&] { return adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())); };
     std::vector<adjoint::Seeds> seeds{zero()};
+    const auto refuse = [&](const std::string& reason) {
+        evaluation.usable = false;
+        evaluation.reason = reason;
+    };
+    const std::string no_number = ": its derivative is no finite number";
     for (size_t k = 0; k < design_.objective.size(); ++k) {
         const description::ObjectiveTerm& term = design_.objective[k];
         term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, seeds[0]);
+        if (!is_finite(seeds[0].trajectory_bar)) return refuse(name_of(term) + no_number);
     }
     for (size_t i = 0; i < design_.constraints.size(); ++i) {
         seeds.push_back(zero());
         design_.constraints[i].quantity->add_seeds(simulated, evaluation.constraints[i], 1, seeds.back());
+        if (!is_finite(seeds.back().trajectory_bar)) return refuse(name_of(design_.constraints[i]) + no_number);
     }
     const size_t first_residual = seeds.size();
     std::vector<double> residuals;
@@ -256,14 +282,16 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     for (const QuantityBranches& quantity : branches) add_seeds(quantity, simulated, seeds);
     const Result<std::vector<adjoint::ModelGradient>> gradients =
         adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
-    if (!gradients) {
-        evaluation.usable = false;
-        evaluation.reason = first_reason(gradients.errors());
-        return;
-    }
+    if (!gradients) return refuse(first_reason(gradients.errors()));
     MatrixX rows(static_cast<Eigen::Index>(gradients->size()), parameter_count());
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
         rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+    for (int k = 0; k < parameter_count(); ++k) {
+        const std::string by = ": its derivative by `" + design_.parameters[static_cast<size_t>(k)].name + "` is no finite number";
+        if (!std::isfinite(rows(0, k))) return refuse("objective" + by);
+        for (size_t i = 0; i < design_.constraints.size(); ++i)
+            if (!std::isfinite(rows(static_cast<Eigen::Index>(i) + 1, k))) return refuse(name_of(design_.constraints[i]) + by);
+    }
     evaluation.gradient = rows.row(0).transpose();
     evaluation.jacobian = rows.middleRows(1, static_cast<Eigen::Index>(design_.constraints.size()));
     evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));

@@ -190,17 +190,20 @@ private:
     ParameterDifferences result_;
 };
 
-// a, d: adjoint and difference; floor: what is less is compared at that. All per unit of the parameter's range. What noise leaves open in
-// the difference counts as no error beyond the limit, and as not resolved.
+// a, d: adjoint and difference; floor: what is less is compared at that. All per unit of the parameter's range.
 CheckRow compared(double a, const DifferenceEstimate& d, double floor, double limit) {
-    const double own = std::max({std::abs(a), std::abs(d.value), floor});
-    const double scale = std::max(own, d.noise_error / limit);
+    const double scale = std::max({std::abs(a), std::abs(d.value), floor});
     CheckRow row;
     if (!(scale > 0)) return row;
     row.difference_error = d.error / scale;
     row.relative_error = std::abs(a - d.value) / scale;
-    row.resolved = d.noise_error <= limit * own;
+    row.resolved = d.noise_error <= limit * scale;
     return row;
+}
+
+// What of a row's error cannot be the noise of its difference.
+double told_error(bool resolved, double relative_error, double difference_error) {
+    return resolved ? relative_error : std::max(0.0, relative_error - difference_error);
 }
 
 void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, const std::vector<ParameterDifferences>& found,
@@ -220,7 +223,8 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
             row.adjoint = adjoint(q, k);
             row.difference = estimate.value / ranges[k];
             row.kink = differences.kinks[q] / ranges[k];
-            report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
+            report.largest_relative_error =
+                std::max(report.largest_relative_error, told_error(row.resolved, row.relative_error, row.difference_error));
             report.rows.push_back(std::move(row));
         }
     }
@@ -369,7 +373,9 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
         const VectorX& direction = report.roughness.direction;
         report.along = LineCheck(problem, p, direction, steps, options)
                            .run(quantity_gradients(at) * direction.cwiseProduct(parameter_ranges(problem.design())), count);
-        for (const LineRow& row : report.along) report.largest_relative_error = std::max(report.largest_relative_error, row.relative_error);
+        for (const LineRow& row : report.along)
+            report.largest_relative_error =
+                std::max(report.largest_relative_error, told_error(row.resolved, row.relative_error, row.difference_error));
     }
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(static_cast<size_t>(n));

@@ -56,7 +56,7 @@ struct CheckRow {
     /// Slope above minus slope below [SI], where they differ however small the step: there is no derivative, and the adjoint is that of one
     /// side (witnesses of a clearance that tie ...). 0: nothing of the kind was met.
     double kink = 0;
-    bool resolved = true;  ///< false: noise leaves more open than `limit`, so that nothing is shown
+    bool resolved = true;  ///< false: noise leaves more open than `limit`: an error up to difference_error may be the difference's own
 };
 
 /// The same along the direction of the roughness (the objective's gradient, within the bounds): per unit of t, in shares of the ranges.

@@ -153,6 +153,7 @@ TEST_CASE("A certificate says what it covers, is judged by a minimum, and is sta
                                         box_body("c", "kinematic", "10", "[40, 0, 0]")}));
     const std::string scene = folder.file("small.scene.json"), file = folder.file("fit.certificate.json");
     REQUIRE(run("clearance " + scene + " --minimum 0.3mm --pairs a:b --certificate " + file).code == 0);
+    CHECK(Json::parse(contents(file))["source"] == "small.scene.json");  // from the certificate's folder
     const Answer judged = run("validate " + file + " --minimum 0.3mm --json");
     CHECK(judged.code == 0);
     CHECK(judged.json()["judgement"] == "clear");
@@ -180,6 +181,12 @@ TEST_CASE("A certificate says what it covers, is judged by a minimum, and is sta
     CHECK(changed.code == 1);
     CHECK(changed.json()["status"] == "stale");
     CHECK(changed.says("have changed since"));
+
+    folder.write("small.scene.json", replaced(contents(scene), "\"size_x\": 9", "\"size_x\": -9"));
+    const Answer unreadable = run("validate " + file + " --json");
+    CHECK(unreadable.code == 1);
+    CHECK(unreadable.json()["status"] == "stale");
+    CHECK(unreadable.says("can no longer be read"));
 
     auto empty = nlohmann::ordered_json::parse(contents(file));
     empty["pairs"] = Json::array();

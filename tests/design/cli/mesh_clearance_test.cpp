@@ -78,6 +78,18 @@ TEST_CASE("clearance: a folder of meshes, all pairs of it") {
     CHECK(answer.pair("arm", "lid")["status"] == "clear");
     CHECK(answer.pair("arm", "base")["lower"].get<double>() == Approx(0.012).margin(1e-5));
     CHECK(run("clearance " + boxes.file("cad") + " --unit mm --minimum 1mm --pairs arm:lid").code == 0);
+
+    boxes.write("cad/spare/lid.stl", core::mesh_files::stl_bytes({{"lid", &boxes.b}}));
+    boxes.write("none/notes.txt", "no mesh");
+    CHECK(run("clearance " + boxes.file("cad") + " --unit mm --minimum 0.1mm", true).says("spare: the meshes in this folder are left out"));
+    for (const std::string unit : {" --unit mm", ""}) {
+        const Answer none = run("clearance " + boxes.file("none") + unit + " --json");
+        CHECK(none.code == 3);
+        CHECK(none.json()["errors"][0]["code"] == "file_not_found");
+        CHECK(none.says("this folder has no mesh"));
+    }
+    boxes.write("cad/part.step", "ISO-10303-21;");
+    CHECK(run("clearance " + boxes.file("cad/part.step") + " --unit mm --json").json()["errors"][0]["code"] == "unsupported");
 }
 
 TEST_CASE("clearance: a 3MF's build items are the placement, and names that are taken are numbered") {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 namespace fettle::design::description::constraint_test {
 
@@ -41,6 +42,19 @@ TEST_CASE("a fault is a violation, whatever the numbers") {
     CHECK(violation(at_least(3e-4), {1, 1, 1, {}, "`ball` lies inside the material of `block`"}) == 1);
     CHECK(violation({}, {-1e-3, -1e-3, -1e-3, {}, "so"}) == 1);
     CHECK(violation(at_least(3e-3), {-1e-3, -1e-3, -1e-3, {}, "so"}) == Approx(4));
+}
+
+TEST_CASE("what is no number meets nothing, and infinity no finite bound") {
+    const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+    CHECK(violation(at_least(3e-4), exact(nan)) == infinity);
+    CHECK(violation({}, exact(nan)) == infinity);
+    CHECK(violation(at_least(3e-4), {1e-3, nan, 1e-3, {}, {}}) == infinity);
+    CHECK(violation(at_least(3e-4), {1e-3, 1e-3, nan, {}, {}}) == infinity);
+    CHECK(violation(at_least(3e-4), exact(-infinity)) == infinity);
+    Bounds below;
+    below.upper = 1;
+    CHECK(violation(below, exact(infinity)) == infinity);
+    CHECK(violation(at_least(3e-4), {1e-3, 1e-3, infinity, {}, {}}) == 0);  // nothing is wanted on that side
 }
 
 }  // namespace fettle::design::description::constraint_test

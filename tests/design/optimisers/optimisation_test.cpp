@@ -339,6 +339,29 @@ TEST_CASE("where the noise cannot be measured, nothing is called optimal") {
     CHECK_FALSE(report.optimality.judged);
 }
 
+TEST_CASE("where what promises a gain cannot be evaluated, nothing is called optimal, and the reason is told") {
+    Problem p = rough_bowl(0);
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.usable = x[0] >= 0.3;
+        if (!e.usable) e.reason = "too thin";
+        return e;
+    };
+    for (const std::string& name : {"ipopt", "slsqp", "mma", "cobyla"}) {
+        INFO(name);
+        const OptimiserReport report = run(p, name, tight(80));
+        CHECK(report.status == OptimiserStatus::feasible);
+        CHECK(report.best.objective < 1.3);
+        CHECK(report.optimality.predicted_gain > report.optimality.worth);
+        const std::vector<int>& improvable = report.optimality.improvable;
+        CHECK(std::find(improvable.begin(), improvable.end(), 0) != improvable.end());
+        if (name == "mma" || name == "cobyla") continue;  // may still gain when their rounds end
+        CHECK(report.point[0] == Approx(0.3).margin(0.02));
+        CHECK(report.optimality.refused == "too thin");
+        CHECK(report.optimality.held[0] == Held::free);
+    }
+}
+
 TEST_CASE("noise above the tolerance makes no optimum; below it, it does no harm") {
     OptimiserOptions options;
     options.tolerance = 1e-4;

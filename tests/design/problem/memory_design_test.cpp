@@ -70,6 +70,21 @@ private:
     size_t body_;
 };
 
+// Numbers that need not be any.
+class Numbers : public Quantity {
+public:
+    Numbers(double value, double of_motion, double of_mesh) : value_(value), of_motion_(of_motion), of_mesh_(of_mesh) {}
+    Dimension dimension() const override { return Dimension::length; }
+    Measurement value(const Simulated&) const override { return exact(value_); }
+    void add_seeds(const Simulated&, const Measurement&, double scale, Seeds& seeds) const override {
+        seeds.trajectory_bar.pose_bar.back()[1](2, 3) += scale * of_motion_;
+        seeds.model_bar.bodies[1].vertices_bar(2, 7) += scale * of_mesh_;
+    }
+
+private:
+    double value_, of_motion_, of_mesh_;
+};
+
 core::scene::Body held(const std::string& name, core::scene::BodyType type) {
     core::scene::Body body;
     body.name = name;
@@ -181,6 +196,33 @@ TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differe
     CHECK(outcome->final.usable);
     const auto again = studies::optimise_design(*problem);
     CHECK(same_bits(again->report.point, outcome->report.point));
+}
+
+TEST_CASE("what is no number is no evaluation, and its reason names what it is of") {
+    const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+    struct Case {
+        double value, of_motion, of_mesh;
+        std::string reason;
+    };
+    const Case cases[] = {{nan, 0, 0, ": its value is no finite number"},
+                          {infinity, 0, 0, ": its value is no finite number"},
+                          {0, nan, 0, ": its derivative is no finite number"},
+                          {0, infinity, 0, ": its derivative is no finite number"},
+                          {0, 0, nan, ": its derivative by `height` is no finite number"}};
+    for (const Case& c : cases) {
+        const auto wrong = std::make_shared<Numbers>(c.value, c.of_motion, c.of_mesh);
+        Design constrained = tilted_plate(), aimed = tilted_plate();
+        constrained.constraints.push_back({"wrong", constrained.constraints[0].bounds, wrong});
+        aimed.objective.push_back({"wrong", 1, 1e-3, wrong});
+        for (const auto& [design, name] : {std::pair(&constrained, std::string("constraint `wrong`")), {&aimed, "objective `wrong`"}}) {
+            const auto problem = DesignProblem::create(*design);
+            REQUIRE(problem);
+            const DesignEvaluation at = problem->evaluate(values_of(design->parameters));
+            CHECK_FALSE(at.usable);
+            const bool of_sum = design == &aimed && std::isnan(c.of_mesh);  // of what a model alone moves
+            CHECK(at.reason == (of_sum ? "objective" : name) + c.reason);
+        }
+    }
 }
 
 TEST_CASE("a relation of one's own: the optimiser keeps it") {

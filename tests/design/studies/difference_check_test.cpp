@@ -96,8 +96,9 @@ TEST_CASE("check: nothing against rounding is no error, and noise that hides a g
     for (const CheckRow& row : report.rows) {
         INFO(row.quantity << " " << row.parameter << ": " << row.adjoint << " against " << row.difference << " +- "
                           << row.difference_error);
-        CHECK(row.relative_error <= 1e-5);
         CHECK(row.resolved == (row.quantity != "constraint 3"));
+        CHECK(row.relative_error <= (row.resolved ? 1e-5 : 3 * row.difference_error));
+        CHECK((row.relative_error > 1e-3) == !row.resolved);  // what noise hides is not told as exact
     }
     CHECK(report.simulations <= check_cost(2));
     CHECK(report.roughness.quantities[3].rough);
