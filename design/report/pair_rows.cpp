@@ -58,6 +58,7 @@ Json row_of(const PairClearance& pair, const core::model::Model& model, const co
             {"body_a", pair.a},
             {"body_b", pair.b},
             {"motion", true},
+            {"steps", {0, trajectory.steps.size()}},
             {"minimum", Json()},
             {"lower", pair.lower / millimetre},
             {"upper", std::isfinite(pair.upper) ? Json(pair.upper / millimetre) : Json()},
@@ -130,14 +131,47 @@ float rounded_down(double x) {
 }
 float rounded_up(double x) { return -rounded_down(-x); }
 
+// A lower bound [mm] of some steps.
+struct ProvenRange {
+    StepRange steps;
+    double lower = 0;
+};
+
+// What the rows prove of the two bodies of row `k`.
+std::vector<ProvenRange> proven_ranges(const Json& rows, std::size_t k) {
+    std::vector<ProvenRange> ranges;
+    for (const Json& row : rows)
+        if (row["body_a"] == rows[k]["body_a"] && row["body_b"] == rows[k]["body_b"] && row["lower"].is_number())
+            ranges.push_back({{row["steps"][0].get<int>(), row["steps"][1].get<int>()}, row["lower"].get<double>()});
+    return ranges;
+}
+
+// Of row `k`. Searched to a coarser tolerance than the rows, a curve alone could fall below what is required and proven.
+Json margin_curve(const Json& rows, std::size_t k, const std::vector<core::clearance::MarginInterval>& margin) {
+    const std::vector<ProvenRange> ranges = proven_ranges(rows, k);
+    double least = rows[k]["lower"].get<double>();
+    std::vector<float> low, high;
+    for (const core::clearance::MarginInterval& each : margin) {
+        const double upper = each.upper / millimetre;
+        double lower = each.lower / millimetre;
+        for (const auto& [steps, proven] : ranges)  // one above the upper bound is of another motion
+            if (steps.first <= each.step && each.step < steps.last && proven <= upper) lower = std::max(lower, proven);
+        least = std::min(least, lower);
+        low.push_back(rounded_down(lower));
+        high.push_back(rounded_up(upper));
+    }
+    return {{"pair", k}, {"least", least}, {"lower", packed(low)}, {"upper", packed(high)}};
+}
+
 }  // namespace
 
-Json told_pairs(const Json& pairs, const core::model::Model& model, const std::vector<bool>& motion) {
+Json told_pairs(const Json& pairs, const core::model::Model& model, const std::vector<StepRange>& steps) {
     Json rows = Json::array();
     for (std::size_t k = 0; k < pairs.size() && k < most_pairs; ++k) {
         const Json& pair = pairs[k];
         const auto a = pair.at("a").get<std::string>(), b = pair.at("b").get<std::string>();
         const Json witness = member(pair, "witness"), measured = member(pair, "measured");
+        const StepRange range = k < steps.size() ? steps[k] : StepRange{};
         const Json time = witness.is_object() ? member(witness, "time") : member(pair, "time");
         Json note = member(pair, "reason");
         if (note.is_null()) note = member(pair, "overlap");
@@ -147,7 +181,8 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
                         {"b", b},
                         {"body_a", index_of(model, pair.value("body_a", a))},
                         {"body_b", index_of(model, pair.value("body_b", b))},
-                        {"motion", k < motion.size() && motion[k]},
+                        {"motion", range.last > range.first},
+                        {"steps", {range.first, range.last}},
                         {"minimum", millimetres(member(pair, "minimum"))},
                         {"lower", millimetres(member(pair, "lower"))},
                         {"upper", millimetres(member(pair, "upper"))},
@@ -198,13 +233,7 @@ Json margin_curves(const Json& rows, const core::model::Model& model, const core
         options.margin_curve = true;
         const auto found = core::clearance::certify_clearance(model, trajectory, {{a, b, 0}}, options);
         const auto& margin = found.front().margin;
-        if (margin.size() != stretches) continue;
-        std::vector<float> low, high;
-        for (const core::clearance::MarginInterval& each : margin) {
-            low.push_back(rounded_down(each.lower / millimetre));
-            high.push_back(rounded_up(each.upper / millimetre));
-        }
-        curves.push_back({{"pair", k}, {"lower", packed(low)}, {"upper", packed(high)}});
+        if (margin.size() == stretches) curves.push_back(margin_curve(rows, k, margin));
     }
     if (curves.empty()) return {};
     return {{"time", packed(times)}, {"pairs", curves}};

@@ -13,13 +13,20 @@ namespace fettle::design::report {
 /// So many rows at most are told of, and of so many the curve over time.
 inline constexpr std::size_t most_pairs = 200, most_margins = 8;
 
-/// A row {a, b, body_a, body_b: indices, -1: none, motion, minimum: null if none is required, lower, upper: null if not measured, status,
-/// finding, time [s], point_a, point_b: null if not measured, poses, note} of each pair of an answer (docs/interface.md), up to most_pairs.
+/// Steps [first, last) of the motion that bounds are of; none: as assembled.
+struct StepRange {
+    int first = 0, last = 0;
+};
+
+/// A row {a, b, body_a, body_b: indices, -1: none, motion, steps: [first, last), minimum: null if none is required, lower, upper: null if
+/// not measured, status, finding, time [s], point_a, point_b: null if not measured, poses, note} of each pair of an answer
+/// (docs/interface.md), up to most_pairs.
 /// Of a pair over the ranges of joints `poses` are those of all bodies where it is worst (seven numbers of each, as moving_parts.hpp has
 /// them), else null, and the note says where that is.
 /// @param pairs   `pairs` of `fettle clearance`, or of `clearance` of `fettle optimise`.
-/// @param motion  per pair: is it over the motion?
-nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model, const std::vector<bool>& motion);
+/// @param steps  per pair.
+nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model,
+                                  const std::vector<StepRange>& steps);
 
 /// Such rows of a simulation, which has none of its own: of the pairs that come nearest to each other, the nearest first; empty if none may
 /// collide. Their bounds are certified.
@@ -27,9 +34,9 @@ nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const cor
 nlohmann::ordered_json nearest_pairs(const core::model::Model& model, const core::stepper::Trajectory& trajectory, double least,
                                      const std::function<bool()>& should_stop);
 
-/// {time f64 [s]: where each stretch of the path begins, and where the last one ends; pairs: list of {pair: index of a row, lower f32,
-/// upper f32: certified for each stretch}} of the first rows over the motion; null if there are none. In single precision lower bounds are
-/// rounded down and upper ones up.
+/// {time f64 [s]: where each stretch of the path begins, and where the last one ends; pairs: list of {pair: index of a row, least: proven
+/// over all stretches, lower f32, upper f32: certified for each stretch}} of the first rows over the motion; null if there are none. Lower
+/// bounds are no less than what rows of the same bodies prove of the same steps. In single precision they are rounded down, upper ones up.
 nlohmann::ordered_json margin_curves(const nlohmann::ordered_json& rows, const core::model::Model& model,
                                      const core::stepper::Trajectory& trajectory, const std::function<bool()>& should_stop);
 

@@ -64,14 +64,19 @@ void add_optimisation(Json& data, const ReportSource& source) {
                                                 : Json();
 }
 
-// Which of an answer's pairs are over the motion.
-std::vector<bool> over_motion(const ReportSource& source, std::size_t pairs) {
-    if (source.kind == ReportKind::clearance) return std::vector<bool>(pairs, member(source.result, "motion") == true);
-    std::vector<bool> motion;
-    for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>())
-        if (dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr)
-            motion.push_back(!constraint.quantity->is_at_rest());
-    return motion;
+// Of what steps of the motion an answer's pairs are.
+std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
+    const auto all = static_cast<int>(source.motion->trajectory.steps.size());
+    if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
+    std::vector<StepRange> steps;
+    for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>()) {
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
+        if (clearance == nullptr) continue;
+        const quantities::ClearanceRange& range = clearance->range();
+        const auto [first, last] = quantities::window_steps(all, range.window, range.windows);
+        steps.push_back(range.motion ? StepRange{first, last} : StepRange{});
+    }
+    return steps;
 }
 
 Json pairs_of(const ReportSource& source, const std::function<bool()>& should_stop) {
@@ -82,7 +87,7 @@ Json pairs_of(const ReportSource& source, const std::function<bool()>& should_st
     }
     const Json& result = source.result;
     const Json pairs = member(source.kind == ReportKind::clearance ? result : member(result, "clearance"), "pairs");
-    return pairs.is_array() ? told_pairs(pairs, source.motion->model, over_motion(source, pairs.size())) : Json::array();
+    return pairs.is_array() ? told_pairs(pairs, source.motion->model, steps_of(source, pairs.size())) : Json::array();
 }
 
 void add_motion(Json& data, const ReportSource& source, const std::function<bool()>& should_stop) {

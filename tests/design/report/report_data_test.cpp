@@ -188,10 +188,40 @@ TEST_CASE("report: bands of clearance hold the distance, and the nearest pair co
         CHECK(upper[k] >= least - 1e-9);
         CHECK(upper[k] - lower[k] < 0.3);
     }
+    CHECK(curves["pairs"][0]["least"].get<double>() <= rows[0]["lower"].get<double>());
     // Asked to stop, bounds are wider, and hold.
     const Json stopped = nearest_pairs(motion.model, motion.trajectory, 5e-3, [] { return true; });
     for (const Json& row : stopped) CHECK(row["lower"].get<double>() <= 200);
     CHECK(margin_curves(Json::array(), motion.model, motion.trajectory, go_on).is_null());
+}
+
+TEST_CASE("report: a band is nowhere below what is proven of the same steps") {
+    Motion motion = parting_cubes(20);
+    for (core::model::Body& body : motion.model.bodies) body.type = core::scene::BodyType::dynamic_body;
+    const Json rows = nearest_pairs(motion.model, motion.trajectory, 5e-3, go_on);
+    const auto curve_of = [&](const Json& told) { return margin_curves(told, motion.model, motion.trajectory, go_on)["pairs"][0]; };
+    const auto lower_of = [](const Json& curve) { return unpacked<float>(curve["lower"], "f32"); };
+    const std::vector<float> alone = lower_of(curve_of(rows));
+    Json whole = rows;
+    whole[0]["lower"] = 4.9999999;  // of 5 at the start
+    const Json raised = curve_of(whole);
+    CHECK(raised["least"] == 4.9999999);
+    for (const float lower : lower_of(raised)) CHECK(lower >= 4.99999);
+    CHECK(lower_of(raised).front() <= 4.9999999);
+    // Of a part of the motion: a row more of the same bodies, 5 + 20 * 0.1 apart when it begins.
+    Json part = rows;
+    part.push_back(rows[0]);
+    part.back()["steps"] = {10, 20};
+    part.back()["lower"] = 6.9999999;
+    const std::vector<float> late = lower_of(curve_of(part));
+    REQUIRE(late.size() == alone.size());
+    CHECK(late.front() == alone.front());
+    CHECK(late[late.size() / 2] >= 6.99999);
+    // What cannot be of this motion changes nothing.
+    Json wrong = rows;
+    wrong.push_back(rows[0]);
+    wrong.back()["lower"] = 100;
+    CHECK(lower_of(curve_of(wrong)) == alone);
 }
 
 TEST_CASE("report: rows of a design, what is required in mm, what it costs per mm") {

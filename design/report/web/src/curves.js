@@ -19,7 +19,7 @@ export function marginPlot(parent, data, pick) {
     lines.push({ name: "", values: ended(margin.lower), style: "step", colour: k, edge: true, with: upper });
     bands.push([upper, upper + 1]);
   });
-  const required = [...new Set(margins.pairs.map((m) => pairs[m.pair].minimum).filter((m) => m > 0))];
+  const required = [...new Set(margins.pairs.map((m) => pairs[m.pair]).filter((pair) => pair.minimum > 0 && pair.status !== "contact").map((pair) => pair.minimum))];
   for (const minimum of required)
     lines.push({ name: `required ${withUnit(number(minimum), "mm")}`, values: margins.time.length ? asList(margins.time).map(() => minimum) : [], dash: true, muted: required.length > 0, silent: true });
   const tops = most(lines.flatMap((line) => line.values)), positive = least(lines.flatMap((line) => line.values.filter((v) => v !== null)));
@@ -27,7 +27,7 @@ export function marginPlot(parent, data, pick) {
   new Plot(parent, asList(margins.time), {
     title: "Clearance over the motion", note: log ? "certified band, logarithmic" : "certified band: lower to upper bound", unit: "mm", quantity: "distance", x: { label: "time [s]", time: true },
     lines, bands, log, yRange: log ? undefined : (u, low, high) => [Math.min(0, low), high * 1.08], onPick: pick, height: 260,
-    summary: margins.pairs.map((m) => `${pairs[m.pair].a} and ${pairs[m.pair].b}: at least ${withUnit(lowerBound(least(asList(m.lower))), "mm")}`).join("; ") + ".",
+    summary: margins.pairs.map((m) => `${pairs[m.pair].a} and ${pairs[m.pair].b}: at least ${withUnit(lowerBound(m.least), "mm")}`).join("; ") + ".",
   });
 }
 

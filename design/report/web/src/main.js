@@ -29,13 +29,16 @@ function section(title, intro, ...children) {
   return made;
 }
 
+// Words that a line's end does not cut at their hyphens.
+const wholeWords = (text) => text.split(" ").flatMap((word, k) => [k ? " " : "", element("span", { class: "word" }, word)]);
+
 function fillFooter(data) {
   const lines = [];
-  if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, data.command)));
+  if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, ...wholeWords(data.command))));
   lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. Folder: `, element("code", {}, data.folder)));
   const files = data.files.flatMap((name, k) => [k ? ", " : "", element("a", { href: name, download: name }, name), words.fileWords[name] ? ` (${words.fileWords[name]})` : ""]);
   if (files.length) lines.push(element("p", { id: "files" }, "Beside this page: ", ...files, "."));
-  lines.push(element("p", {}, "Proven: a bound that holds over the whole continuous motion of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm."));
+  lines.push(element("p", {}, words.provenWords(data)));
   byId("footer").append(...lines);
 }
 
@@ -57,7 +60,7 @@ function fillSections(data, motion) {
     section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
   } else if (data.pairs.length) {
     const shown = data.ranges ? " A row shows its worst position in the picture above." : " A row shows its narrowest gap in the picture above.";
-    const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : `Worst first.${shown}`;
+    const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : `Worst first.${data.pairs.some((pair) => pair.status === "contact") ? " Contact: near enough to push each other, not judged." : ""}${shown}`;
     section("Clearances", data.pair_count > data.pairs.length ? `${intro} ${data.pair_count - data.pairs.length} more pairs are in result.json.` : intro, pairTable(data, show));
   }
   const figures = () => element("div", { class: "figures" });

@@ -4,7 +4,7 @@ import * as THREE from "three";
 
 import { indexAt } from "./data.js";
 import { announce, byId, element } from "./dom.js";
-import { seconds, upperBound, withUnit } from "./numbers.js";
+import { seconds, spaced, upperBound, withUnit } from "./numbers.js";
 import { Viewer } from "./viewer.js";
 
 const playIcon = "M4 2.2v11.6L13.5 8z", pauseIcon = "M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z";
@@ -248,7 +248,7 @@ class Motion {
     viewer.fly(middle, tilt, height / (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)));
     this.seek(time);
     this.highlight();
-    announce(`Shown: ${pair.a} and ${pair.b}, ${withUnit(upperBound(pair.upper), "mm")} apart ${pair.poses ? pair.note ?? "at the start" : `at ${seconds(time, this.data.step)}`}`);
+    announce(`Shown: ${pair.a} and ${pair.b}, ${withUnit(upperBound(pair.upper), "mm")} apart ${pair.poses ? spaced(pair.note ?? "at the start") : `at ${seconds(time, this.data.step)}`}`);
     byId("viewport").scrollIntoView({ block: "nearest" });
   }
 

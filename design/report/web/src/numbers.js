@@ -31,4 +31,7 @@ export function seconds(t, step = 0.01) {
   return `${minus(t.toFixed(decimals))}\u00a0s`;
 }
 
+// A text of the program's with numbers: minus signs, and numbers that stay with their units.
+export const spaced = (text) => text.replace(/ -(?=\d)/g, " \u2212").replace(/(\d) (?=(?:deg|mm)\b)/g, "$1\u00a0");
+
 export const plural = (n, one, many = one + "s") => `${n}\u00a0${n === 1 ? one : many}`;

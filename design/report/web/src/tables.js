@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
 import { element } from "./dom.js";
-import { lowerBound, number, plural, seconds, upperBound, withUnit } from "./numbers.js";
+import { lowerBound, number, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
 import { heldWords, spansMuch, startName } from "./words.js";
 
 function tableOf(label, headings, rows) {
@@ -21,18 +21,18 @@ const pairName = (pair) => `${pair.a} \u2013 ${pair.b}`;
 function opener(text, small, pair, show) {
   const shown = pair !== null && pair !== undefined && show.can(pair);
   const name = shown ? element("button", { type: "button", class: "row-button", "data-pair": pair, onclick: () => show(pair) }, text) : text;
-  return element("td", {}, name, small ? element("small", {}, small) : null);
+  return element("td", {}, name, small ? element("small", {}, spaced(small)) : null);
 }
 
 export function pairTable(data, show) {
-  const required = data.pairs.some((pair) => pair.minimum !== null);
-  const headings = [["Pair"], ...(required ? [["Required", "num"]] : []), ["Proven at least", "num"], ["At most", "num"], ["When", "num"], ["Verdict"]];
+  const required = data.pairs.some((pair) => pair.minimum !== null), timed = data.pairs.some((pair) => pair.motion && pair.time !== null);
+  const headings = [["Pair"], ...(required ? [["Required", "num"]] : []), ["Proven at least", "num"], ["At most", "num"], ...(timed ? [["When", "num"]] : []), ["Verdict"]];
   const rows = data.pairs.map((pair, k) => element("tr", { "data-pair": k },
     opener(pairName(pair), pair.note, k, show),
     required ? cell("Required", "num", withUnit(number(pair.minimum), "mm")) : null,
     cell("Proven at least", "num", withUnit(lowerBound(pair.lower), "mm")),
     cell("At most", "num", withUnit(upperBound(pair.upper), "mm")),
-    cell("When", "num", pair.time === null || !pair.motion ? "\u2013" : seconds(pair.time, data.step)),
+    timed ? cell("When", "num", pair.time === null || !pair.motion ? "\u2013" : seconds(pair.time, data.step)) : null,
     cell("Verdict", "", status(pair.finding ?? pair.status))));
   return tableOf("Clearances of pairs", headings, rows);
 }
@@ -71,8 +71,8 @@ export function parameterTable(data) {
     cell("Start", "num", withUnit(number(p.start), p.unit)),
     cell("End", "num", withUnit(number(p.end), p.unit)),
     cell("Bounds", "num", `${number(p.lower)} to ${withUnit(number(p.upper), p.unit)}`),
-    cell("", "wide", rangeDrawing(p)),
-    cell("Held by", "", p.held ? heldWords[p.held] ?? p.held : "\u2013", p.step ? element("small", {}, `could move by ${withUnit(number(p.step, 3), p.unit)}`) : null)));
+    cell("Within them", "", rangeDrawing(p)),
+    cell("Held by", "wide", p.held ? heldWords[p.held] ?? p.held : "\u2013", p.step ? element("small", {}, `could move by ${withUnit(number(p.step, 3), p.unit)}`) : null)));
   return tableOf("Parameters", [["Parameter"], ["Start", "num"], ["End", "num"], ["Bounds", "num"], ["Within them"], ["Held by"]], rows);
 }
 
@@ -103,7 +103,7 @@ export function startTable(data) {
       element("td", {}, startName(s), s.taken ? element("small", {}, "taken") : null),
       cell("Verdict", "", status(words[s.status] ?? s.status)),
       cell(data.repair ? "Change" : "Objective", "num", number(least(s))),
-      cell("", "wide", known ? startDot(place(least(s)), met, s.taken) : "\u2013"),
+      cell("Among all", "", known ? startDot(place(least(s)), met, s.taken) : "\u2013"),
       cell("Away", "num", s.taken || s.away === null ? "\u2013" : `${number(100 * s.away, 2)}\u00a0%`),
       cell("Simulations", "num", number(s.evaluations)),
       cell("Limited by", "whole", why || "\u2013"));

@@ -12,7 +12,29 @@ const palette = {
   light: ["#cc9168", "#7f9f8a", "#c9aa5b", "#8489b3", "#6c9fb0", "#b97f8b", "#9aa566", "#a88a9f", "#87947f", "#a7815a"],
   dark: ["#c98f66", "#86a892", "#c9ab62", "#9096c4", "#74a9bb", "#c28894", "#a2ad70", "#b094a8", "#93a08b", "#b08b65"],
 };
-const stone = { light: "#cbc6ba", dark: "#8d8a84" };
+// Of what is fixed: pale, the first as stone.
+const pale = {
+  light: ["#cbc6ba", "#b4c0cd", "#d0b6a8", "#b8c4a4", "#c6b7cc", "#dacd9f"],
+  dark: ["#8d8a84", "#75828f", "#91786b", "#7b8766", "#87788c", "#988b5e"],
+};
+
+// Number `index` of a list that begins anew, each time lighter.
+function shade(list, index) {
+  const round = Math.floor(index / list.length) % 3, space = THREE.LinearSRGBColorSpace;
+  const colour = new THREE.Color().setStyle(list[index % list.length], space);
+  return `#${colour.lerp(new THREE.Color(1, 1, 1), round / 3).getHexString(space)}`;
+}
+
+// What is fixed is pale beside what moves; where nothing moves, nothing is.
+function partColours(bodies, theme) {
+  const nothingMoves = bodies.every((body) => body.type === "static");
+  const counts = new Map();
+  return bodies.map((body) => {
+    const list = (body.type === "static" && !nothingMoves ? pale : palette)[theme], index = counts.get(list) ?? 0;
+    counts.set(list, index + 1);
+    return shade(list, index);
+  });
+}
 
 export class Viewer {
   constructor(canvas, overlay, data) {
@@ -53,9 +75,7 @@ export class Viewer {
   }
 
   paint(dark) {
-    let moving = 0;
-    const colours = palette[dark ? "dark" : "light"];
-    this.colours = this.bodies.map((body) => (body.type === "static" ? stone[dark ? "dark" : "light"] : colours[moving++ % colours.length]));
+    this.colours = partColours(this.bodies, dark ? "dark" : "light");
     this.materials.forEach((each, i) => each.paint(this.colours[i], dark));
     shared.faded.value.setStyle(dark ? "#22262c" : "#eae7e0", THREE.LinearSRGBColorSpace);
     this.draw();

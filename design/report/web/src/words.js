@@ -63,7 +63,7 @@ function cleared(data) {
   const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
   const total = data.pair_count ?? pairs.length;
   const pushing = of("contact").length, judged = total - pushing;
-  const others = pushing ? ` ${plural(pushing, "pair pushes", "pairs push")} each other and ${pushing === 1 ? "is" : "are"} not judged.` : "";
+  const others = pushing ? ` The bodies of ${plural(pushing, "pair")} push each other: ${pushing === 1 ? "it is" : "they are"} not judged.` : "";
   switch (data.status) {
     case "clear":
       return required.length
@@ -92,8 +92,9 @@ export function facts(data) {
   if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
-  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints' ranges" : data.motion ? "over the motion" : "as assembled"]);
-  if (data.kind !== "optimise") rows.push(["Parts", String(data.views[0]?.bodies.length ?? 0), `${data.views[0]?.bodies.filter((b) => b.type !== "static").length ?? 0} of them not fixed`]);
+  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints\u2019 ranges" : data.motion ? "over the motion" : "as assembled"]);
+  const bodies = data.views[0]?.bodies ?? [], free = bodies.filter((body) => body.type !== "static").length;
+  if (data.kind !== "optimise") rows.push(["Parts", String(bodies.length), free ? `${free} of them not fixed` : data.motion ? "all fixed" : "as they lie"]);
   return rows;
 }
 
@@ -101,9 +102,15 @@ export function facts(data) {
 export const fileWords = {
   "motion.glb": "the animation, for browsers, Blender and slicers",
   "design.final.json": "the design as it ended, to go on from",
-  "trajectory.json": "the motion, for every other command",
+  "trajectory.json": "parts and motion, for every other command",
   "result.json": "this answer, for programs",
 };
+
+// What is proven, and what is not.
+export function provenWords(data) {
+  const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
+  return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm.`;
+}
 
 // Is a logarithmic scale wanted?
 export const spansMuch = (numbers) => Math.min(...numbers) > 0 && Math.max(...numbers) > 100 * Math.min(...numbers);
