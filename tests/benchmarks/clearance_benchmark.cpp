@@ -5,8 +5,8 @@
 // All 45 pairs are certified, as the program does by default. Before a time counts, the bounds are checked: lower <= the least distance at
 // the ends of the steps (searched one by one), upper attained at its witness (evaluated here in long double), the gap within the tolerance.
 // Then once more with a certificate, which is checked. Prints JSON, seconds of the processor. Arguments: steps (200), links (10).
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <string>
 
@@ -113,8 +113,12 @@ std::vector<double> least_at_nodes(const model::Model& model, const stepper::Tra
 
 int main(int argc, char** argv) {
     const base::ThreadLimit one_thread(1);
-    const int steps = argc > 1 ? std::atoi(argv[1]) : 200;
-    const model::Model model = chain(argc > 2 ? std::atoi(argv[2]) : 10);
+    int steps = 200, links = 10;
+    CLI::App app("Certifying the motion of a chain of rings against simulating it; prints JSON.");
+    app.add_option("steps", steps, "time steps")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("links", links, "rings of 5,000 triangles")->check(CLI::Range(2, 1000))->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    const model::Model model = chain(links);
     std::size_t triangles = 0;
     std::vector<PairRequest> pairs;
     for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a) {

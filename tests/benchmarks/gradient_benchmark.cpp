@@ -6,6 +6,7 @@
 // gradient is checked: along one random direction in the vertices by the tangent sweep, to 1e-6.
 // Times are the least of several; the growth is that of the processor's. Prints JSON. Arguments: steps (40), the folder of the examples.
 #include <sys/resource.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -130,8 +131,13 @@ double peak_megabytes() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int steps = argc > 1 ? std::atoi(argv[1]) : 40;
-    const model::Model model = flagship(argc > 2 ? argv[2] : "examples");
+    int steps = 40;
+    std::string examples = "examples";
+    CLI::App app("The slider-crank's gradient beside its simulation; prints JSON.");
+    app.add_option("steps", steps, "time steps")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("examples", examples, "their folder")->check(CLI::ExistingDirectory)->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    const model::Model model = flagship(examples);
     stepper::SimulationOptions options;
     options.steps = steps;
     options.for_gradient = true;

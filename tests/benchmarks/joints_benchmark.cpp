@@ -3,6 +3,7 @@
 // simulation and as for gradients) and backward, and a four-bar that a motor turns. Milliseconds of the clock per step. Before a time
 // counts, the answer is checked: joints met to 1e-9 of the scene's size, energy that does not grow, the four-bar's tip by trigonometry.
 // Prints JSON. Arguments: links of the longest chain (1000), steps (200).
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -157,7 +158,11 @@ bool four_bar_row() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int longest = argc > 1 ? std::atoi(argv[1]) : 1000, steps = argc > 2 ? std::atoi(argv[2]) : 200;
+    int longest = 1000, steps = 200;
+    CLI::App app("Steps of a chain of hinges and of a four-bar; prints JSON.");
+    app.add_option("links", longest, "of the longest chain")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("steps", steps, "time steps")->check(CLI::PositiveNumber)->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
     std::printf("{\n  \"chain\": [\n");
     bool right = true;
     for (const int links : {longest / 100, longest / 10, longest}) {

@@ -4,11 +4,11 @@
 // twice). A bumpy torus; with a mesh file as second argument, that mesh too, its triangles as the file has them. Before a time counts, the
 // answer is checked: volume and area by Pappus' theorems (smooth torus), soundness, boxes that hold their elements. Prints JSON.
 // Arguments: triangles (1000000), mesh file.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <functional>
 #include <limits>
@@ -144,16 +144,22 @@ void run_phases(const std::string& name, const geometry::Mesh& mesh, std::option
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int wanted = argc > 1 ? std::atoi(argv[1]) : 1'000'000, n = std::max(8, static_cast<int>(std::sqrt(wanted)));
+    int wanted = 1'000'000;
+    std::string file;
+    CLI::App app("What a start costs, by phase; prints JSON.");
+    app.add_option("triangles", wanted, "of a bumpy torus")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("mesh", file, "that too")->check(CLI::ExistingFile);
+    CLI11_PARSE(app, argc, argv);
+    const int n = std::max(8, static_cast<int>(std::sqrt(wanted)));
     std::printf("{\"threads\": %d, \"meshes\": [\n", base::thread_count());
     run_phases("torus", torus(n, std::max(8, wanted / 2 / n), 0), 2 * M_PI * M_PI * 0.02 * 0.006 * 0.006);
     std::printf(",\n");
     run_phases("bumpy torus", torus(n, std::max(8, wanted / 2 / n), 0.2), std::nullopt);
-    if (argc > 2) {
-        const auto read = mesh_files::read_mesh(argv[2]);
+    if (!file.empty()) {
+        const auto read = mesh_files::read_mesh(file);
         if (!read) return std::fprintf(stderr, "%s\n", read.errors().front().message.c_str()), 2;
         std::printf(",\n");
-        run_phases(argv[2], *read, std::nullopt);
+        run_phases(file, *read, std::nullopt);
     }
     std::printf("\n]}\n");
 }
