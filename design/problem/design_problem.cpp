@@ -201,6 +201,7 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     rows.jacobian.resize(rows.values.size(), parameter_count());
     for (Eigen::Index i = 0; i < rows.jacobian.rows(); ++i)
         rows.jacobian.row(i) = pull_back(*moved, *model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+    if (!rows.values.allFinite() || !rows.jacobian.allFinite()) return std::nullopt;
     return rows;
 }
 

@@ -71,7 +71,8 @@ public:
 
     /// Indices of the constraints that a simulation changes nothing of.
     std::vector<int> rest_constraints() const;
-    /// Their values and Jacobian at p, without a simulation; nothing where the parts cannot be made or intersect.
+    /// Their values and Jacobian at p, without a simulation; nothing where the parts cannot be made or intersect, or a
+    /// number is not finite.
     std::optional<optimisers::Rows> rest_rows(const VectorX& p) const;
 
     /// The same design with contact of another width dhat [m], and the stiffness that goes with it.
