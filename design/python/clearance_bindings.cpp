@@ -2,6 +2,7 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
@@ -30,11 +31,17 @@ std::vector<PairRequest> pairs_that_may_collide(const Model& model, double minim
 }
 
 void check_request(const Model& model, const Trajectory& trajectory, const std::vector<PairRequest>& pairs, bool motion) {
-    if (trajectory.body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
-    if (motion && trajectory.steps.empty()) throw py::value_error("the trajectory has no steps, and so no motion");
-    for (const PairRequest& pair : pairs) {
+    check_same_bodies(trajectory, model);
+    if (motion && trajectory.steps.empty())
+        refuse(ErrorCode::inconsistent, "trajectory", "it has no steps, and so no motion; without one, parts are judged as assembled");
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const PairRequest& pair = pairs[k];
+        const std::string where = "pairs/" + std::to_string(k);
         body_at(model, pair.a), body_at(model, pair.b);
-        if (pair.a == pair.b) throw py::value_error("a pair is of two bodies");
+        if (pair.a == pair.b) refuse(ErrorCode::inconsistent, where, "a pair is of two bodies; both are " + std::to_string(pair.a));
+        check_at_least(where + "/minimum", pair.minimum, 0);
+        if (!(pair.far > 0 && pair.far >= pair.minimum))
+            refuse(ErrorCode::out_of_range, where + "/far", "it must be greater than 0, and at least the pair's minimum");
     }
 }
 
@@ -77,7 +84,7 @@ void bind_clearance(py::module_& module) {
         .def(
             "check",
             [](const Certificate& self, const Model& model, const Trajectory& trajectory) {
-                if (trajectory.body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
+                check_same_bodies(trajectory, model);
                 const py::gil_scoped_release unlocked;
                 return core::certificate::check_certificate(self, model, trajectory);
             },
@@ -87,6 +94,8 @@ void bind_clearance(py::module_& module) {
         [](const Model& model, const std::shared_ptr<Trajectory>& trajectory, const std::optional<std::vector<PairRequest>>& pairs,
            double minimum, double tolerance, bool margin_curve, const std::shared_ptr<Certificate>& certificate,
            const py::object& progress) {
+            check_at_least("minimum", minimum, 0);
+            check_above("tolerance", tolerance, 0);
             const std::shared_ptr<Trajectory> path = or_as_assembled(trajectory, model);
             ClearanceOptions options;
             options.tolerance = tolerance;

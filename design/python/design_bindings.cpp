@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -17,7 +19,11 @@ namespace {
 std::function<RelationValue(const VectorX&)> relation_function(py::handle callable) {
     return [function = shared_object(callable)](const VectorX& p) {
         const py::gil_scoped_acquire locked;
-        const auto [value, gradient] = (*function)(p).cast<std::pair<double, VectorX>>();
+        const py::object answer = (*function)(p);
+        py::detail::make_caster<std::pair<double, VectorX>> found;
+        if (!found.load(answer, true))
+            refuse(ErrorCode::wrong_type, "Relation.at()", "returned " + shown(answer) + "; (value, gradient) is wanted, both in SI");
+        const auto [value, gradient] = py::detail::cast_op<std::pair<double, VectorX>>(found);
         return RelationValue{value, gradient};
     };
 }
@@ -30,12 +36,18 @@ description::Design design_round_trip(description::Design design) { return with_
 
 }  // namespace
 
+void refuse_unit(const std::string& name) {
+    std::vector<std::string_view> known;
+    for (const Unit& unit : core::base::units()) known.push_back(unit.name);
+    refuse(ErrorCode::out_of_range, "unit", "\"" + name + "\" is no unit; " + core::files::did_you_mean(name, known));
+}
+
 Relation relation_from_python(py::handle source) {
     Relation relation;
-    relation.name = source.attr("name").cast<std::string>();
-    relation.bounds = source.attr("bounds").cast<description::Bounds>();
-    relation.tolerance = source.attr("tolerance").cast<double>();
-    relation.formula = source.attr("formula").cast<std::string>();
+    relation.name = member_of<std::string>(source, "Relation", "name");
+    relation.bounds = member_of<description::Bounds>(source, "Relation", "bounds");
+    relation.tolerance = member_of<double>(source, "Relation", "tolerance");
+    relation.formula = member_of<std::string>(source, "Relation", "formula");
     const py::object at = source.attr("at");
     if (!at.is_none()) relation.at = relation_function(at);
     return relation;
@@ -88,8 +100,7 @@ void bind_design(py::module_& module) {
     module.def(
         "design_text",
         [](const reading::DesignFile& file, const VectorX& values, const std::string& directory) {
-            if (values.size() != static_cast<Eigen::Index>(file.design.parameters.size()))
-                throw py::value_error("one value for each parameter");
+            check_point(values, static_cast<Eigen::Index>(file.design.parameters.size()));
             return reading::design_text(file, values, directory);
         },
         py::arg("file"), py::arg("values"), py::arg("directory") = ".",

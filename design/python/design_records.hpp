@@ -12,6 +12,8 @@
 
 namespace fettle::design::python {
 
+[[noreturn]] void refuse_unit(const std::string& name);
+
 description::Relation relation_from_python(pybind11::handle relation);
 pybind11::object relation_to_python(const description::Relation& relation);
 
@@ -31,7 +33,7 @@ public:
         const auto name = source.cast<std::string>();
         if (name.empty()) return true;
         const fettle::Unit* unit = fettle::core::base::find_unit(name);
-        if (unit == nullptr) throw value_error("\"" + name + "\" is no unit");
+        if (unit == nullptr) fettle::design::python::refuse_unit(name);
         value = *unit;
         return true;
     }

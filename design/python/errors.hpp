@@ -5,24 +5,12 @@
 
 #include <pybind11/pybind11.h>
 
-#include <exception>
+#include <string>
 #include <utility>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
+#include "fettle/design/python/raised_errors.hpp"
 
 namespace fettle::design::python {
-
-/// Carries errors to Python. Thrown with or without the interpreter's lock.
-class RaisedErrors : public std::exception {
-public:
-    explicit RaisedErrors(Errors errors) : errors_(std::move(errors)) {}
-    const char* what() const noexcept override { return "fettle.Error"; }
-    const Errors& errors() const { return errors_; }
-
-private:
-    Errors errors_;
-};
 
 template <class T>
 T value_or_raise(Result<T> result) {

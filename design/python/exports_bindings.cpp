@@ -8,6 +8,7 @@
 #include "fettle/design/exports/picture.hpp"
 #include "fettle/design/exports/projection_view.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/report/report_folder.hpp"
@@ -23,7 +24,7 @@ namespace {
 // None: the parts as they are at the start.
 exports::Assembly assembly_of(const Model& model, const Trajectory* trajectory) {
     if (trajectory == nullptr) return exports::assembly_of(model, core::stepper::follow_scripts(model, 0));
-    if (trajectory->body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
+    check_same_bodies(*trajectory, model);
     return exports::assembly_of(model, *trajectory);
 }
 
@@ -42,7 +43,7 @@ struct ExportArguments {
 };
 
 std::vector<std::string> export_files(const Model& model, const Trajectory* trajectory, const ExportArguments& arguments) {
-    if (arguments.every < 1) throw py::value_error("every must be at least 1");
+    check_at_least("every", arguments.every, 1);
     const auto format = static_cast<exports::Format>(index_of(exports::format_names(), arguments.format, "format"));
     exports::ExportOptions options;
     options.arrangement = static_cast<exports::Arrangement>(index_of(exports::arrangement_names(), arguments.arrangement, "arrangement"));
@@ -68,10 +69,14 @@ std::string picture(const Model& model, const Trajectory* trajectory, const Pict
     const exports::Assembly assembly = assembly_of(model, trajectory);
     const int count = trajectory == nullptr ? 1 : static_cast<int>(trajectory->poses.size());
     const int t = arguments.t < 0 ? arguments.t + count : arguments.t;
-    if (t < 0 || t >= count) throw py::index_error("the trajectory has no such instant");
+    if (t < 0 || t >= count)
+        throw py::index_error("there is no instant " + std::to_string(arguments.t) + "; there are " + std::to_string(count) +
+                              ", counted from 0");
     const auto [width, height] = arguments.size;
     if (std::min(width, height) < 16 || std::max(width, height) > 16384)
-        throw py::value_error("a picture is from 16 to 16384 pixels wide and high");
+        refuse(
+            ErrorCode::out_of_range, "size",
+            std::to_string(width) + " x " + std::to_string(height) + " is not allowed: a picture is from 16 to 16384 pixels wide and high");
     exports::PictureOptions options;
     options.view = value_or_raise(exports::projection_view(arguments.view, assembly.up, "view"));
     options.width = width;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
@@ -13,6 +14,9 @@ using core::model::Model;
 namespace {
 
 std::shared_ptr<Model> build_model(const core::scene::Scene& scene, std::optional<double> kappa, bool check_start) {
+    if (kappa) check_above("kappa", *kappa, 0);
+    check_above("scene/length_unit", scene.length_unit, 0);
+    check_at_least("scene/max_newton_iterations", scene.max_newton_iterations, 1);
     core::model::BuildOptions options;
     options.kappa = kappa;
     options.check_start = check_start;
@@ -28,7 +32,9 @@ std::vector<std::string> body_names(const Model& model) {
 }  // namespace
 
 const Body& body_at(const Model& model, int body) {
-    if (body < 0 || static_cast<std::size_t>(body) >= model.bodies.size()) throw py::index_error("there is no such body");
+    if (body < 0 || static_cast<std::size_t>(body) >= model.bodies.size())
+        throw py::index_error("there is no body " + std::to_string(body) + "; there are " + std::to_string(model.bodies.size()) +
+                              ", counted from 0");
     return model.bodies[static_cast<std::size_t>(body)];
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/version.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 
@@ -9,7 +10,11 @@ PYBIND11_MODULE(_fettle, module) {
     module.attr("__version__") = fettle::core::base::version();
     python::bind_errors(module);
     pybind11::class_<fettle::core::base::ThreadLimit>(module, "ThreadLimit", "Caps the threads of all loops while it lives.")
-        .def(pybind11::init<int>(), pybind11::arg("threads"));
+        .def(pybind11::init([](int threads) {
+                 python::check_at_least("threads", threads, 1);
+                 return std::make_unique<fettle::core::base::ThreadLimit>(threads);
+             }),
+             pybind11::arg("threads"));
     python::bind_scene(module);
     python::bind_model(module);
     python::bind_trajectory(module);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"
@@ -48,29 +49,41 @@ private:
 
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// nullptr where the entry is None.
-std::optional<Rows> array_with(const py::object& found, const std::vector<py::ssize_t>& shape, const char* what) {
-    if (found.is_none()) return std::nullopt;
-    Rows array = Rows::ensure(found);
+/// A QuantityGradient that Python returned, and from where ("MeanHeight.gradient()").
+struct FoundGradient {
+    py::object gradient;
+    std::string where;
+    bool is_looked_at = true;  ///< by the evaluation, which fails where a number is not finite
+
+    void check(bool finite, const std::string& member) const {
+        if (!finite && !is_looked_at) refuse(ErrorCode::not_finite, where + "/" + member, "it has a number that is not finite");
+    }
+};
+
+// nullopt where the member is None.
+std::optional<Rows> array_with(const FoundGradient& found, const char* member, const std::vector<py::ssize_t>& shape, const char* what) {
+    const py::object given = found.gradient.attr(member);
+    if (given.is_none()) return std::nullopt;
+    Rows array = Rows::ensure(given);
     const bool fits =
         array && array.ndim() == static_cast<py::ssize_t>(shape.size()) && std::equal(shape.begin(), shape.end(), array.shape());
-    if (!fits) throw py::value_error(what);
+    if (!fits) refuse(ErrorCode::wrong_type, found.where + "/" + member, what);
+    found.check(Eigen::Map<const VectorX>(array.data(), array.size()).allFinite(), member);
     return array;
 }
 
-void add_pose_gradient(const py::object& gradient, double scale, Seeds& seeds) {
+void add_pose_gradient(const FoundGradient& found, double scale, Seeds& seeds) {
     auto& bars = seeds.trajectory_bar.pose_bar;
     const auto times = static_cast<py::ssize_t>(bars.size());
     const auto bodies = static_cast<py::ssize_t>(bars.empty() ? 0 : bars.front().size());
-    if (const auto array =
-            array_with(gradient.attr("positions"), {times, bodies, 3}, "a gradient in positions has shape (steps + 1, bodies, 3)")) {
+    if (const auto array = array_with(found, "positions", {times, bodies, 3}, "a gradient in positions has shape (steps + 1, bodies, 3)")) {
         const double* next = array->data();
         for (auto& bodies_bar : bars)
             for (auto& bar : bodies_bar)
                 for (int i = 0; i < 3; ++i) bar(i, 3) += scale * *next++;
     }
     if (const auto array =
-            array_with(gradient.attr("rotations"), {times, bodies, 3, 3}, "a gradient in rotations has shape (steps + 1, bodies, 3, 3)")) {
+            array_with(found, "rotations", {times, bodies, 3, 3}, "a gradient in rotations has shape (steps + 1, bodies, 3, 3)")) {
         const double* next = array->data();
         for (auto& bodies_bar : bars)
             for (auto& bar : bodies_bar)
@@ -78,28 +91,49 @@ void add_pose_gradient(const py::object& gradient, double scale, Seeds& seeds) {
     }
 }
 
-void add_model_gradient(const py::object& gradient, double scale, Seeds& seeds) {
+double number_from(py::handle answer, const std::string& where, const char* wanted = "a number") {
+    py::detail::make_caster<double> number;
+    if (answer.is_none() || !number.load(answer, true))
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; " + wanted + " is wanted");
+    return py::detail::cast_op<double>(number);
+}
+
+void add_model_gradient(const FoundGradient& found, double scale, Seeds& seeds) {
     auto& bodies = seeds.model_bar.bodies;
-    for (const auto& [body, rows] : gradient.attr("vertices").cast<std::map<int, py::object>>()) {
-        if (body < 0 || static_cast<std::size_t>(body) >= bodies.size()) throw py::index_error("there is no such body");
-        Matrix3X& bar = bodies[static_cast<std::size_t>(body)].vertices_bar;
-        const Matrix3X columns = columns_of(rows, "a gradient in vertices has shape (n, 3)");
-        if (columns.cols() != bar.cols()) throw py::value_error("a gradient in vertices has a row per vertex of the body");
+    const auto bar_of = [&](const char* member, int body) -> auto& {
+        if (body < 0 || static_cast<std::size_t>(body) >= bodies.size())
+            refuse(ErrorCode::out_of_range, found.where + "/" + member,
+                   "there is no body " + std::to_string(body) + "; there are " + std::to_string(bodies.size()) + ", counted from 0");
+        return bodies[static_cast<std::size_t>(body)];
+    };
+    for (const auto& [body, rows] : member_of<std::map<int, py::object>>(found.gradient, "QuantityGradient", "vertices")) {
+        Matrix3X& bar = bar_of("vertices", body).vertices_bar;
+        const std::string where = found.where + "/vertices/" + std::to_string(body);
+        const Matrix3X columns = columns_of(rows, where, "a gradient in vertices has shape (n, 3)");
+        if (columns.cols() != bar.cols())
+            refuse(ErrorCode::inconsistent, where,
+                   "a gradient in vertices has a row per vertex of the body: " + std::to_string(bar.cols()));
+        found.check(columns.allFinite(), "vertices/" + std::to_string(body));
         bar += scale * columns;
     }
-    for (const auto& [body, bar] : gradient.attr("densities").cast<std::map<int, double>>()) {
-        if (body < 0 || static_cast<std::size_t>(body) >= bodies.size()) throw py::index_error("there is no such body");
-        bodies[static_cast<std::size_t>(body)].density_bar += scale * bar;
+    for (const auto& [body, bar] : member_of<std::map<int, py::object>>(found.gradient, "QuantityGradient", "densities")) {
+        const std::string member = "densities/" + std::to_string(body);
+        const double derivative = number_from(bar, found.where + "/" + member);
+        found.check(std::isfinite(derivative), member);
+        bar_of("densities", body).density_bar += scale * derivative;
     }
 }
 
-// A number that is exact, or a Measurement with bounds.
-Measurement measurement_from(const py::object& answer) {
-    if (!py::isinstance(answer, record_class("Measurement"))) return description::exact(answer.cast<double>());
-    auto measured = answer.cast<Measurement>();
-    if (!(measured.lower <= measured.value && measured.value <= measured.upper))
-        throw py::value_error("a Measurement's value lies between its lower and its upper bound");
-    return measured;
+// A number that is exact, or a Measurement with bounds. What is not finite is left to the evaluation, which then has failed.
+Measurement measurement_from(py::handle answer, const std::string& where) {
+    if (!py::isinstance(answer, record_class("Measurement")))
+        return description::exact(number_from(answer, where, "a number or a fettle.Measurement"));
+    const auto member = [&](const char* name) { return number_from(answer.attr(name), where + "/" + name); };
+    const double value = member("value");
+    if (!std::isfinite(value)) return description::exact(value);
+    if (!(member("lower") <= value && value <= member("upper")))
+        refuse(ErrorCode::out_of_range, where, "a Measurement's value lies between its lower and its upper bound");
+    return answer.cast<Measurement>();
 }
 
 constexpr double rounding_of_squares = 1e-9;  // of a value, by which the sum of its deviations' squares may miss it
@@ -109,8 +143,8 @@ class PythonQuantity : public Quantity {
 public:
     explicit PythonQuantity(py::handle quantity)
         : quantity_(shared_object(quantity)),
-          dimension_(quantity.attr("dimension").cast<Dimension>()),
-          at_rest_(quantity.attr("at_rest").cast<bool>()) {}
+          dimension_(member_of<Dimension>(quantity, "Quantity", "dimension")),
+          at_rest_(member_of<bool>(quantity, "Quantity", "at_rest")) {}
 
     Dimension dimension() const override { return dimension_; }
     bool is_at_rest() const override { return at_rest_; }
@@ -118,38 +152,45 @@ public:
 
     Measurement value(const Simulated& simulated) const override {
         const py::gil_scoped_acquire locked;
-        return measurement_from(ask("value", simulated));
+        return value_of(simulated);
     }
 
     void add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const override {
         const py::gil_scoped_acquire locked;
-        add_gradient(ask("gradient", simulated), scale, seeds);
+        add_gradient({ask("gradient", simulated), method("gradient()")}, scale, seeds);
     }
 
     VectorX deviations(const Simulated& simulated) const override {
         const py::gil_scoped_acquire locked;
         const Rows found = Rows::ensure(ask("deviations", simulated));
-        if (!found || found.ndim() != 1) throw py::value_error("a quantity's deviations() are numbers, of shape (m,)");
+        const std::string where = method("deviations()");
+        if (!found || found.ndim() != 1) refuse(ErrorCode::wrong_type, where, "a quantity's deviations() are numbers, of shape (m,)");
         const VectorX deviations = Eigen::Map<const VectorX>(found.data(), found.size());
         if (deviations.size() == 0) return deviations;
-        const double value = measurement_from(ask("value", simulated)).value, squares = deviations.squaredNorm();
+        const double value = value_of(simulated).value, squares = deviations.squaredNorm();
         if (!(std::abs(squares - value) <= rounding_of_squares * std::max(std::abs(value), squares)))
-            throw py::value_error("the squares of a quantity's deviations() sum up to its value()");
+            refuse(ErrorCode::inconsistent, where, "the squares of a quantity's deviations() sum up to its value()");
         return deviations;
     }
 
     void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const override {
         const py::gil_scoped_acquire locked;
-        add_gradient(ask("deviation_gradient", simulated, i), scale, seeds);
+        add_gradient({ask("deviation_gradient", simulated, i), method("deviation_gradient()"), false}, scale, seeds);
     }
 
 private:
-    static void add_gradient(const py::object& gradient, double scale, Seeds& seeds) {
-        if (!py::isinstance(gradient, record_class("QuantityGradient")))
-            throw py::type_error("a quantity's gradient() and deviation_gradient() return a fettle.QuantityGradient");
-        add_pose_gradient(gradient, scale, seeds);
-        add_model_gradient(gradient, scale, seeds);
+    static void add_gradient(const FoundGradient& found, double scale, Seeds& seeds) {
+        if (!py::isinstance(found.gradient, record_class("QuantityGradient")))
+            refuse(ErrorCode::wrong_type, found.where, "returned " + shown(found.gradient) + "; a fettle.QuantityGradient is wanted");
+        add_pose_gradient(found, scale, seeds);
+        add_model_gradient(found, scale, seeds);
     }
+
+    std::string method(const char* name) const {
+        return py::str(py::type::of(*quantity_).attr("__name__")).cast<std::string>() + "." + name;
+    }
+
+    Measurement value_of(const Simulated& simulated) const { return measurement_from(ask("value", simulated), method("value()")); }
 
     template <class... More>
     py::object ask(const char* what, const Simulated& simulated, More... more) const {
@@ -175,46 +216,58 @@ struct OpaqueQuantity {
     std::shared_ptr<const Quantity> quantity;
 };
 
+/// The members of a quantity's dataclass.
+struct MembersOf {
+    py::handle object;
+    const char* type;
+
+    template <class T>
+    T get(const char* name) const {
+        return member_of<T>(object, type, name);
+    }
+};
+
 std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     using namespace quantities;
+    const std::string type = py::str(py::type::of(q).attr("__name__"));
     const auto is = [&](const char* name) { return py::isinstance(q, record_class(name)); };
-    const auto body = [&] { return q.attr("body").cast<int>(); };
+    const MembersOf of_q{q, type.c_str()};
+    const auto body = [&] { return of_q.get<int>("body"); };
     if (is("Clearance")) {
-        const ClearanceRange range{.a = q.attr("a").cast<int>(),
-                                   .b = q.attr("b").cast<int>(),
-                                   .motion = q.attr("motion").cast<bool>(),
-                                   .window = q.attr("window").cast<int>(),
-                                   .windows = q.attr("windows").cast<int>()};
-        return std::make_shared<Clearance>(range, q.attr("minimum").cast<double>());
+        const ClearanceRange range{.a = of_q.get<int>("a"),
+                                   .b = of_q.get<int>("b"),
+                                   .motion = of_q.get<bool>("motion"),
+                                   .window = of_q.get<int>("window"),
+                                   .windows = of_q.get<int>("windows")};
+        return std::make_shared<Clearance>(range, of_q.get<double>("minimum"));
     }
     if (is("Mass")) {
         std::vector<Mass::Of> of;
-        for (const auto& [index, kind] : q.attr("bodies").cast<std::vector<std::pair<int, core::scene::MassKind>>>())
+        for (const auto& [index, kind] : of_q.get<std::vector<std::pair<int, core::scene::MassKind>>>("bodies"))
             of.push_back({index, kind});
         return std::make_shared<Mass>(std::move(of));
     }
-    if (is("Stroke"))
-        return std::make_shared<Stroke>(body(), q.attr("axis").cast<Vector3>(), q.attr("target").cast<std::optional<double>>());
+    if (is("Stroke")) return std::make_shared<Stroke>(body(), of_q.get<Vector3>("axis"), of_q.get<std::optional<double>>("target"));
     if (is("MarkerPath")) {
-        return std::make_shared<MarkerPath>(body(), q.attr("point").cast<Vector3>(), q.attr("targets").cast<std::vector<Vector3>>(),
-                                            q.attr("times").cast<std::vector<double>>());
+        return std::make_shared<MarkerPath>(body(), of_q.get<Vector3>("point"), of_q.get<std::vector<Vector3>>("targets"),
+                                            of_q.get<std::vector<double>>("times"));
     }
-    const auto over = [&] { return q.attr("over").cast<Over>(); };
+    const auto over = [&] { return of_q.get<Over>("over"); };
     if (is("MarkerSpeed")) {
-        const MarkerSpeed::Of of{body(), q.attr("point").cast<Vector3>(), q.attr("axis").cast<Vector3>()};
+        const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
         return std::make_shared<MarkerSpeed>(of, over());
     }
     if (is("JointLoad")) {
-        JointLoad::Of of{q.attr("kind").cast<JointLoadKind>(), q.attr("name").cast<std::string>(), q.attr("axis").cast<Vector3>(),
-                         q.attr("effort_dimension").cast<Dimension>()};
+        JointLoad::Of of{of_q.get<JointLoadKind>("kind"), of_q.get<std::string>("name"), of_q.get<Vector3>("axis"),
+                         of_q.get<Dimension>("effort_dimension")};
         return std::make_shared<JointLoad>(std::move(of), over());
     }
     if (is("ContactLoad")) {
-        ContactForce::Of of{body(), q.attr("other").cast<std::optional<int>>(), q.attr("axis").cast<Vector3>(),
-                            q.attr("about").cast<std::optional<Vector3>>()};
+        ContactForce::Of of{body(), of_q.get<std::optional<int>>("other"), of_q.get<Vector3>("axis"),
+                            of_q.get<std::optional<Vector3>>("about")};
         return std::make_shared<ContactForce>(of, over());
     }
-    if (is("Energy")) return std::make_shared<Energy>(q.attr("kind").cast<EnergyKind>(), over());
+    if (is("Energy")) return std::make_shared<Energy>(of_q.get<EnergyKind>("kind"), over());
     return nullptr;
 }
 
@@ -224,7 +277,8 @@ std::shared_ptr<const Quantity> quantity_from_python(py::handle quantity) {
     if (quantity.is_none()) return nullptr;
     if (py::isinstance<OpaqueQuantity>(quantity)) return quantity.cast<const OpaqueQuantity&>().quantity;
     if (auto found = library_quantity(quantity)) return found;
-    if (!py::isinstance(quantity, record_class("Quantity"))) throw py::type_error("what is measured is a fettle.Quantity");
+    if (!py::isinstance(quantity, record_class("Quantity")))
+        throw py::type_error("what is measured is a fettle.Quantity, not " + shown(quantity));
     return std::make_shared<PythonQuantity>(quantity);
 }
 

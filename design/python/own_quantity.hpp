@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Quantities between Python and the library: those of ../quantities are dataclasses of the same names; an object with `value()` and
 /// `gradient()` (fettle.Quantity), and `deviations()` and `deviation_gradient()` where it is a sum of squares, is a Quantity of the
-/// library, called with the interpreter's lock. Throws ValueError for a Measurement whose bounds do not hold its value, and for deviations
-/// whose squares miss the value by more than rounding.
+/// library, called with the interpreter's lock. Raises fettle.Error, naming the method, for answers of another type, for a Measurement
+/// whose bounds do not hold its value, and for deviations whose squares miss the value by more than rounding.
 #pragma once
 
 #include <pybind11/pybind11.h>

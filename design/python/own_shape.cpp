@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/python/own_shape.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/scene_records.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
@@ -23,12 +28,65 @@ std::shared_ptr<py::object> shared_object(py::handle object) {
 
 namespace {
 
+using NamedNumbers = std::map<std::string, double>;
+
+// "Frustum.at()"
+std::string method_of(py::handle shape, const char* method) {
+    return py::str(py::type::of(shape).attr("__name__")).cast<std::string>() + "." + method;
+}
+
+void check_dimensions(const std::vector<ShapeDimension>& dimensions, const std::string& where) {
+    if (dimensions.empty()) refuse(ErrorCode::missing_key, where, "a shape has dimensions");
+    for (const ShapeDimension& dimension : dimensions) {
+        if (!std::isfinite(dimension.value))
+            refuse(ErrorCode::not_finite, where, "the dimension `" + dimension.name + "` is no finite number; give metres");
+    }
+}
+
+std::optional<py::dict> dict_from(const py::object& mapping) {
+    try {
+        return py::dict(mapping);
+    } catch (const py::error_already_set&) {
+        return std::nullopt;
+    }
+}
+
+// In the order that Python has them in.
 std::vector<ShapeDimension> dimensions_of(py::handle shape) {
+    const std::string where = method_of(shape, "dimensions()");
+    const py::object answer = shape.attr("dimensions")();
+    const std::optional<py::dict> named = dict_from(answer);
+    if (!named || !py::detail::make_caster<NamedNumbers>().load(*named, true))
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; {name: metres} is wanted");
     std::vector<ShapeDimension> dimensions;
-    const py::dict named = shape.attr("dimensions")();
-    for (const auto& [name, value] : named) dimensions.push_back({name.cast<std::string>(), value.cast<double>()});
-    if (dimensions.empty()) throw py::value_error("a shape has dimensions");
+    for (const auto& [name, value] : *named) dimensions.push_back({name.cast<std::string>(), value.cast<double>()});
+    check_dimensions(dimensions, where);
     return dimensions;
+}
+
+core::geometry::Mesh mesh_from(py::handle answer, const std::string& where) {
+    if (!py::isinstance(answer, record_class("Mesh")))
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; a fettle.Mesh is wanted");
+    return mesh_from_python(answer);
+}
+
+// What `make` returns of a shape of Python's, or what is wrong with it. Takes the interpreter's lock.
+template <class Make>
+auto made_by(const Make& make, const std::string& where) -> Result<decltype(make())> {
+    const py::gil_scoped_acquire locked;
+    try {
+        return make();
+    } catch (py::error_already_set& raised) {
+        return errors_of(raised, where);
+    } catch (const RaisedErrors& refused) {
+        return refused.errors();
+    }
+}
+
+py::dict named(const std::vector<ShapeDimension>& dimensions, const std::vector<double>& values) {
+    py::dict by_name;
+    for (std::size_t k = 0; k < values.size(); ++k) by_name[py::str(dimensions[k].name)] = values[k];
+    return by_name;
 }
 
 /// An object of Python's as a shape: at({name: value}) returns (mesh, {name: d vertices / d dimension}).
@@ -42,28 +100,33 @@ public:
     py::object object() const { return *shape_; }
 
     Result<ShapeInstance> at(const std::vector<double>& values) const override {
-        const py::gil_scoped_acquire locked;
-        try {
-            py::dict given;
-            for (std::size_t k = 0; k < values.size(); ++k) given[py::str(dimensions_[k].name)] = values[k];
-            const py::tuple answer = shape_->attr("at")(given);
-            if (answer.size() != 2) throw py::type_error("a shape's at() returns (mesh, derivatives by dimension)");
-            ShapeInstance part;
-            part.mesh = answer[0].cast<core::geometry::Mesh>();
-            part.jacobian = jacobian_of(answer[1], part.mesh.vertices.cols());
-            return part;
-        } catch (py::error_already_set& raised) {
-            return errors_of(raised, dimensions_.front().name);
-        }
+        return made_by(
+            [&] {
+                const std::string where = method_of(*shape_, "at()");
+                const py::object answer = shape_->attr("at")(named(dimensions_, values));
+                const bool two = (py::isinstance<py::tuple>(answer) || py::isinstance<py::list>(answer)) && py::len(answer) == 2;
+                const std::optional<py::dict> by_name = two ? dict_from(answer[py::int_(1)]) : std::nullopt;
+                if (!by_name)
+                    refuse(ErrorCode::wrong_type, where,
+                           "returned " + shown(answer) + "; (fettle.Mesh, {dimension: derivatives}) is wanted");
+                ShapeInstance part;
+                part.mesh = mesh_from(answer[py::int_(0)], where);
+                part.jacobian = jacobian_of(*by_name, part.mesh.vertices.cols(), where);
+                return part;
+            },
+            dimensions_.front().name);
     }
 
 private:
-    std::vector<Matrix3X> jacobian_of(const py::dict& by_name, Eigen::Index vertices) const {
+    std::vector<Matrix3X> jacobian_of(const py::dict& by_name, Eigen::Index vertices, const std::string& where) const {
         std::vector<Matrix3X> jacobian;
         for (const ShapeDimension& dimension : dimensions_) {
-            if (!by_name.contains(dimension.name)) throw py::key_error("no derivative by the dimension " + dimension.name);
-            jacobian.push_back(columns_of(by_name[py::str(dimension.name)], "a derivative of vertices has shape (n, 3)"));
-            if (jacobian.back().cols() != vertices) throw py::value_error("a derivative has a row per vertex of the mesh");
+            const std::string derivative = "the derivative by `" + dimension.name + "` ";
+            if (!by_name.contains(dimension.name)) refuse(ErrorCode::missing_key, where, derivative + "is missing");
+            jacobian.push_back(columns_of(by_name[py::str(dimension.name)], where, "a derivative of vertices has shape (n, 3)"));
+            if (jacobian.back().cols() != vertices)
+                refuse(ErrorCode::inconsistent, where, derivative + "has a row per vertex of the mesh: " + std::to_string(vertices));
+            if (!jacobian.back().allFinite()) refuse(ErrorCode::not_finite, where, derivative + "has a number that is not finite");
         }
         return jacobian;
     }
@@ -75,8 +138,9 @@ private:
 
 std::vector<ShapeDimension> drawn_dimensions(py::handle shape) {
     std::vector<ShapeDimension> dimensions;
-    for (const auto& [name, value] : shape.attr("values").cast<std::map<std::string, double>>()) dimensions.push_back({name, value});
-    if (dimensions.empty()) throw py::value_error("a shape has dimensions");
+    const std::string record = py::str(py::type::of(shape).attr("__name__"));
+    for (const auto& [name, value] : member_of<NamedNumbers>(shape, record.c_str(), "values")) dimensions.push_back({name, value});
+    check_dimensions(dimensions, record + ".values");
     return dimensions;
 }
 
@@ -84,22 +148,23 @@ std::vector<ShapeDimension> drawn_dimensions(py::handle shape) {
 class PythonMeshShape : public shapes::RebuiltShape {
 public:
     explicit PythonMeshShape(py::handle shape)
-        : RebuiltShape(drawn_dimensions(shape), maker(drawn_dimensions(shape), shared_object(shape.attr("function"))),
-                       {.unit = shape.attr("unit").cast<double>(), .rounding = shape.attr("rounding").cast<std::optional<double>>()}),
+        : RebuiltShape(drawn_dimensions(shape), maker(drawn_dimensions(shape), shared_object(shape.attr("function"))), rebuilding(shape)),
           shape_(shared_object(shape)) {}
     py::object object() const { return *shape_; }
 
 private:
+    static shapes::RebuiltOptions rebuilding(py::handle shape) {
+        const shapes::RebuiltOptions options{.unit = member_of<double>(shape, "MeshShape", "unit"),
+                                             .rounding = member_of<std::optional<double>>(shape, "MeshShape", "rounding")};
+        check_above("mesh shape/unit", options.unit, 0);
+        if (options.rounding) check_at_least("mesh shape/rounding", *options.rounding, 0);
+        return options;
+    }
+
     static shapes::MeshMaker maker(const std::vector<ShapeDimension>& dimensions, std::shared_ptr<py::object> function) {
-        return [dimensions, function = std::move(function)](const std::vector<double>& values) -> Result<core::geometry::Mesh> {
-            const py::gil_scoped_acquire locked;
-            try {
-                py::dict given;
-                for (std::size_t k = 0; k < values.size(); ++k) given[py::str(dimensions[k].name)] = values[k];
-                return (*function)(given).cast<core::geometry::Mesh>();
-            } catch (py::error_already_set& raised) {
-                return errors_of(raised, dimensions.front().name);
-            }
+        return [dimensions, function = std::move(function)](const std::vector<double>& values) {
+            return made_by([&] { return mesh_from((*function)(named(dimensions, values)), "MeshShape.function()"); },
+                           dimensions.front().name);
         };
     }
 
@@ -113,6 +178,13 @@ struct OpaqueShape {
 
 std::vector<double> in_order(const Shape& shape, const std::map<std::string, double>& values) {
     std::vector<double> ordered;
+    std::vector<std::string_view> known;
+    for (const ShapeDimension& dimension : shape.dimensions()) known.push_back(dimension.name);
+    for (const auto& [name, value] : values) {
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            refuse(ErrorCode::unknown_key, name, "the shape has no dimension \"" + name + "\"; " + core::files::did_you_mean(name, known));
+        if (!std::isfinite(value)) refuse(ErrorCode::not_finite, name, "it is no finite number; give metres");
+    }
     for (const ShapeDimension& dimension : shape.dimensions()) {
         const auto found = values.find(dimension.name);
         ordered.push_back(found == values.end() ? dimension.value : found->second);
@@ -146,14 +218,15 @@ std::shared_ptr<const Shape> shape_from_python(py::handle shape) {
     if (shape.is_none()) return nullptr;
     if (py::isinstance<OpaqueShape>(shape)) return shape.cast<const OpaqueShape&>().shape;
     if (py::isinstance(shape, record_class("GeneratedPart"))) {
-        const auto generator = shape.attr("generator").cast<std::string>();
-        const auto dimensions = shape.attr("values").cast<std::map<std::string, double>>();
-        return value_or_raise(GeneratedPart::create(generator, dimensions, {shape.attr("segments").cast<int>()}));
+        const auto generator = member_of<std::string>(shape, "GeneratedPart", "generator");
+        const auto dimensions = member_of<NamedNumbers>(shape, "GeneratedPart", "values");
+        return value_or_raise(GeneratedPart::create(generator, dimensions, {member_of<int>(shape, "GeneratedPart", "segments")}));
     }
     if (py::isinstance(shape, record_class("MeshShape"))) return std::make_shared<PythonMeshShape>(shape);
     if (py::isinstance(shape, record_class("ProgramShape")))
-        return value_or_raise(shapes::ProgramPart::create(shape.attr("program").cast<shapes::MeshProgram>(), drawn_dimensions(shape)));
-    if (!py::isinstance(shape, record_class("Shape"))) throw py::type_error("a body's shape is a fettle.Shape");
+        return value_or_raise(
+            shapes::ProgramPart::create(member_of<shapes::MeshProgram>(shape, "ProgramShape", "program"), drawn_dimensions(shape)));
+    if (!py::isinstance(shape, record_class("Shape"))) throw py::type_error("a body's shape is a fettle.Shape, not " + shown(shape));
     return std::make_shared<PythonShape>(shape);
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/problem/design_problem.hpp"
 
+#include <cmath>
+
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -14,18 +17,36 @@ using problem::DesignProblem;
 
 namespace {
 
+// What a design's file is refused for, and the library takes to have been refused.
+void check_numbers(const description::Design& design) {
+    for (const description::Parameter& parameter : design.parameters) {
+        for (std::size_t k = 0; k < parameter.moves.size(); ++k) {
+            const description::Move& move = parameter.moves[k];
+            const bool finite =
+                std::isfinite(move.scale) && std::isfinite(move.offset) && move.direction.allFinite() && move.position_offset.allFinite();
+            if (!finite)
+                refuse(ErrorCode::not_finite, "parameter `" + parameter.name + "`/moves/" + std::to_string(k),
+                       "its scale, offset, direction and position_offset are finite numbers");
+        }
+    }
+    for (const description::ObjectiveTerm& term : design.objective) check_above("objective `" + term.name + "`/unit", term.unit, 0);
+    for (const description::Constraint& constraint : design.constraints)
+        check_above("constraint `" + constraint.name + "`/bounds/unit", constraint.bounds.unit, 0);
+    for (const description::Relation& relation : design.relations)
+        check_above("relation `" + relation.name + "`/bounds/unit", relation.bounds.unit, 0);
+    check_at_least("optimiser/max_evaluations", design.optimiser.max_evaluations, 1);
+    check_above("optimiser/tolerance", design.optimiser.tolerance, 0);
+}
+
 std::shared_ptr<DesignProblem> create(const description::Design& design) {
+    check_numbers(design);
     description::Design whole = with_formulas(design);
     const py::gil_scoped_release unlocked;
     return std::make_shared<DesignProblem>(value_or_raise(DesignProblem::create(std::move(whole))));
 }
 
-void check_point(const DesignProblem& self, const VectorX& p) {
-    if (p.size() != self.parameter_count()) throw py::value_error("one value for each of the design's parameters");
-}
-
 DesignEvaluation evaluate(const DesignProblem& self, const VectorX& p, bool gradients, const py::object& progress) {
-    check_point(self, p);
+    check_point(p, self.parameter_count());
     Watch watch(progress);
     DesignEvaluation evaluation;
     {
@@ -86,21 +107,21 @@ void bind_problem(py::module_& module) {
         .def(
             "model_at",
             [](const DesignProblem& self, const VectorX& p) {
-                check_point(self, p);
+                check_point(p, self.parameter_count());
                 return std::make_shared<Model>(value_or_raise(self.model_at(p)));
             },
             py::arg("p"), "The model at p.")
         .def(
             "relations",
             [](const DesignProblem& self, const VectorX& p) {
-                check_point(self, p);
+                check_point(p, self.parameter_count());
                 return self.relations(p);
             },
             py::arg("p"), "Rows of the relations at p; nothing is built.")
         .def(
             "refusal",
             [](const DesignProblem& self, const VectorX& p) {
-                check_point(self, p);
+                check_point(p, self.parameter_count());
                 const py::gil_scoped_release unlocked;
                 return self.refusal(p);
             },

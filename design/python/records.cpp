@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/python/records.hpp"
 
+#include <cctype>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+
 namespace fettle::design::python {
 
 namespace py = pybind11;
@@ -10,6 +15,42 @@ py::object record_class(const char* name) { return py::module_::import("fettle")
 void refuse_type(const char* record, const char* member, py::handle found) {
     const std::string type = py::str(py::type::of(found).attr("__name__"));
     throw py::type_error(std::string(record) + "." + member + ": a value of type " + type + " is not what belongs there");
+}
+
+void refuse_word(const std::string& word, std::span<const std::string_view> known) {
+    const auto nearest = core::files::nearest_word(word, {known.begin(), known.end()});
+    throw RaisedErrors(
+        {{ErrorCode::out_of_range, "",
+          "\"" + word + "\" is none of: " + core::base::joined(known) + (nearest ? "; did you mean \"" + *nearest + "\"?" : "")}});
+}
+
+void refuse_nan() { throw RaisedErrors({{ErrorCode::not_finite, "", "it is NaN, or has one in it; numbers are wanted"}}); }
+
+namespace {
+
+// "PairRequest" -> "pair request", and its name, if it has one.
+std::string place_of(py::handle record, const char* record_name) {
+    std::string place;
+    for (const char* c = record_name; *c != '\0'; ++c) {
+        if (std::isupper(*c) != 0 && !place.empty()) place += ' ';
+        place += static_cast<char>(std::tolower(*c));
+    }
+    const py::object name = py::getattr(record, "name", py::none());
+    if (py::isinstance<py::str>(name) && py::len(name) > 0) place += " `" + name.cast<std::string>() + "`";
+    return place;
+}
+
+}  // namespace
+
+void refuse_member(const Errors& errors, py::handle record, const char* record_name, const char* member) {
+    const std::string place = place_of(record, record_name) + "/" + member;
+    Errors placed = errors;
+    for (Error& error : placed) {
+        if (error.where.find('`') != std::string::npos) continue;  // what has a name is found by it
+        const std::size_t slash = error.where.find('/');
+        error.where = place + (slash == std::string::npos ? "" : error.where.substr(slash));
+    }
+    throw RaisedErrors(std::move(placed));
 }
 
 }  // namespace fettle::design::python

@@ -2,18 +2,28 @@
 /// Plain structs of the library as Python dataclasses, and back. A struct has a list of its members here (scene_records.hpp and the like)
 /// and a dataclass of the same name and members in the Python package; the two directions follow from the list. So Python owns what it
 /// holds: lists can be appended to, objects pickled, and no reference points into a vector that has grown.
-/// Enumerators are Python strings. tests/design/python/records_test.py checks that both sides have the same members and defaults.
+/// Enumerators are Python strings. Members that are NaN, or no word that is known, are refused by record, name and member ("body
+/// `cube`/type"). tests/design/python/records_test.py checks that both sides have the same members and defaults.
 #pragma once
 
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <vector>
+
+#include "fettle/design/python/raised_errors.hpp"
 
 namespace fettle::design::python {
 
@@ -47,6 +57,43 @@ concept IsWord = requires {
 pybind11::object record_class(const char* name);
 
 [[noreturn]] void refuse_type(const char* record, const char* member, pybind11::handle found);
+[[noreturn]] void refuse_word(const std::string& word, std::span<const std::string_view> known);
+[[noreturn]] void refuse_nan();
+/// Throws the errors on, their place told from this record: "body `cube`/type", "parameter `height`/moves/scale".
+[[noreturn]] void refuse_member(const Errors& errors, pybind11::handle record, const char* record_name, const char* member);
+
+/// Of numbers, vectors and matrices, and of lists, tables and optional ones of them; false for all else.
+template <class T>
+bool has_nan(const T& x) {
+    if constexpr (std::is_floating_point_v<T>) {
+        return std::isnan(x);
+    } else if constexpr (std::is_base_of_v<Eigen::DenseBase<T>, T>) {
+        return x.hasNaN();
+    } else if constexpr (pybind11::detail::is_instantiation<std::optional, T>::value) {
+        return x && has_nan(*x);
+    } else if constexpr (pybind11::detail::is_instantiation<std::vector, T>::value) {
+        return std::any_of(x.begin(), x.end(), [](const auto& each) { return has_nan(each); });
+    } else if constexpr (pybind11::detail::is_instantiation<std::map, T>::value) {
+        return std::any_of(x.begin(), x.end(), [](const auto& each) { return has_nan(each.second); });
+    } else {
+        return false;
+    }
+}
+
+/// A member of a Python object, as the library has it.
+template <class Member>
+Member member_of(pybind11::handle source, const char* record_name, const char* name) {
+    const pybind11::object found = source.attr(name);
+    pybind11::detail::make_caster<Member> caster;
+    try {
+        if (!caster.load(found, true)) refuse_type(record_name, name, found);
+        Member value = pybind11::detail::cast_op<Member&&>(std::move(caster));
+        if (has_nan(value)) refuse_nan();
+        return value;
+    } catch (const RaisedErrors& raised) {
+        refuse_member(raised.errors(), source, record_name, name);
+    }
+}
 
 }  // namespace fettle::design::python
 
@@ -92,11 +139,8 @@ public:
 private:
     template <class Field>
     void read(handle source, const Field& field) {
-        const object found = source.attr(field.name);
         using Member = std::remove_reference_t<decltype(value.*field.member)>;
-        make_caster<Member> member;
-        if (!member.load(found, true)) fettle::design::python::refuse_type(Record::python_name, field.name, found);
-        value.*field.member = cast_op<Member&&>(std::move(member));
+        value.*field.member = fettle::design::python::member_of<Member>(source, Record::python_name, field.name);
     }
 };
 
@@ -116,9 +160,7 @@ public:
             value = static_cast<T>(i);
             return true;
         }
-        std::string known;
-        for (const std::string_view name : names) known += (known.empty() ? "" : ", ") + std::string(name);
-        throw value_error("\"" + word + "\" is none of: " + known);
+        fettle::design::python::refuse_word(word, names);
     }
 
     static handle cast(T source, return_value_policy, handle) {

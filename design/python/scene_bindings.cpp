@@ -2,6 +2,7 @@
 #include "fettle/core/geometry/mesh_judgement.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/scene_records.hpp"
@@ -29,6 +30,7 @@ scene::Scene parse_scene(const std::string& text, const std::string& path, const
 }
 
 core::geometry::Mesh read_mesh(const std::string& path, double unit, bool weld) {
+    check_above("unit", unit, 0);
     return value_or_raise(core::mesh_files::read_mesh(path, {unit, weld}));
 }
 

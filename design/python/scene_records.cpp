@@ -12,9 +12,9 @@ py::array rows_of(Matrix3X&& columns) {
     return py::array_t<double>({data->cols(), Eigen::Index{3}}, data->data(), owner);
 }
 
-Matrix3X columns_of(py::handle rows, const char* what) {
+Matrix3X columns_of(py::handle rows, const std::string& where, const char* what) {
     const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(rows);
-    if (!array || array.ndim() != 2 || array.shape(1) != 3) throw py::value_error(what);
+    if (!array || array.ndim() != 2 || array.shape(1) != 3) refuse(ErrorCode::wrong_type, where, what);
     return Eigen::Map<const Matrix3X>(array.data(), 3, array.shape(0));
 }
 
@@ -30,14 +30,16 @@ std::vector<core::geometry::Edge> loose_edges(const core::geometry::Mesh& mesh) 
     return {mesh.edges.begin() + static_cast<std::ptrdiff_t>(bare.edges.size()), mesh.edges.end()};
 }
 
-void check_indices(const core::geometry::Mesh& mesh, const std::vector<core::geometry::Edge>& edges) {
-    const auto valid = [&](int i) { return i >= 0 && i < mesh.vertices.cols(); };
-    for (const auto& triangle : mesh.triangles)
-        for (const int i : triangle)
-            if (!valid(i)) throw py::value_error("a triangle of a mesh names a vertex that is not there");
-    for (const auto& edge : edges)
-        for (const int i : edge)
-            if (!valid(i)) throw py::value_error("a loose edge of a mesh names a vertex that is not there");
+template <class Rows>
+void check_indices(const Rows& rows, Eigen::Index vertices, const std::string& where, const char* each) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (const int i : rows[k]) {
+            if (i >= 0 && i < vertices) continue;
+            refuse(ErrorCode::mesh_invalid, where + "/" + std::to_string(k),
+                   std::string(each) + " names a vertex that is not there: " + std::to_string(i) + "; the mesh has " +
+                       std::to_string(vertices) + ", counted from 0");
+        }
+    }
 }
 
 }  // namespace
@@ -54,12 +56,14 @@ py::object mesh_to_python(core::geometry::Mesh mesh) {
 
 core::geometry::Mesh mesh_from_python(py::handle source) {
     core::geometry::Mesh mesh;
-    mesh.name = source.attr("name").cast<std::string>();
-    mesh.vertices = columns_of(source.attr("vertices"), "a mesh has vertices of shape (n, 3)");
-    mesh.triangles = rows_from<3>(source.attr("triangles"), "a mesh has triangles of shape (m, 3)");
-    mesh.shell_names = source.attr("shell_names").cast<std::vector<std::string>>();
-    const auto edges = rows_from<2>(source.attr("loose_edges"), "a mesh has loose edges of shape (k, 2)");
-    check_indices(mesh, edges);
+    mesh.name = member_of<std::string>(source, "Mesh", "name");
+    const std::string place = mesh.name.empty() ? "mesh" : "mesh `" + mesh.name + "`";
+    mesh.vertices = columns_of(source.attr("vertices"), place + "/vertices", "a mesh has vertices of shape (n, 3)");
+    mesh.triangles = rows_from<3>(source.attr("triangles"), place + "/triangles", "a mesh has triangles of shape (m, 3)");
+    mesh.shell_names = member_of<std::vector<std::string>>(source, "Mesh", "shell_names");
+    const auto edges = rows_from<2>(source.attr("loose_edges"), place + "/loose_edges", "a mesh has loose edges of shape (k, 2)");
+    check_indices(mesh.triangles, mesh.vertices.cols(), place + "/triangles", "a triangle of a mesh");
+    check_indices(edges, mesh.vertices.cols(), place + "/loose_edges", "a loose edge of a mesh");
     core::geometry::build_connectivity(mesh, edges);
     return mesh;
 }

@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 
 #include "fettle/core/scene/scene.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/records.hpp"
 #include "fettle/design/shapes/mesh_program.hpp"
 
@@ -17,8 +18,8 @@ core::geometry::Mesh mesh_from_python(pybind11::handle mesh);
 
 /// A numpy array that owns what it is made from, n x 3, without a copy.
 pybind11::array rows_of(Matrix3X&& columns);
-/// 3 x n from an array n x 3. Throws pybind11::value_error with `what` where it has another shape.
-Matrix3X columns_of(pybind11::handle rows, const char* what);
+/// 3 x n from an array n x 3. Throws RaisedErrors with `what` where it has another shape.
+Matrix3X columns_of(pybind11::handle rows, const std::string& where, const char* what);
 /// m x width integers.
 template <std::size_t width>
 pybind11::array_t<int> index_rows(const std::vector<std::array<int, width>>& rows) {
@@ -27,10 +28,10 @@ pybind11::array_t<int> index_rows(const std::vector<std::array<int, width>>& row
     return out;
 }
 template <std::size_t width>
-std::vector<std::array<int, width>> rows_from(pybind11::handle rows, const char* what) {
+std::vector<std::array<int, width>> rows_from(pybind11::handle rows, const std::string& where, const char* what) {
     const auto array = pybind11::array_t<int, pybind11::array::c_style | pybind11::array::forcecast>::ensure(rows);
     if (!array || (array.size() > 0 && (array.ndim() != 2 || array.shape(1) != static_cast<pybind11::ssize_t>(width))))
-        throw pybind11::value_error(what);
+        refuse(ErrorCode::wrong_type, where, what);
     std::vector<std::array<int, width>> out(static_cast<std::size_t>(array.size()) / width);
     if (!out.empty()) std::copy_n(array.data(), array.size(), out.front().data());
     return out;

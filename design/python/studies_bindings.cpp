@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/answers/optimise_json.hpp"
 #include "fettle/design/answers/run_folder.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -21,7 +22,8 @@ namespace {
 studies::CheckReport check_gradients(const DesignProblem& problem, const std::optional<VectorX>& p, int most_parameters,
                                      const py::object& progress) {
     const VectorX point = p ? *p : description::values_of(problem.design().parameters);
-    if (point.size() != problem.parameter_count()) throw py::value_error("one value for each of the design's parameters");
+    check_point(point, problem.parameter_count());
+    check_at_least("most_parameters", most_parameters, 0);
     Watch watch(progress);
     studies::CheckReport report;
     std::string reason;
@@ -57,11 +59,11 @@ OptimiseOutcome optimise(studies::OptimiseOptions options, const py::object& pro
     return std::move(*outcome);
 }
 
-OptimiseOutcome optimise_design(const DesignProblem& problem, const std::string& optimiser, std::uint64_t seed, bool repair,
+OptimiseOutcome optimise_design(const DesignProblem& problem, const std::string& optimiser, std::int64_t seed, bool repair,
                                 const py::object& progress) {
     studies::OptimiseOptions options;
     options.optimiser = optimiser;
-    options.seed = seed;
+    options.seed = seed_from(seed);
     options.repair = repair;
     return optimise(std::move(options), progress,
                     [&](const studies::OptimiseOptions& all) { return value_or_raise(studies::optimise_design(problem, all)); });
@@ -116,12 +118,13 @@ void bind_studies(py::module_& module) {
                "Optimises in memory: an OptimiseOutcome. seed 0 begins at the design's values, others at a random start. progress(line).");
     module.def(
         "optimise_file",
-        [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::uint64_t seed,
+        [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::int64_t seed,
            const std::optional<int>& max_evaluations, bool allow_programs, bool report, const py::object& progress) {
+            if (max_evaluations) check_at_least("max_evaluations", *max_evaluations, 1);
             const auto programs = allow_programs ? reading::Programs::allowed : reading::Programs::refused;
             FileArguments arguments{out, resume, report, programs, max_evaluations, {}};
             arguments.options.optimiser = optimiser;
-            arguments.options.seed = seed;
+            arguments.options.seed = seed_from(seed);
             return optimise_file(value_or_raise(reading::read_design(path, {{}, programs})), std::move(arguments), progress);
         },
         py::arg("path"), py::arg("out"), py::arg("resume") = false, py::arg("optimiser") = "", py::arg("seed") = 0,
@@ -131,7 +134,8 @@ void bind_studies(py::module_& module) {
         "and "
         "report.html; resume goes on with what is there.");
     module.def(
-        "start_of_seed", [](const DesignProblem& problem, std::uint64_t seed) { return studies::start_of_seed(problem.design(), seed); },
+        "start_of_seed",
+        [](const DesignProblem& problem, std::int64_t seed) { return studies::start_of_seed(problem.design(), seed_from(seed)); },
         py::arg("problem"), py::arg("seed"), "(n) SI: where a run of that seed begins.");
 }
 

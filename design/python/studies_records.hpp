@@ -14,8 +14,8 @@ FETTLE_RECORD(fettle::design::optimisers::StageReport, "StageReport", field("mod
 FETTLE_RECORD(fettle::design::optimisers::Optimality, "Optimality", field("judged", &Type::judged),
               field("predicted_gain", &Type::predicted_gain), field("worth", &Type::worth), field("radius", &Type::radius),
               field("step", &Type::step), field("multipliers", &Type::multipliers), field("residual", &Type::residual),
-              field("held", &Type::held), field("improvable", &Type::improvable), field("noise", &Type::noise),
-              field("noise_in_objective", &Type::noise_in_objective), field("roughest", &Type::roughest))
+              field("held", &Type::held), field("refused", &Type::refused), field("improvable", &Type::improvable),
+              field("noise", &Type::noise), field("noise_in_objective", &Type::noise_in_objective), field("roughest", &Type::roughest))
 FETTLE_RECORD(fettle::design::optimisers::OptimiserReport, "OptimiserReport", field("status", &Type::status),
               field("message", &Type::message), field("point", &Type::point), field("feasible", &Type::feasible),
               field("optimality", &Type::optimality), field("evaluations", &Type::evaluations), field("failures", &Type::failures),

@@ -2,6 +2,7 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
@@ -18,6 +19,7 @@ using core::stepper::Trajectory;
 namespace {
 
 core::stepper::Simulation simulate(const Model& model, int steps, bool for_gradient, bool outputs, const py::object& progress) {
+    check_steps(steps);
     Watch watch(progress);
     core::stepper::Simulation simulation;
     {
@@ -44,13 +46,15 @@ py::tuple read_trajectory(const std::string& path) {
 }
 
 void write_trajectory(const std::string& path, const Trajectory& trajectory, const Model& model, const std::string& scene_path) {
-    if (trajectory.body_names.size() != model.bodies.size()) throw py::value_error("the trajectory is not of this model");
+    check_same_bodies(trajectory, model);
     raise_if_any(core::records::write_trajectory(path, trajectory, model, scene_path));
 }
 
 std::size_t time_index(const Trajectory& trajectory, int t) {
     const int count = static_cast<int>(trajectory.poses.size());
-    if (t < -count || t >= count) throw py::index_error("the trajectory has no such instant");
+    if (t < -count || t >= count)
+        throw py::index_error("the trajectory has no instant " + std::to_string(t) + "; it has " + std::to_string(count) +
+                              ", counted from 0");
     return static_cast<std::size_t>(t < 0 ? t + count : t);
 }
 
@@ -64,6 +68,17 @@ py::array pose_view(const py::object& self, int t, const std::vector<py::ssize_t
     if (rotation) strides.push_back(3 * number);  // columns stand together
     const double* first = poses.empty() ? nullptr : rotation ? poses.front().rotation.data() : poses.front().position.data();
     return read_only(py::array(py::dtype::of<double>(), sizes, strides, first, self));
+}
+
+py::object html_table(const Trajectory& trajectory) {
+    py::list rows;
+    const auto add = [&](const char* name, py::object value) { rows.append(py::make_tuple(name, std::move(value))); };
+    add("bodies", py::cast(trajectory.body_names));
+    add("steps", py::int_(trajectory.steps.size()));
+    add("timestep", py::float_(trajectory.timestep));
+    if (!trajectory.poses.empty())
+        add("end", py::float_(core::stepper::time_at(trajectory, static_cast<int>(trajectory.poses.size()) - 1)));
+    return py::module_::import("fettle._record").attr("table")("Trajectory", rows);
 }
 
 // A trajectory's numbers in one list, so that it can be pickled: poses by rows, then the nodes of each step.
@@ -187,13 +202,18 @@ void bind_trajectory(py::module_& module) {
                  const py::object dumps = py::module_::import("pickle").attr("dumps");
                  return dumps(packed(a)).equal(dumps(packed(b.cast<const Trajectory&>())));
              })
+        .def("_repr_html_", &html_table, "How a notebook shows it.")
         .def(py::pickle(&packed, &unpacked));
     module.def("simulate", &simulate, py::arg("model"), py::arg("steps") = -1, py::arg("for_gradient") = false, py::arg("outputs") = false,
                py::arg("progress") = py::none(),
-               "Runs a model through time; the same bits for any number of threads. progress(done, steps) is called after each step.");
+               "Runs a model through time; the same bits for any number of threads. steps: -1 runs until the model's end_time (1000 steps "
+               "where it has none). progress(done, steps) is called after each step.");
     module.def(
         "follow_scripts",
-        [](const Model& model, int steps) { return std::make_shared<Trajectory>(core::stepper::follow_scripts(model, steps)); },
+        [](const Model& model, int steps) {
+            check_steps(steps);
+            return std::make_shared<Trajectory>(core::stepper::follow_scripts(model, steps));
+        },
         py::arg("model"), py::arg("steps") = -1, py::call_guard<py::gil_scoped_release>(),
         "Motion without dynamics and contact: prescribed coordinates follow their scripts, all else stays.");
     module.def("read_trajectory", &read_trajectory, py::arg("path"), "(Trajectory, Model) of a *.trajectory.json.");

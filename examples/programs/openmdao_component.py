@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A design as an OpenMDAO component: `Mechanism(problem)` has the parameters for inputs, the objective and the constraints for outputs, and
-their exact partial derivatives. OpenMDAO is not in Debian: where it is not installed, a stand-in below shows how the component is called."""
+their exact partial derivatives: python3 openmdao_component.py [DESIGN]. OpenMDAO is not in Debian: where it is not installed, a stand-in
+below shows how the component is called."""
+import pathlib
 import sys
 
 import numpy as np
@@ -62,7 +64,8 @@ class Mechanism(ExplicitComponent):
 
 
 if __name__ == "__main__":
-    design = fettle.read_design(sys.argv[1]).design
+    slider_crank = pathlib.Path(__file__).resolve().parent.parent / "slider_crank" / "slider_crank.design.json"
+    design = fettle.read_design(sys.argv[1] if len(sys.argv) > 1 else str(slider_crank)).design
     design.steps = min(design.steps, 5)
     component = Mechanism(fettle.DesignProblem(design))
     if hasattr(component, "run"):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What the dataclasses of this package have in common: equality of arrays, and a table in notebooks."""
+"""What the dataclasses of this package have in common: equality of arrays, members that are known, and a table in notebooks."""
 import dataclasses
+import difflib
 import html
-from typing import Any
+from typing import Any, Iterable, Sequence, Tuple
 
 import numpy as np
 
@@ -33,8 +34,25 @@ def short(value: Any) -> str:
     return str(value)
 
 
+def did_you_mean(word: str, known: Sequence[str]) -> str:
+    """The end of a message about an unknown word."""
+    nearest = difflib.get_close_matches(word, known, 1)
+    return f"did you mean {nearest[0]!r}?" if nearest else f"there are {', '.join(known)}"
+
+
+def table(title: str, rows: Iterable[Tuple[str, Any]]) -> str:
+    """Names and values, for notebooks."""
+    lines = [
+        f"<tr><th style='text-align:left'>{html.escape(name)}</th><td style='text-align:left'>{html.escape(short(value))}</td></tr>"
+        for name, value in rows
+    ]
+    return f"<table><caption>fettle.{title}</caption>{''.join(lines)}</table>"
+
+
 class Record:
-    """Base of the dataclasses."""
+    """Base of the dataclasses, which have slots: a member that is misspelt is an error."""
+
+    __slots__ = ()
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -44,10 +62,12 @@ class Record:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        try:
+            object.__setattr__(self, name, value)
+        except AttributeError as fault:
+            known = [field.name for field in dataclasses.fields(self)]
+            raise AttributeError(f"{type(self).__name__} has no member {name!r}; {did_you_mean(name, known)}") from fault
+
     def _repr_html_(self) -> str:
-        rows = [
-            f"<tr><th style='text-align:left'>{html.escape(field.name)}</th>"
-            f"<td style='text-align:left'>{html.escape(short(getattr(self, field.name)))}</td></tr>"
-            for field in dataclasses.fields(self)
-        ]
-        return f"<table><caption>fettle.{type(self).__name__}</caption>{''.join(rows)}</table>"
+        return table(type(self).__name__, [(field.name, getattr(self, field.name)) for field in dataclasses.fields(self)])

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _fettle
-from ._record import Record
+from ._record import Record, did_you_mean
+from .errors import Error, Fault
 from .results import Measurement
 from .scene import Body, Mesh, MeshProgram, Scene, Vector
 
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 
 class Shape:
     """A part whose vertices are a function of named dimensions [m]. Derive from it; called from several threads, one after the other."""
+
+    __slots__ = ()
 
     #: Are the triangles of `at` always a solid's? Where this is not said, the mesh of every trial is checked.
     always_solid: bool = False
@@ -36,7 +39,7 @@ class Shape:
         raise NotImplementedError
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class GeneratedPart(Record, Shape):
     """A generator's part (fettle.generators() lists them); dimensions that are left out take their defaults."""
 
@@ -45,13 +48,17 @@ class GeneratedPart(Record, Shape):
     segments: int = 24  #: of a full circle
 
     def dimensions(self) -> Dict[str, float]:
-        return {**_fettle.generators()[self.generator], **self.values}
+        known = _fettle.generators()
+        if self.generator not in known:
+            message = f"there is no generator {self.generator!r}; {did_you_mean(self.generator, list(known))}"
+            raise Error([Fault("unknown_key", "generated part/generator", message)])
+        return {**known[self.generator], **self.values}
 
     def at(self, values: Dict[str, float]) -> Tuple[Mesh, Mapping[str, ArrayLike]]:
         return _fettle.shape_at(self, values)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class FunctionShape(Record, Shape):
     """A part from a function: function(dimensions) -> (Mesh, {dimension: d vertices / d dimension (n, 3)})."""
 
@@ -66,7 +73,7 @@ class FunctionShape(Record, Shape):
         return self.function(values)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MeshShape(Record):
     """A part from any function that makes a mesh (CadQuery, build123d, trimesh): function(dimensions) -> Mesh, everything in metres. Its
     derivative comes from rebuilt meshes (design/shapes/rebuilt_shape.hpp); triangles may differ from mesh to mesh, the topology not."""
@@ -77,7 +84,7 @@ class MeshShape(Record):
     rounding: Optional[float] = None  #: of coordinates, if it is known [m]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ProgramShape(Record):
     """A part from a program that writes a mesh file: ProgramShape(MeshProgram(["openscad", "-o", "{out}", ...], unit=1e-3), {"radius": 3e-3})."""
 
@@ -85,7 +92,7 @@ class ProgramShape(Record):
     values: Dict[str, float]  #: as drawn [m]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class QuantityGradient(Record):
     """Derivatives of a number in what a simulated design is made of; None or absent: zero."""
 
@@ -96,7 +103,9 @@ class QuantityGradient(Record):
 
 
 class Quantity:
-    """A number that a simulated design has. Derive from it; a pure function."""
+    """A number that a simulated design has. Derive from it; a pure function. A value that is not finite is an evaluation that failed."""
+
+    __slots__ = ()
 
     #: What it measures: "number", "length", "area", "volume", "angle", "time", "mass", "force", ...
     dimension: str = "number"
@@ -122,7 +131,23 @@ class Quantity:
         raise NotImplementedError
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
+class FunctionQuantity(Record, Quantity):
+    """A number from two functions: function(simulated) -> value, derivative(simulated) -> QuantityGradient."""
+
+    function: Callable[["_fettle.Simulated"], Union[float, Measurement]]
+    derivative: Callable[["_fettle.Simulated"], QuantityGradient]
+    dimension: str = "number"  #: what it measures, as Quantity.dimension
+    at_rest: bool = False
+
+    def value(self, simulated: "_fettle.Simulated") -> Union[float, Measurement]:
+        return self.function(simulated)
+
+    def gradient(self, simulated: "_fettle.Simulated") -> QuantityGradient:
+        return self.derivative(simulated)
+
+
+@dataclasses.dataclass(eq=False, slots=True)
 class Clearance(Record):
     """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
 
@@ -134,14 +159,14 @@ class Clearance(Record):
     minimum: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Mass(Record):
     """Of bodies, as (index, kind), kind as in Body.mass_kind [kg]."""
 
     bodies: Sequence[Tuple[int, str]]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Stroke(Record):
     """Along a unit axis [m]; with a target the square of the deviation from it [m^2]."""
 
@@ -150,7 +175,7 @@ class Stroke(Record):
     target: Optional[float] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MarkerPath(Record):
     """Mean squared distance of a body's point from targets [m^2]; without times each at its nearest."""
 
@@ -160,7 +185,7 @@ class MarkerPath(Record):
     times: Sequence[float] = ()
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MarkerSpeed(Record):
     """Velocity of a body's point (in its file frame) at the steps' ends [m/s]; `over` as in JointLoad."""
 
@@ -170,7 +195,7 @@ class MarkerSpeed(Record):
     axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class JointLoad(Record):
     """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
     "mean", "largest" or "least"."""
@@ -182,7 +207,7 @@ class JointLoad(Record):
     effort_dimension: str = "torque"  #: of a motor's effort; "force" where it drives a travel
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactLoad(Record):
     """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
 
@@ -193,7 +218,7 @@ class ContactLoad(Record):
     about: Optional[Vector] = None  #: the torque about this point of the body's file frame [N m], in place of the force
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Energy(Record):
     """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
@@ -205,7 +230,7 @@ AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, 
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Origin(Record):
     """A place in one of the scene's lists of joints, springs, motors and loads."""
 
@@ -213,7 +238,7 @@ class Origin(Record):
     index: int = -1
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Move(Record):
     """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
     design/description/parameter.hpp lists the targets."""
@@ -235,7 +260,7 @@ class Move(Record):
     materials: List[str] = dataclasses.field(default_factory=list)  #: material_mu: one, pair_mu: two
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Parameter(Record):
     """value, lower, upper in SI; `unit` is what people read it in."""
 
@@ -247,7 +272,7 @@ class Parameter(Record):
     moves: List[Move] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Bounds(Record):
     lower: float = -math.inf  #: SI
     upper: float = math.inf
@@ -255,7 +280,7 @@ class Bounds(Record):
     unit: float = 1.0  #: SI value of the unit that violations are counted in
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ObjectiveTerm(Record):
     """Contributes weight * value / unit."""
 
@@ -265,14 +290,14 @@ class ObjectiveTerm(Record):
     quantity: Optional[AnyQuantity] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Constraint(Record):
     name: str = ""
     bounds: Bounds = dataclasses.field(default_factory=Bounds)
     quantity: Optional[AnyQuantity] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Relation(Record):
     """Between parameters alone: a formula ("crank / rod"), or at(p) -> (value, gradient), p all parameters in SI."""
 
@@ -283,14 +308,14 @@ class Relation(Record):
     at: Optional[Callable[[Array], Tuple[float, ArrayLike]]] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class OptimiserSettings(Record):
     name: str = "ipopt"
     max_evaluations: int = 100
     tolerance: float = 1e-4
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Design(Record):
     """A scene, what may be changed in it, what is wanted and what is required."""
 
@@ -305,7 +330,7 @@ class Design(Record):
     optimiser: OptimiserSettings = dataclasses.field(default_factory=OptimiserSettings)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class DesignFile(Record):
     """A design and what its file says besides."""
 

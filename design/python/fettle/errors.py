@@ -35,4 +35,19 @@ class Error(ValueError):
 
 
 class EvaluationError(RuntimeError):
-    """There is no design at these parameters: parts that cannot be made, that intersect, a motion that is blocked. str() says which."""
+    """There is no design at these parameters: parts that cannot be made, that intersect, a motion that is blocked. str() says which, and
+    so do `errors`, as those of Error do."""
+
+    def __init__(self, reason: str):
+        super().__init__(reason)
+        self.errors: List[Fault] = [Fault("inconsistent", "design", reason)]
+
+    @property
+    def code(self) -> str:
+        """Of the first fault."""
+        return self.errors[0].code
+
+    @property
+    def where(self) -> str:
+        """Of the first fault."""
+        return self.errors[0].where

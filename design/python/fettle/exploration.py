@@ -30,10 +30,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _fettle
+from ._record import did_you_mean
 from .design import Design
 from .errors import Error, Fault
 
 VERSION = 1
+FIRST_KEY = '{"fettle_explore"'
+MOST_DESIGNS = 1_000_000  # of one sweep
+DASK_SECONDS = 10  # for a scheduler to answer
 Result = Dict[str, Any]
 Progress = Callable[[int, int, Result], object]
 
@@ -213,18 +217,35 @@ class _LocalPool:
             worker.close()
 
 
-def _run_on_dask(address: str, name: str, design: bytes, jobs: Sequence[Job]) -> Iterator[Result]:
-    """On the workers of a running scheduler, which have this package. Designs of a lost worker are given to others by the scheduler."""
-    from distributed import Client, KilledWorker, as_completed  # Debian's python3-distributed
+def _dask_client(address: str) -> Any:
+    """Of a running scheduler. An address that is none, or where nobody answers, is an error within DASK_SECONDS."""
+    try:
+        from distributed import Client
+        from distributed.comm.addressing import get_address_host_port
+    except ImportError as fault:
+        raise _fail("file_not_found", "dask", "there is no Dask: install Debian's python3-distributed, or leave this out") from fault
+    try:
+        get_address_host_port(address)  # Client would wait for what can never be
+    except (ValueError, NotImplementedError) as fault:
+        raise _fail("parse", "dask", f"{address!r} is no address of a scheduler, as tcp://10.0.0.5:8786 is: {fault}") from fault
+    try:
+        return Client(address, timeout=DASK_SECONDS, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, TimeoutError) as fault:
+        message = f"no Dask scheduler answered at {address} within {DASK_SECONDS} s; is one running there?"
+        raise _fail("file_not_found", "dask", message) from fault
 
-    with Client(address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
-        # The design goes with each job: what is scattered is lost with the workers that have it.
-        futures = {client.submit(run_job, name, design, job, pure=False): job for job in jobs}
-        for future in as_completed(futures, loop=client.loop):  # type: ignore[no-untyped-call]
-            try:
-                yield future.result()
-            except KilledWorker:
-                yield _lost(futures[future])
+
+def _run_on_dask(client: Any, name: str, design: bytes, jobs: Sequence[Job]) -> Iterator[Result]:
+    """On the scheduler's workers, which have this package. Designs of a lost worker are given to others by the scheduler."""
+    from distributed import KilledWorker, as_completed
+
+    # The design goes with each job: what is scattered is lost with the workers that have it.
+    futures = {client.submit(run_job, name, design, job, pure=False): job for job in jobs}
+    for future in as_completed(futures, loop=client.loop):  # type: ignore[no-untyped-call]
+        try:
+            yield future.result()
+        except KilledWorker:
+            yield _lost(futures[future])
 
 
 class Exploration:
@@ -257,6 +278,11 @@ class Exploration:
 
         return np.array([value(result) for result in self.results])
 
+    def __repr__(self) -> str:
+        counts = collections.Counter(str(result["status"]) for result in self.results)
+        told = ", ".join(f"{count} {status}" for status, count in counts.most_common())
+        return f"Exploration({len(self)} designs{': ' if told else ''}{told})"
+
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{r['status']}</td><td>{r.get('objective')}</td></tr>" for r in self.best(10))
         return f"<table><caption>{len(self)} designs; the best</caption><tr><th>status</th><th>objective</th></tr>{rows}</table>"
@@ -268,16 +294,37 @@ def _fail(code: str, where: str, message: str) -> Error:
 
 def read_exploration(path: str) -> Exploration:
     """Reads a file of explore(). A last line that was cut off is left out."""
-    with open(path, encoding="utf-8") as file:
-        lines = file.read().split("\n")
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().split("\n")
+    except UnicodeDecodeError as fault:
+        raise _fail("parse", str(path), f"it is no text: {fault}") from fault
     whole = [line for line in lines[:-1] if line]  # what follows the last line feed was cut off
     try:
         records = [json.loads(line) for line in whole]
     except json.JSONDecodeError as fault:
         raise _fail("parse", str(path), f"a line is no JSON: {fault}") from fault
-    if not records or records[0].get("fettle_explore") != VERSION:
+    if not records or not isinstance(records[0], dict) or records[0].get("fettle_explore") != VERSION:
         raise _fail("missing_key", str(path), f"no exploration: its first line has no `fettle_explore` {VERSION}")
     return Exploration(records[0], records[1:])
+
+
+def swept_faults(names: Sequence[str], sweep: Mapping[str, Union[int, Sequence[float]]]) -> List[Fault]:
+    """What is wrong with a sweep of these parameters."""
+    faults, designs = [], 1
+    for name, values in sweep.items():
+        where = f"sweep/{name}"
+        count = values if isinstance(values, int) else len(values)
+        designs *= count
+        if name not in names:
+            faults.append(Fault("unknown_key", where, f"there is no parameter {name!r}; {did_you_mean(name, names)}"))
+        elif count < 1:
+            faults.append(Fault("out_of_range", where, f"{count} values are not allowed: 1 or more are"))
+        elif not isinstance(values, int) and not all(math.isfinite(x) for x in values):
+            faults.append(Fault("not_finite", where, "the values are finite numbers"))
+    if designs > MOST_DESIGNS:
+        faults.append(Fault("out_of_range", "sweep", f"{designs} designs are not allowed: up to {MOST_DESIGNS} are"))
+    return faults
 
 
 def grid(problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence[float]]]) -> List[Job]:
@@ -285,8 +332,6 @@ def grid(problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence
     names = problem.parameter_names
     columns = {}
     for name, values in sweep.items():
-        if name not in names:
-            raise _fail("unknown_key", name, f"there is no parameter {name!r}; there are {', '.join(names)}")
         k = names.index(name)
         columns[k] = np.linspace(problem.lower[k], problem.upper[k], values) if isinstance(values, int) else np.asarray(values, float)
     jobs = []
@@ -308,14 +353,19 @@ def _jobs(
 
 @contextlib.contextmanager
 def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Result]]]:
-    """The file, locked, at its end; and what it has already."""
+    """The file, locked, at its end; and what it has already. A new file goes again where it gets no result, for something was raised."""
     with open(path, "a+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as fault:
             raise _fail("file_unreadable", path, "another exploration is writing this file") from fault
         file.seek(0)
-        text = file.read()
+        try:
+            text = file.read()
+        except UnicodeDecodeError as fault:
+            raise _fail("parse", path, "this file is no exploration; name another one") from fault
+        if not text.startswith(FIRST_KEY[: len(text)]):
+            raise _fail("parse", path, "this file is no exploration; name another one")
         whole = text[: text.rfind("\n") + 1]
         if len(whole) < len(text):
             file.truncate(len(whole.encode()))
@@ -327,7 +377,13 @@ def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Resu
             results = known.results
         else:
             _write(file, header)
-        yield file, results
+        begin = file.tell()
+        try:
+            yield file, results
+        except BaseException:
+            if not whole and file.tell() == begin:
+                os.unlink(path)
+            raise
 
 
 def _write(file: TextIO, record: Result) -> None:
@@ -354,28 +410,40 @@ def explore(
     design: a Design that can be pickled, or the path of a *.design.json. sweep: {parameter: SI values, or how many between its bounds}, all
     combinations. samples: so many designs drawn from the bounds. starts: so many runs of the optimiser, the first from the design's own
     values. seed: of samples and starts; the same seed gives the same ones on any machine. workers: processes (default: the processors).
-    dask: address of a scheduler, whose workers are used instead. progress(done, of, result)."""
+    dask: address of a scheduler, whose workers are used instead; one that does not answer within 10 s is an error. progress(done, of,
+    result)."""
+    faults = [
+        Fault("out_of_range", name, f"{value} is not allowed: {least} or more is")
+        for name, value, least in (("samples", samples, 0), ("starts", starts, 0), ("seed", seed, 0), ("workers", workers, 1))
+        if value is not None and value < least
+    ]
     if isinstance(design, str):
         design = _fettle.read_design(design, allow_programs=allow_programs).design
     problem = _fettle.DesignProblem(design)
+    faults += swept_faults(problem.parameter_names, sweep or {})
+    if faults:
+        raise Error(faults)
     packed = pickle.dumps(design)
     name = _design_name(design)
     header = {"fettle_explore": VERSION, "program": _fettle.__version__, "design": name, "parameters": problem.parameter_names}
     jobs = _jobs(problem, sweep, samples, starts, seed)
     del problem
-    with _results_file(out, header) as (file, known):
+    with contextlib.ExitStack() as stack:
+        client = stack.enter_context(_dask_client(dask)) if dask is not None else None
+        file, known = stack.enter_context(_results_file(out, header))
         done = {result["key"] for result in known if result["status"] != "lost"}
         wanted = [job for job in jobs if job.key not in done]
         count = len(jobs) - len(wanted)
-        pool = None if dask or not wanted else _LocalPool(min(workers or os.cpu_count() or 1, len(wanted)), name, packed)
-        try:
-            results = pool.run(wanted) if pool else _run_on_dask(dask, name, packed, wanted) if dask and wanted else iter(())
-            for result in results:
-                _write(file, result)
-                count += 1
-                if progress:
-                    progress(count, len(jobs), result)
-        finally:
-            if pool:
-                pool.close()
+        results: Iterator[Result] = iter(())
+        if client and wanted:
+            results = _run_on_dask(client, name, packed, wanted)
+        elif wanted:
+            pool = _LocalPool(min(workers or os.cpu_count() or 1, len(wanted)), name, packed)
+            stack.callback(pool.close)
+            results = pool.run(wanted)
+        for result in results:
+            _write(file, result)
+            count += 1
+            if progress:
+                progress(count, len(jobs), result)
     return read_exploration(out)

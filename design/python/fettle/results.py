@@ -25,7 +25,7 @@ def _rows() -> Array:
     return np.zeros((0, 0))
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class StepReport(Record):
     newton_iterations: int = 0
     friction_rounds: int = 0
@@ -36,7 +36,7 @@ class StepReport(Record):
     path_joint_gap: float = 0.0  #: [m]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class SimulationReport(Record):
     status: Literal["ok", "blocked", "not_held", "not_converged", "interrupted"] = "ok"
     message: str = ""
@@ -45,7 +45,7 @@ class SimulationReport(Record):
     wall_seconds: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactForce(Record):
     """Between two bodies at a step's end."""
 
@@ -59,7 +59,7 @@ class ContactForce(Record):
     contacts: int = 0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class DriveForce(Record):
     """What holds or drives a body's prescribed coordinates."""
 
@@ -68,7 +68,7 @@ class DriveForce(Record):
     torque: Array = dataclasses.field(default_factory=_zero)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class JointForce(Record):
     """On body b, about the joint's point; effort: of a motor, along its coordinate."""
 
@@ -78,7 +78,7 @@ class JointForce(Record):
     effort: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class StepOutputs(Record):
     time: float = 0.0  #: at the step's end [s]
     kappa: float = 0.0
@@ -93,14 +93,14 @@ class StepOutputs(Record):
     joints: List[JointForce] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Simulation(Record):
     trajectory: _fettle.Trajectory = dataclasses.field(default_factory=_fettle.Trajectory)
     report: SimulationReport = dataclasses.field(default_factory=SimulationReport)
     outputs: List[StepOutputs] = dataclasses.field(default_factory=list)  #: per step, if asked for
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class PairRequest(Record):
     """Bodies a and b, and the clearance that is required of them [m]."""
 
@@ -110,7 +110,7 @@ class PairRequest(Record):
     far: float = math.inf
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Witness(Record):
     """Which two primitives are closest, when, and where."""
 
@@ -129,7 +129,7 @@ class Witness(Record):
     distance: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MarginInterval(Record):
     step: int = -1
     segment: int = 0
@@ -139,7 +139,7 @@ class MarginInterval(Record):
     upper: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Overlap(Record):
     depth_lower: float = 0.0  #: [m]
     depth_upper: float = 0.0
@@ -149,7 +149,7 @@ class Overlap(Record):
     center: Array = dataclasses.field(default_factory=_zero)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class PairClearance(Record):
     """Proven: lower <= the least distance <= upper, rounding included [m]."""
 
@@ -173,13 +173,13 @@ class PairClearance(Record):
     witnesses: List[Witness] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class CertificateFault(Record):
     where: str = ""
     message: str = ""
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class CertificateReport(Record):
     faults: List[CertificateFault] = dataclasses.field(default_factory=list)
     stale: bool = False
@@ -192,7 +192,7 @@ class CertificateReport(Record):
         return not self.faults
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Measurement(Record):
     """lower <= true value <= upper; `value` is what the optimiser sees."""
 
@@ -203,13 +203,13 @@ class Measurement(Record):
     fault: str = ""
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Rows(Record):
     values: Array = dataclasses.field(default_factory=_empty)  #: (k)
     jacobian: Array = dataclasses.field(default_factory=_rows)  #: (k, n)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class DesignEvaluation(Record):
     """A design, simulated and measured; not usable: `reason` says why."""
 
@@ -229,7 +229,7 @@ class DesignEvaluation(Record):
     backward_seconds: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class StageReport(Record):
     model: str = ""
     evaluations: int = 0
@@ -238,7 +238,7 @@ class StageReport(Record):
     message: str = ""
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Optimality(Record):
     judged: bool = False
     predicted_gain: float = 0.0
@@ -248,13 +248,14 @@ class Optimality(Record):
     multipliers: Array = dataclasses.field(default_factory=_empty)
     residual: Array = dataclasses.field(default_factory=_empty)
     held: List[str] = dataclasses.field(default_factory=list)
+    refused: str = ""
     improvable: List[int] = dataclasses.field(default_factory=list)
     noise: Array = dataclasses.field(default_factory=_empty)
     noise_in_objective: float = 0.0
     roughest: int = -1
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class OptimiserReport(Record):
     status: Literal["optimal", "feasible", "infeasible", "interrupted", "start_failed"] = "start_failed"
     message: str = ""
@@ -268,7 +269,7 @@ class OptimiserReport(Record):
     stages: List[StageReport] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class OptimiseOutcome(Record):
     report: OptimiserReport = dataclasses.field(default_factory=OptimiserReport)
     start: Array = dataclasses.field(default_factory=_empty)
@@ -280,7 +281,7 @@ class OptimiseOutcome(Record):
     replayed: int = 0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class CheckRow(Record):
     quantity: str = ""
     parameter: str = ""
@@ -292,7 +293,7 @@ class CheckRow(Record):
     resolved: bool = True
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class LineRow(Record):
     """As CheckRow, along roughness.direction; slope: about 2 where the gradient is right and the quantity smooth."""
 
@@ -305,14 +306,14 @@ class LineRow(Record):
     slope: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class SweepAgreement(Record):
     disagreement: float = 0.0  #: of the reverse and the forward sweep, relative
     quantity: str = ""
     failure: str = ""
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class NoiseLevel(Record):
     noise: float = 0.0
     second_derivative: float = 0.0
@@ -322,7 +323,7 @@ class NoiseLevel(Record):
     status: Literal["detected", "spacing_too_small", "spacing_too_large"] = "spacing_too_large"
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class QuantityRoughness(Record):
     name: str = ""
     size: float = 0.0
@@ -336,7 +337,7 @@ class QuantityRoughness(Record):
     rough: bool = False
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class RoughnessReport(Record):
     measured: bool = False
     direction: Array = dataclasses.field(default_factory=_empty)
@@ -348,13 +349,13 @@ class RoughnessReport(Record):
     interrupted: bool = False
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactFeature(Record):
     kind: Literal["vertex", "edge", "face"] = "vertex"
     vertices: List[int] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactState(Record):
     a: int = 0
     b: int = 0
@@ -365,7 +366,7 @@ class ContactState(Record):
     slides: bool = False
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactDifference(Record):
     event: Literal["touch", "part", "new_features", "parallel", "crossing", "slide", "stick"] = "touch"
     step: int = 0
@@ -374,7 +375,7 @@ class ContactDifference(Record):
     others: bool = False
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ContactChange(Record):
     """The nearest change of one sort between two bodies as one parameter moves to one side: none at `from_`, one at `to` (SI, signed)."""
 
@@ -389,7 +390,7 @@ class ContactChange(Record):
     count: int = 1
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class CheckReport(Record):
     rows: List[CheckRow] = dataclasses.field(default_factory=list)
     along: List[LineRow] = dataclasses.field(default_factory=list)

@@ -23,7 +23,7 @@ def _indices(columns: int) -> Any:
     return lambda: np.zeros((0, columns), np.int32)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Mesh(Record):
     """Triangles, counter-clockwise seen from outside; perhaps loose edges. Equal vertices are one (`read_mesh` welds them)."""
 
@@ -34,7 +34,7 @@ class Mesh(Record):
     shell_names: List[str] = dataclasses.field(default_factory=list)  #: one per shell; empty: "name/0", ...
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Pose(Record):
     """world = rotation @ x + position."""
 
@@ -42,7 +42,7 @@ class Pose(Record):
     position: Vector = dataclasses.field(default_factory=_zero)  #: [m]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MotionCurve(Record):
     """A coordinate over time, from its start: rate t + the table through (times, values); constant after stop_time."""
 
@@ -52,7 +52,7 @@ class MotionCurve(Record):
     stop_time: Optional[float] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class PoseScript(Record):
     """A kinematic body's poses at times > 0."""
 
@@ -60,14 +60,14 @@ class PoseScript(Record):
     poses: List[Pose] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class FrictionPair(Record):
     material_a: str = ""
     material_b: str = ""
     mu: float = 0.0
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Friction(Record):
     """Coulomb friction; rounds < 0: solves until normal forces and tangents agree."""
 
@@ -78,7 +78,7 @@ class Friction(Record):
     rounds: int = 1
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Damping(Record):
     """In proportion to mass and inertia."""
 
@@ -86,7 +86,7 @@ class Damping(Record):
     angular: float = 0.0  #: [1/s]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class MeshProgram(Record):
     """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
 
@@ -97,7 +97,7 @@ class MeshProgram(Record):
     time_limit: float = 300.0  #: [s]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class ShapeSpec(Record):
     """What makes a body's mesh: a generator, or a program."""
 
@@ -112,7 +112,7 @@ def held() -> List[Optional[MotionCurve]]:
     return [MotionCurve() for _ in range(6)]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Inertial(Record):
     """Mass and inertia that are given, not counted from the mesh."""
 
@@ -121,7 +121,7 @@ class Inertial(Record):
     inertia: ArrayLike = dataclasses.field(default_factory=lambda: np.zeros((3, 3)))  #: about the centre, axes of that frame [kg m^2]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Body(Record):
     """A rigid part. `prescribed`: px py pz rx ry rz in world axes, None: free."""
 
@@ -149,7 +149,7 @@ class Body(Record):
     group: int = -1  #: bodies of one group (>= 0) never collide
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Curve(Record):
     """What drives a motor: rate t + the table; see the library's core/scene/curve.hpp for the kinds."""
 
@@ -160,7 +160,7 @@ class Curve(Record):
     stop_time: Optional[float] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Attachment(Record):
     """A point and a direction in a body's file frame; body "": of the world."""
 
@@ -169,7 +169,7 @@ class Attachment(Record):
     axis: Vector = dataclasses.field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class CoordinateForces(Record):
     """Spring, damper, Coulomb friction and stops along one coordinate."""
 
@@ -181,7 +181,7 @@ class CoordinateForces(Record):
     limits: Optional[Sequence[float]] = None
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Joint(Record):
     name: str = ""
     where: str = ""
@@ -195,7 +195,7 @@ class Joint(Record):
     collide: bool = False
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Spring(Record):
     """From point to point, or about or along a joint's coordinate."""
 
@@ -207,7 +207,7 @@ class Spring(Record):
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Motor(Record):
     """Drives a joint's coordinate ("motion"), or pushes along it ("effort")."""
 
@@ -218,7 +218,7 @@ class Motor(Record):
     curve: Curve = dataclasses.field(default_factory=Curve)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class PointLoad(Record):
     name: str = ""
     where: str = ""
@@ -227,7 +227,7 @@ class PointLoad(Record):
     force: Vector = dataclasses.field(default_factory=_zero)  #: world [N]
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Mechanism(Record):
     joints: List[Joint] = dataclasses.field(default_factory=list)
     springs: List[Spring] = dataclasses.field(default_factory=list)
@@ -235,7 +235,7 @@ class Mechanism(Record):
     loads: List[PointLoad] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, slots=True)
 class Scene(Record):
     path: str = ""
     length_unit: float = 1.0  #: of the file [m], for reports

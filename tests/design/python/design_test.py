@@ -178,7 +178,16 @@ def test_wrong_deviations_are_refused():
     class Ungiven(TimedPath):
         deviation_gradient = fettle.Quantity.deviation_gradient
 
-    faults = [(Unsquared, ValueError, "sum up to its value"), (Flat, ValueError, "shape .m,."), (Ungiven, NotImplementedError, "")]
+    class Endless(TimedPath):
+        def deviation_gradient(self, simulated, i):
+            return self.weighted(simulated, np.full(self.targets.size, np.nan))
+
+    faults = [
+        (Unsquared, fettle.Error, "sum up to its value"),
+        (Flat, fettle.Error, "shape .m,."),
+        (Ungiven, NotImplementedError, ""),
+        (Endless, fettle.Error, "Endless.deviation_gradient../positions: it has a number that is not finite"),
+    ]
     for kind, error, words in faults:
         design = path_design("own")
         design.objective[0].quantity = kind(1, design.objective[0].quantity.targets)

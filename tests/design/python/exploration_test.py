@@ -13,6 +13,8 @@ import pytest
 
 import fettle
 from conftest import EXAMPLES, MeanHeight, tilted_plate
+from fettle import exploration
+from fettle.__main__ import main, progress_line
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -111,11 +113,16 @@ def test_a_design_that_raises_is_told(tmp_path):
         fettle.explore(short_design(class_in_no_module(1)), str(tmp_path / "a.jsonl"), samples=1)
 
 
-def test_the_command(tmp_path):
+def short_file(tmp_path):
     text = (EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text()
     scene = EXAMPLES / "slider_crank" / "slider_crank.scene.json"
     design = tmp_path / "short.design.json"
     design.write_text(text.replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 1}}'))
+    return design
+
+
+def test_the_command(tmp_path):
+    design = short_file(tmp_path)
     out = tmp_path / "sweep.jsonl"
     words = ["explore", str(design), "--out", str(out), "--sweep", "crank_radius=13:14:3", "--workers", "1", "--quiet", "--json"]
     done = subprocess.run([sys.executable, "-m", "fettle", *words], capture_output=True, text=True, check=False)
@@ -125,6 +132,107 @@ def test_the_command(tmp_path):
     assert sorted(fettle.read_exploration(str(out)).column("crank_radius")) == pytest.approx([13e-3, 13.5e-3, 14e-3])
     wrong = subprocess.run([sys.executable, "-m", "fettle", "explore", str(design), "--out", str(out)], capture_output=True, text=True, check=False)
     assert wrong.returncode == 3 and "nothing to explore" in wrong.stderr
+
+
+def told(capsys, *words):
+    """Exit code, and the errors of the command as (code, where, message)."""
+    code = main(["explore", *map(str, words), "--json"])
+    answer = json.loads(capsys.readouterr().out)
+    return code, [(e["code"], e["where"], e["message"]) for e in answer.get("errors", ())]
+
+
+def test_the_commands_errors_have_code_and_place(tmp_path, capsys):
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    sweeps = [
+        ("crank_radius=abc", "parse", "NAME=COUNT or NAME=LOW:HIGH:COUNT"),
+        ("crank_radius=1:2", "parse", "NAME=LOW:HIGH:COUNT"),
+        ("=3", "parse", "NAME=COUNT"),
+        ("crank_radius", "parse", "NAME=COUNT"),
+        ("crank_radius=-3", "out_of_range", "1 or more"),
+        ("crank_radius=0", "out_of_range", "1 or more"),
+        ("crank_radius=13:14:0", "out_of_range", "1 or more"),
+        ("crank_radius=nan:14:2", "not_finite", "finite"),
+        ("crank_radus=3", "unknown_key", "did you mean 'crank_radius'?"),
+        ("crank_radius=9999999999", "out_of_range", "up to 1000000"),
+    ]
+    for sweep, code, words in sweeps:
+        ended, ((found, where, message),) = told(capsys, design, "--out", out, "--sweep", sweep)
+        assert (ended, found, where) == (3, code, f"--sweep {sweep}"), message
+        assert words in message
+    all_of_them = [word for sweep, _, _ in sweeps for word in ("--sweep", sweep)]
+    assert len(told(capsys, design, "--out", out, *all_of_them)[1]) == len(sweeps)
+    others = [
+        (["--sweep", "crank_radius=2", "--sweep", "crank_radius=3"], "inconsistent", "--sweep crank_radius=3"),
+        (["--samples", "-1"], "out_of_range", "--samples"),
+        (["--samples", "1", "--workers", "0"], "out_of_range", "--workers"),
+        (["--samples", "1", "--seed", "-1"], "out_of_range", "--seed"),
+        (["--samples", "many"], "unsupported", "command line"),
+        ([], "missing_key", "command line"),
+    ]
+    for words, code, where in others:
+        ended, ((found, place, message),) = told(capsys, design, "--out", out, *words)
+        assert (ended, found, place) == (3, code, where), message
+    assert not out.exists()
+    assert told(capsys, tmp_path / "none.json", "--out", out, "--samples", 1)[1][0][:2] == ("file_not_found", str(tmp_path / "none.json"))
+    nowhere = tmp_path / "none" / "out.jsonl"
+    assert told(capsys, design, "--out", nowhere, "--samples", 1)[1][0][:2] == ("file_not_found", str(nowhere))
+    # As text: a line each, as the other commands have it.
+    assert main(["explore", str(design), "--out", str(out), "--sweep", "crank_radius=0"]) == 3
+    assert capsys.readouterr().err == "error: --sweep crank_radius=0: 0 values are not allowed: 1 or more are [out_of_range]\n"
+
+
+def test_what_is_no_exploration_is_left_alone(tmp_path, capsys):
+    design = short_file(tmp_path)
+    for text in (b'{"a": 1}', b"a line\nand more", b"\xff\xfe"):
+        other = tmp_path / "other.txt"
+        other.write_bytes(text)
+        ended, ((code, where, _),) = told(capsys, design, "--out", other, "--samples", 1)
+        assert (ended, code, where) == (3, "parse", str(other))
+        assert other.read_bytes() == text
+
+
+def test_progress_says_why(tmp_path):
+    design = short_design()
+    design.parameters[1].lower = -1e-3
+    lines = []
+    sweep = {"foot": [-1e-3, 8e-3]}
+    found = fettle.explore(design, str(tmp_path / "a.jsonl"), sweep=sweep, workers=1, progress=lambda *at: lines.append(progress_line(*at)))
+    assert lines[0].startswith("1/2 unusable: ") and "above 0" in lines[0]
+    assert "objective -" in lines[1]
+    assert repr(found) == f"Exploration(2 designs: 1 unusable, 1 {found.results[1]['status']})"
+
+
+def test_what_is_raised_leaves_no_file(tmp_path):
+    out = tmp_path / "out.jsonl"
+
+    def enough(*_):
+        raise KeyError("enough")
+
+    faults = {"samples": -1, "starts": -1, "seed": -1, "workers": 0}
+    with pytest.raises(fettle.Error) as refused:
+        fettle.explore(short_design(), str(out), sweep={"height": 0, "speed": [0.3, float("inf")], "hight": 2}, **faults)
+    assert [e.where for e in refused.value.errors] == [*faults, "sweep/height", "sweep/speed", "sweep/hight"]
+    assert not out.exists()
+    with pytest.raises(KeyError, match="enough"):
+        fettle.explore(short_design(), str(out), samples=2, workers=1, progress=enough)
+    assert len(fettle.read_exploration(str(out))) == 1  # what was found stays
+
+
+def test_an_address_where_no_scheduler_is(tmp_path, capsys, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(exploration, "DASK_SECONDS", 1)
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    for address, code, words in (
+        ("foo", "parse", "no address"),
+        ("tcp://", "parse", "no address"),
+        ("foo://host:1", "parse", "no address"),
+        ("tcp://127.0.0.1:1", "file_not_found", "within 1 s"),
+    ):
+        begin = time.monotonic()
+        ended, ((found, where, message),) = told(capsys, design, "--out", out, "--samples", 1, "--dask", address)
+        assert (ended, found, where) == (3, code, "--dask") and words in message
+        assert time.monotonic() - begin < 10
+        assert not out.exists()
 
 
 @pytest.fixture(name="cluster")

@@ -179,3 +179,7 @@ def test_notebooks_get_a_table():
     html = fettle.Body("<b>", mesh=box(0.01, 0.01, 0.01))._repr_html_()
     assert "&lt;b&gt;" in html and "<table>" in html
     assert "array of shape" in fettle.Mesh("m", np.zeros((9, 3)))._repr_html_()
+    scene = fettle.Scene(bodies=[fettle.Body("a & b", mesh=box(0.01, 0.01, 0.01))], timestep=0.01)
+    html = fettle.simulate(fettle.build_model(scene), steps=3).trajectory._repr_html_()
+    assert "fettle.Trajectory" in html and "a &amp; b" in html and ">3<" in html and ">0.03<" in html
+    assert "<table>" in fettle.Trajectory()._repr_html_()

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// Errors of the library on their way to Python, as what is thrown; what becomes of them there is errors.hpp.
+#pragma once
+
+#include <exception>
+#include <utility>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::design::python {
+
+/// Carries errors to Python. Thrown with or without the interpreter's lock.
+class RaisedErrors : public std::exception {
+public:
+    explicit RaisedErrors(Errors errors) : errors_(std::move(errors)) {}
+    const char* what() const noexcept override { return "fettle.Error"; }
+    const Errors& errors() const { return errors_; }
+
+private:
+    Errors errors_;
+};
+
+}  // namespace fettle::design::python

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""The package as type checkers see it from outside: every public name is exported, and a user's program is checked by them."""
+import ast
+import inspect
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+import fettle
+from fettle import _fettle, design, errors, results, scene
+
+PACKAGE = pathlib.Path(fettle.__file__).parent
+FOR_TESTS = {"scene_round_trip", "as_library_has_it", "defaults", "evaluate_file"}
+
+PROGRAM = '''
+import numpy as np
+
+import fettle
+
+
+class MeanHeight(fettle.Quantity):
+    dimension = "length"
+
+    def __init__(self, body: int) -> None:
+        self.body = body
+
+    def value(self, simulated: fettle.Simulated) -> float:
+        return float(simulated.positions[:, self.body, 2].mean())
+
+    def gradient(self, simulated: fettle.Simulated) -> fettle.QuantityGradient:
+        positions = np.zeros_like(simulated.positions)
+        positions[:, self.body, 2] = 1 / len(positions)
+        return fettle.QuantityGradient(positions=positions)
+
+
+def main(path: str) -> None:
+    design = fettle.read_design(path).design
+    design.objective.append(fettle.ObjectiveTerm("height", 1, 1e-3, MeanHeight(0)))
+    problem = fettle.DesignProblem(design)
+    model = problem.model_at(problem.values)
+    simulation = fettle.simulate(model, steps=3)
+    for pair in fettle.certify_clearance(model, simulation.trajectory, minimum=1e-4):
+        print(pair.status, pair.lower + pair.upper)
+'''
+REVEALED = '''
+reveal_type(fettle.Quantity())
+reveal_type(fettle.read_design(""))
+reveal_type(fettle.simulate)
+fettle.no_such_name
+'''
+
+
+def test_every_public_name_is_exported():
+    public = {name for name in dir(_fettle) if not name.startswith("_")} - FOR_TESTS
+    for module in (design, errors, results, scene):
+        public |= {
+            name
+            for name, made in vars(module).items()
+            if (inspect.isclass(made) or inspect.isfunction(made)) and made.__module__ == module.__name__ and not name.startswith("_")
+        }
+    assert not public - set(fettle.__all__)
+    imported = [node for node in ast.walk(ast.parse((PACKAGE / "__init__.py").read_text())) if isinstance(node, ast.ImportFrom)]
+    as_public = {alias.asname for node in imported for alias in node.names if alias.asname == alias.name}
+    assert set(fettle.__all__) == as_public - {"__version__"}
+
+
+def mypy(tmp_path, text):
+    pytest.importorskip("mypy")
+    program = tmp_path / "program.py"
+    program.write_text(text)
+    words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(PACKAGE.parent / "mypy_cache_outside"), str(program)]
+    done = subprocess.run(words, cwd=PACKAGE.parent, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_a_users_program_is_checked(tmp_path):
+    code, said = mypy(tmp_path, PROGRAM)
+    assert code == 0, said
+    code, said = mypy(tmp_path, PROGRAM + REVEALED)
+    assert code == 1
+    assert 'Revealed type is "fettle.design.Quantity"' in said
+    assert 'Revealed type is "fettle.design.DesignFile"' in said
+    assert "-> fettle.results.Simulation" in said
+    assert said.count("error:") == 1 and "no_such_name" in said
