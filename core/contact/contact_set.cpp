@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
@@ -115,15 +116,19 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::fun
                    HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
     struct Made {
         kinematics::PoseGradient first, second;
-        Matrix12 hessian;
+        Matrix6 of_first, of_second, cross;  // cross: of the lower body's rows
     };
-    std::vector<Made> made(bodies.size());
+    const auto made = std::make_unique_for_overwrite<Made[]>(bodies.size());
     base::parallel_for(static_cast<int>(bodies.size()), pairs_a_piece, [&](int k) {
         BodyPairSum sum;
         make(k, sum);
         made[k].first = sum.first;
         made[k].second = sum.second;
-        if (kind != HessianKind::none) made[k].hessian = in_both_bodies(sum.hessian);
+        if (kind == HessianKind::none) return;
+        const Matrix12 full = in_both_bodies(sum.hessian);
+        made[k].of_first = full.topLeftCorner<6, 6>();
+        made[k].of_second = full.bottomRightCorner<6, 6>();
+        made[k].cross = bodies[k][0] < bodies[k][1] ? full.topRightCorner<6, 6>() : full.bottomLeftCorner<6, 6>();
     });
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         const auto [first, second] = bodies[k];
@@ -132,14 +137,9 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::fun
         gradients[second].force += made[k].second.force;
         gradients[second].arm += made[k].second.arm;
         if (kind == HessianKind::none) continue;
-        const Matrix12& full = made[k].hessian;
-        hessian.diagonal[first] += full.topLeftCorner<6, 6>();
-        hessian.diagonal[second] += full.bottomRightCorner<6, 6>();
-        kinematics::OffDiagonalBlock& block = off_diagonal(hessian, std::min(first, second), std::max(first, second));
-        if (first < second)
-            block.block += full.topRightCorner<6, 6>();
-        else
-            block.block += full.bottomLeftCorner<6, 6>();
+        hessian.diagonal[first] += made[k].of_first;
+        hessian.diagonal[second] += made[k].of_second;
+        off_diagonal(hessian, std::min(first, second), std::max(first, second)).block += made[k].cross;
     }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/core/solver/caution.hpp"
 #include "fettle/core/solver/failure.hpp"
@@ -343,8 +344,10 @@ private:
     }
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
+        constexpr int bodies_at_once = 128;  // that a thread takes
         std::vector<PathSegment> segments(at_.points.size());
-        for (std::size_t i = 0; i < end.size(); ++i) segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end[i]);
+        base::parallel_for(static_cast<int>(end.size()), bodies_at_once,
+                           [&](int i) { segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end[i]); });
         return segments;
     }
 
