@@ -2,6 +2,7 @@
 #include "fettle/core/clearance/body_motions.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
@@ -54,13 +55,16 @@ std::vector<char> have_usable_numbers(const model::Model& model, const stepper::
 
 std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<int>& bodies) {
     std::vector<BodyShape> shapes(model.bodies.size());
-    geometry::ShapeIndex index;
+    std::unordered_map<const geometry::BodyHierarchy*, std::size_t> known;  // copies of a part share it
     std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
     first.reserve(bodies.size());
-    for (const int body : bodies) first.push_back(index.add(model.bodies[static_cast<std::size_t>(body)].mesh));
+    for (const int body : bodies)
+        first.push_back(known.try_emplace(model.bodies[static_cast<std::size_t>(body)].hierarchy.get(), first.size()).first->second);
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
-        if (first[i] != static_cast<std::size_t>(i)) return;
         const model::Body& body = model.bodies[bodies[i]];
+        const bool is_copy = first[i] != static_cast<std::size_t>(i) && have_same_shape(model.bodies[bodies[first[i]]].mesh, body.mesh);
+        if (is_copy) return;
+        first[i] = static_cast<std::size_t>(i);
         shapes[bodies[i]].tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
         shapes[bodies[i]].solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_mesh(body.mesh));
     });

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/base/parallel.hpp"
+
 namespace fettle::core::clearance {
 namespace {
 
@@ -34,10 +36,18 @@ public:
         return piece;
     }
 
+    // Once all pieces are there: what they hold does not depend on their boxes.
+    void finish() {
+        constexpr int pieces_at_once = 64;  // that a thread takes
+        base::parallel_for(static_cast<int>(tree_.pieces.size()), pieces_at_once, [&](int i) {
+            Piece& piece = tree_.pieces[i];
+            if (piece.count <= most_elements_of_turned_box) turn_box(piece);
+            piece.size = piece.half_extent.norm();
+        });
+    }
+
 private:
-    int start(Piece piece) {
-        if (piece.count <= most_elements_of_turned_box) turn_box(piece);
-        piece.size = piece.half_extent.norm();
+    int start(const Piece& piece) {
         tree_.pieces.push_back(piece);
         return static_cast<int>(tree_.pieces.size()) - 1;
     }
@@ -129,7 +139,9 @@ PieceTree make_piece_tree(const geometry::Mesh& mesh, const geometry::BodyHierar
         tree.elements.push_back(element);
     }
     tree.pieces.reserve(2 * tree.elements.size());
-    Builder(tree, hierarchy).add_node(0);
+    Builder builder(tree, hierarchy);
+    builder.add_node(0);
+    builder.finish();
     return tree;
 }
 

@@ -162,11 +162,9 @@ void complete_geometry(Body& body) {
     body.flat = std::make_shared<const geometry::FlatFeatures>(geometry::flat_features(body.mesh, flatness * body.radius));
 }
 
-void complete_geometry(std::vector<Body>& bodies) {
-    geometry::ShapeIndex shapes;
-    std::vector<std::size_t> first_of_shape;
-    first_of_shape.reserve(bodies.size());
-    for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
+namespace {
+
+void complete_copies(std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_shape) {
     base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         if (first_of_shape[at] == at) complete_geometry(bodies[at]);
@@ -183,6 +181,26 @@ void complete_geometry(std::vector<Body>& bodies) {
         body.hierarchy = twin.hierarchy;
         body.flat = twin.flat;
     }
+}
+
+// Copies of a mesh that are told from the same reference point are copies in their bodies' frames, too.
+std::vector<std::size_t> first_in_frame(const std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_mesh) {
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const std::size_t twin = first_of_mesh[i];
+        first.push_back(bodies[twin].reference_point == bodies[i].reference_point ? twin : i);
+    }
+    return first;
+}
+
+}  // namespace
+
+void complete_geometry(std::vector<Body>& bodies) {
+    geometry::ShapeIndex shapes;
+    std::vector<std::size_t> first_of_shape;
+    first_of_shape.reserve(bodies.size());
+    for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
+    complete_copies(bodies, first_of_shape);
 }
 
 base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options) {
@@ -206,12 +224,13 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     model.dhat = scene.dhat.value_or(1e-3 * size);
     model.dmin = scene.dmin;
     model.velocity_tolerance = scene.velocity_tolerance.value_or(1e-2 * size);
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    model.bodies.resize(scene.bodies.size());
+    base::parallel_for(static_cast<int>(scene.bodies.size()), 1, [&](int i) {
         const bool given = !options.reference_points.empty();
         const Vector3 point = given ? options.reference_points[i] : default_reference_point(scene.bodies[i], check.measures[i]);
-        model.bodies.push_back(build_body(scene.bodies[i], point));
-    }
-    complete_geometry(model.bodies);
+        model.bodies[i] = build_body(scene.bodies[i], point);
+    });
+    complete_copies(model.bodies, first_in_frame(model.bodies, check.shapes));
     add_masses(scene, model);
     model.friction = build_friction(scene, model.bodies);
     model.integrator = scene.integrator;

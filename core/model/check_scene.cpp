@@ -208,6 +208,7 @@ public:
         }
         for (const Errors& more : {found, check_motion(body, where)}) check.errors.insert(check.errors.end(), more.begin(), more.end());
         check.measures.push_back(measure);
+        check.shapes.push_back(shape);
     }
 
 private:

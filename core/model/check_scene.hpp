@@ -14,6 +14,7 @@ struct SceneCheck {
     Errors errors;
     std::vector<std::string> warnings;
     std::vector<BodyMeasure> measures;  ///< one per body; of a body with errors it means nothing
+    std::vector<std::size_t> shapes;    ///< per body the first whose mesh is the same
 };
 
 /// By each body's MeshPolicy (scene/scene.hpp): strict asks for perfect solids (geometry/mesh_validity.hpp), tolerant takes what does no

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -31,9 +33,23 @@ struct CenteredBox {
 };
 
 /// What is asked of one mesh again and again, and found out when it is wanted first. Bodies that share a hierarchy have one mesh.
+/// By several threads, too.
+template <class T>
+class Fact {
+public:
+    template <class Find>
+    const T& get(const Find& find) {
+        std::call_once(found_, [&] { value_ = find(); });
+        return value_;
+    }
+
+private:
+    std::once_flag found_;
+    T value_{};
+};
 struct MeshFacts {
-    std::optional<bool> bounds_a_solid, nearly_closed;
-    std::optional<std::vector<int>> samples;
+    Fact<bool> bounds_a_solid, nearly_closed;
+    Fact<std::vector<int>> samples;
 };
 
 struct PlacedBody {
@@ -75,16 +91,12 @@ bool elements_intersect(const Corners& a, int a_count, const Corners& b, int b_c
 }
 
 bool bounds_a_solid(const PlacedBody& placed) {
-    std::optional<bool>& known = placed.facts->bounds_a_solid;
-    if (!known) known = geometry::bounds_a_solid(placed.body->mesh);
-    return *known;
+    return placed.facts->bounds_a_solid.get([&] { return geometry::bounds_a_solid(placed.body->mesh); });
 }
 
 bool is_nearly_closed(const PlacedBody& placed) {
-    std::optional<bool>& known = placed.facts->nearly_closed;
     const geometry::Mesh& mesh = placed.body->mesh;
-    if (!known) known = geometry::is_nearly_closed(mesh.vertices, mesh.triangles);
-    return *known;
+    return placed.facts->nearly_closed.get([&] { return geometry::is_nearly_closed(mesh.vertices, mesh.triangles); });
 }
 
 /// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
@@ -105,9 +117,7 @@ std::vector<int> samples_of(const geometry::Mesh& mesh) {
 }
 
 const std::vector<int>& samples(const PlacedBody& placed) {
-    std::optional<std::vector<int>>& known = placed.facts->samples;
-    if (!known) known = samples_of(placed.body->mesh);
-    return *known;
+    return placed.facts->samples.get([&] { return samples_of(placed.body->mesh); });
 }
 
 struct Approach {
@@ -335,8 +345,14 @@ StartReport report_start(const Model& model) {
         bodies[static_cast<std::size_t>(i)] = place(body, facts.at(body.hierarchy.get()));
     });
     const Messages messages(model);
+    const std::vector<std::pair<int, int>> pairs = close_bodies(bodies, model.dmin);
+    std::vector<StartReport> of_pairs(pairs.size());
+    base::parallel_for(static_cast<int>(pairs.size()), 1, [&](int k) { report_pair(model, pairs[k], bodies, messages, of_pairs[k]); });
     StartReport report;
-    for (const auto& pair : close_bodies(bodies, model.dmin)) report_pair(model, pair, bodies, messages, report);
+    for (StartReport& of_pair : of_pairs) {
+        std::move(of_pair.errors.begin(), of_pair.errors.end(), std::back_inserter(report.errors));
+        std::move(of_pair.warnings.begin(), of_pair.warnings.end(), std::back_inserter(report.warnings));
+    }
     constexpr std::size_t most = 20;
     if (const std::size_t all = report.warnings.size(); all > most) {
         report.warnings.resize(most);

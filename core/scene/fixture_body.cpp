@@ -205,9 +205,9 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
     Body& body = out.body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
-    const auto mesh = this->mesh(node);
+    auto mesh = this->mesh(node);
     if (!mesh) return out;
-    body.mesh = *mesh;
+    body.mesh = *std::move(mesh);
     out.factors = scale_factors(node, body.mesh);
     geometry::scale_mesh(body.mesh, out.factors);
     const files::JsonNode file = node["mesh"];
