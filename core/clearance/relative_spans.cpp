@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -67,14 +69,182 @@ void set_span(SpanGroup& group, int j, const Rest& rest, const Rest& step, doubl
     group.step_shift[j] = scale * step.shift * rounded_up;
 }
 
-// Four nodes at a time, which fit the registers; blocks without a wanted node are left out.
+// Four nodes at a time, which fit the registers; blocks without a wanted node are left out. Instructions for four doubles are used where
+// the processor has them; bits are the same, for each operation rounds by itself. (Through references: how such values are passed depends
+// on the instructions that a function is compiled for.)
+using Four = double __attribute__((vector_size(32)));
+using FourBits = long long __attribute__((vector_size(32)));
 constexpr int block_size = 4;
-using Block = Eigen::Array<double, block_size, 1>;
-using Blocks = std::array<Block, 3>;
+struct FourVectors {
+    Four x, y, z;
+};
 static_assert((most_spans + 1) % block_size == 0);
 
-auto block_of(const Lanes& lanes, int block) { return lanes.segment<block_size>(block * block_size); }
-[[gnu::always_inline]] inline Block dot(const Blocks& n, const Vector3& v) { return v[0] * n[0] + v[1] * n[1] + v[2] * n[2]; }
+[[gnu::always_inline]] inline void load(const Lanes& lanes, int block, Four& out) {
+    std::memcpy(&out, lanes.data() + block * block_size, sizeof out);
+}
+[[gnu::always_inline]] inline void dot(const FourVectors& n, const Vector3& v, Four& out) { out = v[0] * n.x + v[1] * n.y + v[2] * n.z; }
+[[gnu::always_inline]] inline void subtract_magnitude(double factor, const FourVectors& n, const Vector3& v, Four& sum) {
+    Four along;
+    dot(n, v, along);
+    sum -= factor * reinterpret_cast<Four>(reinterpret_cast<FourBits>(along) & std::numeric_limits<long long>::max());
+}
+
+// Of nodes.
+struct NodeFunctions {
+    std::array<double, most_spans + 2> f{};                         // one more, so that each has a next one
+    std::array<std::array<double, most_spans + 2>, 3> direction{};  // n_j, where it turns
+};
+
+struct NodesAt {
+    const SpanGroup& group;
+    const TurningPlane& plane;
+    const Piece& a;
+    std::uint32_t wanted;
+    Vector3 here;  // the center of a's piece, at the plane's node
+};
+
+// Of box against box.
+struct OfBoxes {
+    const Piece &a, &b;
+
+    [[gnu::always_inline]] inline void operator()(const FourVectors& n, const FourVectors& m, Four& out) const {
+        Four of_a, of_b;
+        dot(m, a.center, of_a);
+        dot(n, b.center, of_b);
+        out = of_a - of_b;
+        for (int k = 0; k < 3; ++k) {
+            Four extents = {0, 0, 0, 0};
+            subtract_magnitude(a.half_extent[k], m, a.axes.col(k), extents);
+            subtract_magnitude(b.half_extent[k], n, b.axes.col(k), extents);
+            out += extents;
+        }
+    }
+};
+
+struct OfElements {
+    const Corners &a, &b;
+
+    [[gnu::always_inline]] inline void operator()(const FourVectors& n, const FourVectors& m, Four& out) const {
+        Four low, high, other;
+        dot(m, a.x.col(0), low);
+        dot(n, b.x.col(0), high);
+        for (int k = 1; k < 3; ++k) {
+            dot(m, a.x.col(k), other);
+            low = other < low ? other : low;
+            dot(n, b.x.col(k), other);
+            high = other > high ? other : high;
+        }
+        out = low - high;
+    }
+};
+
+// `at_nodes` is told n_j and R_j^T n_j: the rest of f_j, beside n_j.p_j.
+template <class AtNodes>
+[[gnu::always_inline]] inline void add_nodes(const NodesAt& at, const AtNodes& at_nodes, NodeFunctions& out) {
+    const auto& r = at.group.rotation;
+    const auto& offset = at.group.offset;
+    for (int i = 0; i * block_size <= most_spans; ++i) {
+        if ((at.wanted >> (i * block_size) & ((1U << block_size) - 1)) == 0) continue;
+        std::array<Four, 9> rotation;
+        FourVectors p;
+        for (std::size_t k = 0; k < 9; ++k) load(r[k], i, rotation[k]);
+        load(offset[0], i, p.x);
+        load(offset[1], i, p.y);
+        load(offset[2], i, p.z);
+        const Four zero = {0, 0, 0, 0};
+        FourVectors n{zero + at.plane.n[0], zero + at.plane.n[1], zero + at.plane.n[2]};
+        if (at.plane.rate != 0) {
+            Four goes;
+            dot({rotation[0], rotation[1], rotation[2]}, at.a.center, goes);
+            n.x += at.plane.rate * (goes + p.x - at.here[0]);
+            dot({rotation[3], rotation[4], rotation[5]}, at.a.center, goes);
+            n.y += at.plane.rate * (goes + p.y - at.here[1]);
+            dot({rotation[6], rotation[7], rotation[8]}, at.a.center, goes);
+            n.z += at.plane.rate * (goes + p.z - at.here[2]);
+            const Four squared = n.x * n.x + n.y * n.y + n.z * n.z;
+            Four scale;
+            for (int j = 0; j < block_size; ++j) scale[j] = (1 - 8 * unit_roundoff) / std::sqrt(squared[j] > 1e-3 ? squared[j] : 1e-3);
+            n = {n.x * scale, n.y * scale, n.z * scale};
+            std::memcpy(out.direction[0].data() + i * block_size, &n.x, sizeof n.x);
+            std::memcpy(out.direction[1].data() + i * block_size, &n.y, sizeof n.y);
+            std::memcpy(out.direction[2].data() + i * block_size, &n.z, sizeof n.z);
+        }
+        const FourVectors m{n.x * rotation[0] + n.y * rotation[3] + n.z * rotation[6],
+                            n.x * rotation[1] + n.y * rotation[4] + n.z * rotation[7],
+                            n.x * rotation[2] + n.y * rotation[5] + n.z * rotation[8]};
+        Four f;
+        at_nodes(n, m, f);
+        f = n.x * p.x + n.y * p.y + n.z * p.z + f;
+        std::memcpy(out.f.data() + i * block_size, &f, sizeof f);
+    }
+}
+
+struct Rounding {
+    double shrink, slack;
+};
+
+template <class AtNodes>
+[[gnu::always_inline]] inline void find_bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
+    NodeFunctions found;
+    add_nodes(at, at_nodes, found);
+    const double outer = at.a.radius * rounded_up;
+    const auto next = [](const std::array<double, most_spans + 2>& x, int block, Four& after) __attribute__((always_inline)) {
+        std::memcpy(&after, x.data() + block * block_size + 1, sizeof after);
+    };
+    for (int i = 0; i * block_size <= most_spans; ++i) {
+        Four rest, turn, nodes, after;
+        load(at.group.rest_shift, i, rest);
+        load(at.group.rest_turn, i, turn);
+        rest += outer * turn;
+        if (at.plane.rate != 0) {
+            Four squared = {0, 0, 0, 0}, shift;
+            for (const auto& n : found.direction) {
+                std::memcpy(&nodes, n.data() + i * block_size, sizeof nodes);
+                next(n, i, after);
+                squared += (after - nodes) * (after - nodes);
+            }
+            load(at.group.step_shift, i, shift);
+            load(at.group.step_turn, i, turn);
+            for (int j = 0; j < block_size; ++j) squared[j] = std::sqrt(squared[j]);
+            rest += squared * (0.25 * rounded_up) * (shift + outer * turn);
+        }
+        std::memcpy(&nodes, found.f.data() + i * block_size, sizeof nodes);
+        next(found.f, i, after);
+        // The sum of both ends is a NaN wherever one of them is, which the lesser of the two need not be.
+        const Four sum = nodes + after, lesser = after < nodes ? after : nodes;
+        const Four spans = ((sum == sum ? lesser : sum) - rest) * rounding.shrink - rounding.slack;
+        nodes = nodes * rounding.shrink - rounding.slack;
+        std::memcpy(out.spans.data() + i * block_size, &spans, sizeof spans);
+        std::memcpy(out.nodes.data() + i * block_size, &nodes, sizeof nodes);
+    }
+}
+
+#ifdef __x86_64__
+template <class AtNodes>
+[[gnu::target("avx2")]] void find_bounds_wide(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
+    find_bounds(at, rounding, at_nodes, out);
+}
+#endif
+
+template <class AtNodes>
+SpanBounds bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes) {
+    SpanBounds out;
+#ifdef __x86_64__
+    static const bool is_wide = __builtin_cpu_supports("avx2") && std::getenv("FETTLE_BASELINE_INSTRUCTIONS") == nullptr;
+    if (is_wide) {
+        find_bounds_wide(at, rounding, at_nodes, out);
+        return out;
+    }
+#endif
+    find_bounds(at, rounding, at_nodes, out);
+    return out;
+}
+
+NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted) {
+    const RelativePose at = group.at(plane.node);
+    return {group, plane, a, wanted, at.rotation * a.center + at.offset};
+}
 
 // The chain of nodes of all segments, from which groups of every level are made.
 struct Chain {
@@ -159,66 +329,14 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, double ra
     }
 }
 
-// `at_nodes` is told n_j and R_j^T n_j: the rest of f_j, beside n_j.p_j.
-template <class AtNodes>
-SpanBounds RelativeSpans::bounds(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted,
-                                 const AtNodes& at_nodes) const {
-    const auto& r = group.rotation;
-    const RelativePose at = group.at(plane.node);
-    const Vector3 here = at.rotation * a.center + at.offset;
-    Eigen::Array<double, most_spans + 2, 1> f = Eigen::Array<double, most_spans + 2, 1>::Zero();  // one more, so that each has a next one
-    std::array<Eigen::Array<double, most_spans + 2, 1>, 3> directions{f, f, f};
-    for (int i = 0; i * block_size <= most_spans; ++i) {
-        if ((wanted >> (i * block_size) & ((1U << block_size) - 1)) == 0) continue;
-        Blocks n{Block::Constant(plane.n[0]), Block::Constant(plane.n[1]), Block::Constant(plane.n[2])};
-        if (plane.rate != 0) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Block goes = a.center[0] * block_of(r[3 * k], i) + a.center[1] * block_of(r[3 * k + 1], i) +
-                                   a.center[2] * block_of(r[3 * k + 2], i) + block_of(group.offset[k], i);
-                n[k] += plane.rate * (goes - here[static_cast<int>(k)]);
-            }
-            const Block squared = n[0].square() + n[1].square() + n[2].square();
-            const Block scale = (1 - 8 * unit_roundoff) / squared.max(Block::Constant(1e-3)).sqrt();
-            for (std::size_t k = 0; k < 3; ++k) directions[k].segment<block_size>(i * block_size) = n[k] *= scale;
-        }
-        Blocks m;
-        for (std::size_t k = 0; k < 3; ++k) m[k] = n[0] * block_of(r[k], i) + n[1] * block_of(r[3 + k], i) + n[2] * block_of(r[6 + k], i);
-        const Block along = n[0] * block_of(group.offset[0], i) + n[1] * block_of(group.offset[1], i) + n[2] * block_of(group.offset[2], i);
-        f.segment<block_size>(i * block_size) = along + at_nodes(n, m);
-    }
-    const double outer = a.radius * rounded_up;
-    Lanes rest = group.rest_shift + outer * group.rest_turn;
-    if (plane.rate != 0) {
-        Lanes squared = Lanes::Zero();
-        for (const auto& n : directions) squared += (n.tail<most_spans + 1>() - n.head<most_spans + 1>()).square();
-        rest += squared.sqrt() * (0.25 * rounded_up) * (group.step_shift + outer * group.step_turn);
-    }
-    const Lanes nodes = f.head<most_spans + 1>();
-    const Lanes next = f.tail<most_spans + 1>();
-    // The sum of both ends is a NaN wherever one of them is, which the lesser of the two need not be.
-    const Lanes spans = (nodes + next).isNaN().select(nodes + next, nodes.min(next));
-    return {(spans - rest) * shrink_ - slack_, nodes * shrink_ - slack_};
-}
-
 SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,
                                    std::uint32_t wanted) const {
-    return bounds(group, plane, a, wanted, [&](const Blocks& n, const Blocks& m) {
-        Block f = dot(m, a.center) - dot(n, b.center);
-        for (int k = 0; k < 3; ++k) f -= a.half_extent[k] * dot(m, a.axes.col(k)).abs() + b.half_extent[k] * dot(n, b.axes.col(k)).abs();
-        return f;
-    });
+    return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfBoxes{a, b});
 }
 
 SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
                                       const Corners& element_b, std::uint32_t wanted) const {
-    return bounds(group, plane, a, wanted, [&](const Blocks& n, const Blocks& m) {
-        Block low = dot(m, element_a.x.col(0)), high = dot(n, element_b.x.col(0));
-        for (int k = 1; k < 3; ++k) {
-            low = low.min(dot(m, element_a.x.col(k)));
-            high = high.max(dot(n, element_b.x.col(k)));
-        }
-        return Block(low - high);
-    });
+    return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfElements{element_a, element_b});
 }
 
 bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {

@@ -92,10 +92,6 @@ public:
                            const Corners& element_b, std::uint32_t wanted = all_nodes) const;
 
 private:
-    template <class AtNodes>
-    SpanBounds bounds(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted,
-                      const AtNodes& at_nodes) const;
-
     std::vector<SpanGroup> groups_;  // level by level
     double slack_ = 0, shrink_ = 1;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // fettle clearance from outside: sources of motion, pairs, presets, reports.
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -307,6 +308,18 @@ TEST_CASE("clearance: explanation, margin curves and a comparison with an earlie
     CHECK(baseline.at("missing") == Json::array({"slide:spin"}));
     const std::string broken = folder.write("broken.json", R"({"pairs": [{"a": "x"}]})");
     CHECK(run(command + "--minimum 1mm --baseline " + broken).code == 3);
+}
+
+TEST_CASE("Bounds have the same bits with any instructions of the processor") {
+    const std::string command =
+        "clearance examples/slider_crank/slider_crank.scene.json --motion --steps 40 --tolerance 1um --explain --json";
+    const Answer wide = run(command);
+    REQUIRE(wide.code <= 2);
+    REQUIRE(::setenv("FETTLE_BASELINE_INSTRUCTIONS", "1", 1) == 0);
+    const Answer narrow = run(command);
+    ::unsetenv("FETTLE_BASELINE_INSTRUCTIONS");
+    CHECK(wide.json().at("pairs").size() > 3);
+    CHECK(narrow.out == wide.out);
 }
 
 }  // namespace fettle::design::cli::clearance_command_test
