@@ -74,6 +74,8 @@ public:
         boxes_.resize(static_cast<std::size_t>(bodies_));
         usable_ = have_usable_numbers(model, trajectory, places);
         parallel_for(bodies_, 1, [&](int i) { boxes_[i] = box_of(model.bodies[i].mesh); });
+        const double telling = telling_spans();
+        if (telling < spans_.count) spans_.count = std::max(1, static_cast<int>(std::ceil(telling)));
     }
 
     NearWindows run() {
@@ -92,6 +94,25 @@ public:
     }
 
 private:
+    // So many spans that each body goes a small share of its size in each, about: more would tell no better what comes near.
+    double telling_spans() const {
+        constexpr double share = 0.1;
+        std::vector<double> way(static_cast<std::size_t>(bodies_), 0);
+        parallel_for((bodies_ + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
+            const int first = block * bodies_at_once, last = std::min(bodies_, first + bodies_at_once);
+            for (const PathPlace& place : places_) {
+                for (int body = first; body < last; ++body) {
+                    const kinematics::PathSegment path = segment_at(trajectory_, place, body);
+                    way[body] += path.position_step.norm() + path.rotation_vector_step.norm() * boxes_[body].radius;
+                }
+            }
+        });
+        double most = 0;
+        for (std::size_t body = 0; body < way.size(); ++body)
+            if (way[body] > 0) most = std::max(most, way[body] / (share * boxes_[body].half.norm()));
+        return most;
+    }
+
     struct NearSpan {
         int a, b, span;
     };
