@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/optimisers/optimality.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "fettle/tests/design/optimisers/known_problems.hpp"
+
+namespace fettle::design::optimisers::optimality_test {
+
+namespace {
+
+using namespace fettle::tests::design_support;
+
+// Stays where it is put.
+class Idle : public Optimiser {
+public:
+    std::string name() const override { return "idle"; }
+    NativeOutcome minimise(Evaluator&, const OptimiserOptions&) const override { return {}; }
+};
+
+// Values that scatter by `noise`, the same at the same point.
+Problem rough_bowl(double noise) {
+    Problem p;
+    p.start = VectorX::Constant(2, 0.9);
+    p.lower = VectorX::Constant(2, -1);
+    p.upper = VectorX::Constant(2, 1);
+    p.evaluate = [noise](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        const double scatter = noise * std::sin(1e9 * x[0] + 3e9 * x[1]);
+        e.objective = 1 + x.squaredNorm() + scatter;
+        e.gradient = 2 * x;
+        e.constraints.resize(0);
+        e.jacobian.resize(0, 2);
+        return e;
+    };
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("a design that can be improved is not called optimal, and the variables that could move are named") {
+    Problem p = disc_with_cliff(infinity);
+    p.start = Vector2(-0.9, 0.1);
+    const OptimiserReport report = optimise(p, Idle(), tight(20));
+    CHECK(report.status == OptimiserStatus::feasible);
+    CHECK(report.best.objective < 0.8 - 0.1);  // the probes' gains are kept
+    REQUIRE(report.optimality.improvable.size() >= 1);
+    CHECK(report.optimality.predicted_gain > report.optimality.worth);
+}
+
+TEST_CASE("where the noise cannot be measured, nothing is called optimal") {
+    Problem p = rough_bowl(0);
+    p.start.setZero();
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.usable = x.norm() < 1e-4;  // nothing beside the optimum can be evaluated
+        return e;
+    };
+    const OptimiserReport report = optimise(p, Idle(), tight(40));
+    CHECK(report.status == OptimiserStatus::feasible);
+    CHECK_FALSE(report.optimality.judged);
+}
+
+TEST_CASE("where what promises a gain cannot be evaluated, nothing is called optimal, and the reason is told") {
+    Problem p = rough_bowl(0);
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.usable = x[0] >= 0.3;
+        if (!e.usable) e.reason = "too thin";
+        return e;
+    };
+    for (const std::string& name : {"ipopt", "slsqp", "mma", "cobyla"}) {
+        INFO(name);
+        const OptimiserReport report = run(p, name, tight(80));
+        CHECK(report.status == OptimiserStatus::feasible);
+        CHECK(report.best.objective < 1.3);
+        CHECK(report.optimality.predicted_gain > report.optimality.worth);
+        const std::vector<int>& improvable = report.optimality.improvable;
+        CHECK(std::find(improvable.begin(), improvable.end(), 0) != improvable.end());
+        if (name == "mma" || name == "cobyla") continue;  // may still gain when their rounds end
+        CHECK(report.point[0] == Approx(0.3).margin(0.02));
+        CHECK(report.optimality.refused == "too thin");
+        CHECK(report.optimality.held[0] == Held::free);
+    }
+}
+
+TEST_CASE("noise above the tolerance makes no optimum; below it, it does no harm") {
+    OptimiserOptions options;
+    options.tolerance = 1e-4;
+    options.max_evaluations = 80;
+    const OptimiserReport rough = run(rough_bowl(1e-3), "ipopt", options);
+    CHECK(rough.status == OptimiserStatus::feasible);
+    CHECK(rough.optimality.roughest == 0);
+    CHECK(rough.optimality.noise_in_objective == Approx(1e-3 * std::sqrt(0.5)).epsilon(0.7));
+    const OptimiserReport smooth = run(rough_bowl(1e-6), "ipopt", options);
+    CHECK(smooth.status == OptimiserStatus::optimal);
+    CHECK(smooth.best.objective == Approx(1).margin(2e-4));
+}
+
+namespace {
+
+// Room of a point among planes n_i.x <= 1 all round: the least of 1 - n_i.x.
+struct Room {
+    std::vector<Vector2> normals;
+    explicit Room(int planes) {
+        for (int i = 0; i < planes; ++i) {
+            const double angle = 2 * M_PI * i / planes + 0.1;
+            normals.emplace_back(std::cos(angle), std::sin(angle));
+        }
+    }
+    // As rows, the least first.
+    Branches at(const Vector2& x) const {
+        Branches rows;
+        rows.values.resize(static_cast<Eigen::Index>(normals.size()));
+        rows.jacobian.resize(rows.values.size(), 2);
+        std::vector<Vector2> order = normals;
+        std::stable_sort(order.begin(), order.end(), [&](const Vector2& a, const Vector2& b) { return a.dot(x) > b.dot(x); });
+        for (const Vector2& n : order) {
+            const auto k = static_cast<Eigen::Index>(rows.of.size());
+            rows.of.push_back(0);
+            rows.values[k] = 1 - n.dot(x);
+            rows.jacobian.row(k) = -n.transpose();
+        }
+        return rows;
+    }
+};
+
+Problem among_planes() {
+    Problem p;
+    p.start = Vector2(0.31, -0.47);
+    p.lower = Vector2(-0.9, -0.9);
+    p.upper = Vector2(0.9, 0.9);
+    return p;
+}
+
+// Minimises 3 - room + 0.01 |x|^2: its only minimum is the kink at 0.
+Problem largest_room(bool with_branches) {
+    Problem p = among_planes();
+    p.evaluate = [with_branches, room = Room(16)](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        Branches rows = room.at(x);
+        rows.values *= -1;
+        rows.jacobian *= -1;
+        e.objective = 3 + rows.values[0] + 0.01 * x.squaredNorm();
+        e.gradient = rows.jacobian.row(0).transpose() + 0.02 * x;
+        e.constraints.resize(0);
+        e.jacobian.resize(0, 2);
+        if (with_branches) e.objective_branches = rows;
+        return e;
+    };
+    return p;
+}
+
+// Minimises x0 where the room is at least `least`: at `least` = 1 only 0 is left.
+Problem least_room(bool with_branches, double least) {
+    Problem p = among_planes();
+    p.constraint_lower = VectorX::Constant(1, least);
+    p.constraint_upper = VectorX::Constant(1, infinity);
+    p.evaluate = [with_branches, least, room = Room(16)](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = 2 + x[0];
+        e.gradient = Vector2(1, 0);
+        Branches rows = room.at(x);
+        e.constraints = rows.values.head(1);
+        e.jacobian = rows.jacobian.topRows(1);
+        e.violation = std::max(0.0, least - 1e-6 - rows.values[0]);
+        if (!with_branches) return e;
+        e.constraint_branches.of.assign(rows.of.begin() + 1, rows.of.end());
+        e.constraint_branches.values = rows.values.tail(rows.values.size() - 1);
+        e.constraint_branches.jacobian = rows.jacobian.bottomRows(rows.values.size() - 1);
+        return e;
+    };
+    return p;
+}
+
+OptimiserOptions usual(int evaluations) {
+    OptimiserOptions options;
+    options.max_evaluations = evaluations;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("an objective's kink is found, and called optimal, where its branches are known") {
+    const OptimiserReport report = run(largest_room(true), "ipopt", usual(40));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.point.norm() < 1e-3);
+    CHECK(report.optimality.predicted_gain <= report.optimality.worth);
+    const OptimiserReport blind = run(largest_room(false), "ipopt", usual(40));
+    INFO("blind: " << blind.message << ", " << blind.evaluations << " evaluations, at " << blind.point.transpose());
+    CHECK((blind.status != OptimiserStatus::optimal || blind.evaluations > report.evaluations));
+}
+
+TEST_CASE("branches of a constraint hold a step that one of them would let go") {
+    const OptimiserReport report = run(least_room(true, 0.4), "ipopt", usual(40));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    // The vertex of the planes next to -x: a linear programme, found at once.
+    CHECK(report.best.objective == Approx(2 - 0.6 / std::cos(M_PI / 16) * std::cos(0.1 + M_PI / 16 - M_PI / 8)).margin(3e-3));
+    CHECK(report.optimality.multipliers[0] > 0.9);  // both planes' together
+
+    const OptimiserReport centred = run(least_room(true, 1), "ipopt", usual(40));
+    INFO("centred: " << centred.message << ", " << centred.evaluations << " evaluations, at " << centred.point.transpose());
+    CHECK(centred.status == OptimiserStatus::optimal);
+    CHECK(centred.point.norm() < 1e-4);
+    CHECK(centred.optimality.held[0] == Held::constraints);
+}
+
+}  // namespace fettle::design::optimisers::optimality_test
