@@ -45,10 +45,9 @@ Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double l
     return is_in_material(near, outer) ? Side::inside : Side::outside;
 }
 
-// One part inside is enough; else one that is not known.
+// One part inside is enough; else one that is not known. `outer` holds something: a closed mesh.
 Side any_inside(const SolidMesh& inner, const SolidMesh& outer, const Start& at, double lower) {
     Side found = Side::outside;
-    if (outer.shells.empty()) return found;
     for (const int v : inner.samples) {
         const Side side = side_of(inner.mesh->vertices.col(v), at, outer, lower);
         if (side == Side::inside) return side;
@@ -101,15 +100,18 @@ bool is_in_material(const Vector3& point, const SolidMesh& solid) {
 
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const BodyPath& path_a, const BodyPath& path_b, double lower) {
     if (!(lower > 0) || !is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
-    Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, {}}, back{at.outer, at.inner, {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-        at.offset[k] = path_a.place[k] - path_b.place[k];
-        back.offset[k] = -at.offset[k];
+    const bool a_holds = a.is_closed && !a.shells.empty(), b_holds = b.is_closed && !b.shells.empty();
+    if (a_holds || b_holds) {
+        Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, {}}, back{at.outer, at.inner, {}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            at.offset[k] = path_a.place[k] - path_b.place[k];
+            back.offset[k] = -at.offset[k];
+        }
+        const Side a_in_b = b_holds ? any_inside(a, b, at, lower) : Side::outside;
+        const Side b_in_a = a_holds ? any_inside(b, a, back, lower) : Side::outside;
+        if (a_in_b == Side::inside || b_in_a == Side::inside) return Solids::overlap;
+        if (a_in_b == Side::unknown || b_in_a == Side::unknown) return Solids::unproven;
     }
-    const Side a_in_b = b.is_closed ? any_inside(a, b, at, lower) : Side::outside;
-    const Side b_in_a = a.is_closed ? any_inside(b, a, back, lower) : Side::outside;
-    if (a_in_b == Side::inside || b_in_a == Side::inside) return Solids::overlap;
-    if (a_in_b == Side::unknown || b_in_a == Side::unknown) return Solids::unproven;
     return a.is_closed && b.is_closed ? Solids::disjoint : Solids::not_closed;
 }
 

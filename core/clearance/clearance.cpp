@@ -202,20 +202,22 @@ std::vector<PairClearance> certify_clearance(const model::Model& model, const st
 
 namespace {
 
-constexpr int most_body_segments = 1 << 17;  // kept at once
+constexpr int most_body_segments = 1 << 12;  // kept at once, but for those of a single pair: they stay in the processor's caches
+constexpr int longest_stretch = 1 << 11;     // of segments, if bodies are many
 
-// Searches the windows one stretch of time after another: in a stretch each body's segments are made once for all its pairs.
+// Searches the windows one stretch of time after another, and in a stretch some pairs after others: a body's segments are made once for
+// all its pairs that follow closely, and forgotten after them.
 class WindowSearch {
 public:
     WindowSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
                  const std::vector<NearWindow>& windows, const ClearanceOptions& options)
-        : model_(model), trajectory_(trajectory), places_(places), options_(options) {
+        : model_(model), trajectory_(trajectory), places_(places), options_(options), bodies_(model.bodies.size()) {
         std::vector<PairRequest> pairs;
         pairs.reserve(windows.size());
         for (const NearWindow& window : windows) pairs.push_back({window.a, window.b, 0});
         const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
         shapes_ = body_shapes(model, bodies);
-        const int length = std::max(1, most_body_segments / std::max(static_cast<int>(bodies.size()), 1));
+        const int length = std::max(longest_stretch, (1 << 17) / std::max(static_cast<int>(bodies.size()), 1));
         for (const NearWindow& window : windows) {
             if (!window.measurable) {
                 parts_.push_back(window);
@@ -236,49 +238,97 @@ public:
         results.reserve(parts_.size());
         for (const NearWindow& part : parts_) results.push_back(unmeasured({part.a, part.b, 0}, unusable_numbers));
         for (const std::vector<int>& stretch : stretches_) {
-            make_segments(stretch);
-            parallel_for(static_cast<int>(stretch.size()), 1, [&](int k) {
-                const int part = stretch[static_cast<std::size_t>(k)];
-                results[static_cast<std::size_t>(part)] = searched(parts_[static_cast<std::size_t>(part)]);
-            });
+            begin_stretch(stretch);
+            for (std::size_t first = 0, last = 0; first < stretch.size(); first = last) {
+                last = make_batch(stretch, first);
+                parallel_for(static_cast<int>(last - first), 1, [&](int k) {
+                    const int part = stretch[first + static_cast<std::size_t>(k)];
+                    results[static_cast<std::size_t>(part)] = searched(parts_[static_cast<std::size_t>(part)]);
+                });
+            }
         }
         return results;
     }
 
 private:
-    // Of a body from segment `first` of the path on.
+    // Of a body from segment `first` of the path on: what its windows in a stretch of time need.
     struct Stretch {
         int first = 0, last = 0;
-        std::vector<BodySegment> segments;
+        int batch = -1;                     // that wants it
+        std::vector<BodySegment> segments;  // empty: not made
+
+        int count() const { return last - first; }
     };
 
-    void make_segments(const std::vector<int>& stretch) {
-        bodies_.assign(model_.bodies.size(), {});
+    Stretch& body(int i) { return bodies_[static_cast<std::size_t>(i)]; }
+
+    void begin_stretch(const std::vector<int>& stretch) {
+        forget([](const Stretch&) { return true; });
+        for (Stretch& known : bodies_) known.first = known.last = 0;
         for (const int index : stretch) {
             const NearWindow& part = parts_[static_cast<std::size_t>(index)];
-            for (const int body : {part.a, part.b}) {
-                Stretch& known = bodies_[static_cast<std::size_t>(body)];
-                const bool is_new = known.first == known.last;
-                known.first = is_new ? part.first : std::min(known.first, part.first);
-                known.last = is_new ? part.last : std::max(known.last, part.last);
+            for (const int i : {part.a, part.b}) {
+                const bool is_new = body(i).count() == 0;
+                body(i).first = is_new ? part.first : std::min(body(i).first, part.first);
+                body(i).last = is_new ? part.last : std::max(body(i).last, part.last);
             }
         }
-        const auto count = static_cast<int>(bodies_.size());
-        parallel_for((count + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
-            const int first = block * bodies_at_once, last = std::min(count, first + bodies_at_once);
-            int begin = static_cast<int>(places_.size()), end = 0;
-            for (int body = first; body < last; ++body) {
-                Stretch& known = bodies_[static_cast<std::size_t>(body)];
-                if (known.first == known.last) continue;
-                known.segments.reserve(static_cast<std::size_t>(known.last - known.first));
-                begin = std::min(begin, known.first);
-                end = std::max(end, known.last);
+    }
+
+    template <class Condition>
+    void forget(const Condition& condition) {
+        for (Stretch& known : bodies_) {
+            if (known.segments.empty() || !condition(known)) continue;
+            known.segments.clear();
+            spare_.push_back(std::move(known.segments));
+            known.segments = {};
+        }
+    }
+
+    // Makes what the parts from `first` on need, as many of them as may be kept at once. @return behind the last of them
+    std::size_t make_batch(const std::vector<int>& stretch, std::size_t first) {
+        ++batch_;
+        std::vector<int> missing;
+        std::size_t last = first;
+        for (int kept = 0; last < stretch.size(); ++last) {
+            const NearWindow& part = parts_[static_cast<std::size_t>(stretch[last])];
+            int more = 0;
+            for (const int i : {part.a, part.b}) more += body(i).batch == batch_ ? 0 : body(i).count();
+            if (last > first && kept + more > most_body_segments) break;
+            kept += more;
+            for (const int i : {part.a, part.b}) {
+                if (body(i).batch == batch_) continue;
+                body(i).batch = batch_;
+                if (body(i).segments.empty()) missing.push_back(i);
             }
-            for (int i = begin; i < end; ++i) {
-                const PathPlace& place = places_[static_cast<std::size_t>(i)];
-                for (int body = first; body < last; ++body) {
-                    Stretch& known = bodies_[static_cast<std::size_t>(body)];
-                    if (known.first <= i && i < known.last) known.segments.push_back(body_segment(segment_at(trajectory_, place, body)));
+        }
+        forget([&](const Stretch& known) { return known.batch != batch_; });
+        std::sort(missing.begin(), missing.end());
+        make_segments(missing);
+        return last;
+    }
+
+    void make_segments(const std::vector<int>& missing) {
+        for (const int i : missing) {
+            if (!spare_.empty()) {
+                body(i).segments = std::move(spare_.back());
+                spare_.pop_back();
+            }
+            body(i).segments.reserve(static_cast<std::size_t>(body(i).count()));
+        }
+        const auto count = static_cast<int>(missing.size());
+        parallel_for((count + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
+            const auto from = missing.begin() + block * bodies_at_once, to = missing.begin() + std::min(count, (block + 1) * bodies_at_once);
+            int begin = static_cast<int>(places_.size()), end = 0;
+            for (auto i = from; i != to; ++i) {
+                begin = std::min(begin, body(*i).first);
+                end = std::max(end, body(*i).last);
+            }
+            for (int k = begin; k < end; ++k) {
+                const PathPlace& place = places_[static_cast<std::size_t>(k)];
+                for (auto i = from; i != to; ++i) {
+                    Stretch& known = body(*i);
+                    if (known.first <= k && k < known.last) known.segments.push_back(body_segment(segment_at(trajectory_, place, *i)));
                 }
             }
         });
@@ -304,9 +354,11 @@ private:
     const std::vector<PathPlace>& places_;
     const ClearanceOptions& options_;
     std::vector<BodyShape> shapes_;
-    std::vector<NearWindow> parts_;            // in the order of the windows
-    std::vector<std::vector<int>> stretches_;  // the parts of each
+    std::vector<NearWindow> parts_;                // in the order of the windows
+    std::vector<std::vector<int>> stretches_;      // the parts of each
     std::vector<Stretch> bodies_;
+    std::vector<std::vector<BodySegment>> spare_;  // memory of what was forgotten
+    int batch_ = -1;
 };
 
 }  // namespace

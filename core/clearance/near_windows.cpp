@@ -19,6 +19,7 @@ constexpr int most_time_spans = 4096;
 
 struct BodyBox {
     Vector3 center, half;
+    double size = 0;    // from the center to a corner
     double radius = 0;  // of the mesh, about the body's reference point
 };
 
@@ -28,6 +29,7 @@ BodyBox box_of(const geometry::Mesh& mesh) {
     const Vector3 low = mesh.vertices.rowwise().minCoeff(), high = mesh.vertices.rowwise().maxCoeff();
     box.center = 0.5 * (low + high);
     box.half = (0.5 * (high - low) + 4 * unit_roundoff * (low.cwiseAbs() + high.cwiseAbs())) * rounded_up;
+    box.size = box.half.norm();
     box.radius = std::sqrt(mesh.vertices.colwise().squaredNorm().maxCoeff()) * rounded_up;
     return box;
 }
@@ -41,19 +43,27 @@ struct Swept {
     }
 };
 
-// The boxes at both ends of a segment, grown by what points leave their chords and by rounding.
+// Of a small turn the box as it lies at the turn's beginning, grown; else those at both ends of the segment, grown: see the header.
 void take_segment(const kinematics::PathSegment& path, const BodyBox& box, Swept& swept) {
+    constexpr double small_turn = 0.02;  // of the box's size
     const double w = path.rotation_vector_step.norm(), theta = path.rotation_vector_t0.norm() + w;
     // The base may be a rotation up to rounding only: |base X| <= sqrt(1 + |B^T B - I|) |X|.
     const double radius = box.radius * std::sqrt(1 + (path.base.transpose() * path.base - Matrix3::Identity()).norm());
     const double position = path.position_t0.norm() + path.position_step.norm();
-    const double rest = std::min(w * w / 8, 2.0) * radius;
     const double rounding = 2 * unit_roundoff * ((256 + 48 * theta) * radius + 64 * position);
-    const Vector3 pad = Vector3::Constant((rest + rounding) * rounded_up + std::numeric_limits<double>::min());
+    const auto padded = [&](const Vector3& half, double rest) -> Vector3 {
+        return half.array() + ((rest + rounding) * rounded_up + std::numeric_limits<double>::min());
+    };
+    if (theta * radius <= small_turn * box.size) {
+        const Vector3 half_step = 0.5 * path.position_step;
+        swept.take(path.base * box.center + path.position_t0 + half_step,
+                   padded(path.base.cwiseAbs() * box.half + half_step.cwiseAbs(), theta * radius));
+        return;
+    }
+    const double rest = std::min(w * w / 8, 2.0) * radius;
     for (const double s : {0.0, 1.0}) {
-        const bool at_base = s == 0 && path.rotation_vector_t0.isZero(0);
-        const kinematics::Pose pose = at_base ? kinematics::Pose{path.base, path.position_t0} : kinematics::pose_at(path, s);
-        swept.take(pose.rotation * box.center + pose.position, pose.rotation.cwiseAbs() * box.half + pad);
+        const kinematics::Pose pose = kinematics::pose_at(path, s);
+        swept.take(pose.rotation * box.center + pose.position, padded(pose.rotation.cwiseAbs() * box.half, rest));
         if (w == 0 && path.position_step == Vector3::Zero()) return;
     }
 }
@@ -109,7 +119,7 @@ private:
         });
         double most = 0;
         for (std::size_t body = 0; body < way.size(); ++body)
-            if (way[body] > 0) most = std::max(most, way[body] / (share * boxes_[body].half.norm()));
+            if (way[body] > 0) most = std::max(most, way[body] / (share * boxes_[body].size));
         return most;
     }
 

@@ -26,7 +26,7 @@ public:
         }
         search(0);
         front_.result.lower = front_.lower_bound();
-        if (!front_.options.nodes_only) segments_.refine_nearest();
+        if (!front_.options.nodes_only && front_.result.upper <= front_.options.enough) segments_.refine_nearest();
         if (front_.options.proof != nullptr) segments_.recorder().write(*front_.options.proof);
         return front_.result;
     }

@@ -35,22 +35,21 @@ double reach_of_offset(const PairSegment& segment) {
     return std::max(apart(0), apart(2)) * rounded_up;
 }
 
-// Of one segment, beside its chord.
-Rest rest_of_segment(const PairSegment& segment, const RelativePose& start, const RelativePose& end) {
+// Of one segment, beside its chord. `reach`: see above.
+Rest rest_of_segment(const PairSegment& segment, const RelativePose& start, const RelativePose& end, double reach) {
     const RelativePose middle = relative_pose(segment, 1);
     const double wa = segment.a->speed, wb = segment.b->speed, w = wa + wb;
     const double travel = (segment.a->path.position_step - segment.b->path.position_step).norm();
     const double third_turn = w * w * w * segment.a->base_norm;
-    const double third_shift = wb * wb * (wb * reach_of_offset(segment) + 3 * travel);
+    const double third_shift = wb * wb * (wb * reach + 3 * travel);
     return {0.5 * (2 * middle.rotation - start.rotation - end.rotation).norm() + segment.b->base_norm * third_turn / 124,
             0.5 * (2 * middle.offset - start.offset - end.offset).norm() + segment.b->base_norm * third_shift / 124};
 }
 
-double pose_rounding(const PairSegment& segment, double radius_a, double radius_b) {
-    const kinematics::PathSegment &a = segment.a->path, &b = segment.b->path;
+double pose_rounding(const PairSegment& segment, double radius_a, double radius_b, double reach) {
     const double norms = segment.a->base_norm * segment.b->base_norm;
-    const double positions = a.position_t0.norm() + a.position_step.norm() + b.position_t0.norm() + b.position_step.norm();
-    const double size = 2 * radius_a + 2 * radius_b + reach_of_offset(segment);
+    const double positions = segment.a->extent + segment.b->extent;
+    const double size = 2 * radius_a + 2 * radius_b + reach;
     return 8 * norms * ((segment.a->rounding + segment.b->rounding + 64 * unit_roundoff) * size + 8 * unit_roundoff * positions);
 }
 
@@ -250,16 +249,29 @@ NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece&
 struct Chain {
     std::vector<RelativePose> nodes;  // segment i leads from i to i + 1
     std::vector<Rest> rests;          // of the segments
+    double rounding = 0;              // of the poses of any of them
 
-    explicit Chain(const std::vector<PairSegment>& segments) {
+    Chain(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
         const std::size_t count = segments.size();
+        nodes.reserve(count + 1);
+        rests.reserve(count);
         for (const PairSegment& segment : segments) nodes.push_back(relative_pose(segment, 0));
         nodes.push_back(relative_pose(segments.back(), 2));
         for (std::size_t i = 0; i < count; ++i) {
-            const RelativePose end = i + 1 < count ? relative_pose(segments[i], 2) : nodes[count];
-            const Rest rest = rest_of_segment(segments[i], nodes[i], end), jump = difference(end, nodes[i + 1]);
+            const PairSegment& segment = segments[i];
+            const double reach = reach_of_offset(segment);
+            const RelativePose end = i + 1 < count ? end_of(segment, segments[i + 1], nodes[i + 1]) : nodes[count];
+            const Rest rest = rest_of_segment(segment, nodes[i], end, reach), jump = difference(end, nodes[i + 1]);
             rests.push_back({rest.turn + jump.turn, rest.shift + jump.shift});
+            rounding = std::max(rounding, pose_rounding(segment, radius_a, radius_b, reach));
         }
+    }
+
+    // Most paths go on with the very rotations with which they end: those of `begun`, the next node.
+    static RelativePose end_of(const PairSegment& segment, const PairSegment& next, const RelativePose& begun) {
+        const Matrix3 &frame = segment.b->poses[2].rotation, &other = segment.a->poses[2].rotation;
+        if (frame != next.b->poses[0].rotation || other != next.a->poses[0].rotation) return relative_pose(segment, 2);
+        return {begun.rotation, frame.transpose() * (segment.a->poses[2].position - segment.b->poses[2].position)};
     }
 
     // Segments first .. last - 1, beside the chord of all of them.
@@ -294,14 +306,11 @@ Separation separation(const RelativePose& at, const Piece& a, const Piece& b) {
 
 RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, double radius_a, double radius_b, double deviation_scale) {
     FETTLE_ASSERT(!segments.empty(), "spans of no time");
-    const Chain chain(segments);
+    const Chain chain(segments, radius_a, radius_b);
     const auto total = static_cast<int>(segments.size());
     double norm = 1;
-    for (const PairSegment& segment : segments) {
-        norm = std::max(norm, segment.b->base_norm);
-        slack_ = std::max(slack_, pose_rounding(segment, radius_a, radius_b));
-    }
-    slack_ = (slack_ + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
+    for (const PairSegment& segment : segments) norm = std::max(norm, segment.b->base_norm);
+    slack_ = (chain.rounding + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
     shrink_ = (1 - 8 * unit_roundoff) / norm;
     int begin = 0, spans = total, length = 1;  // spans of the level begin at this index, and last so many segments
     for (int level = 0;; ++level) {

@@ -53,6 +53,7 @@ BodySegment body_segment(const kinematics::PathSegment& path) {
     const double excess = (path.base.transpose() * path.base - Matrix3::Identity()).norm();
     body.base_norm = std::sqrt(1 + excess) * rounded_up;
     body.rounding = (160 + 48 * (path.rotation_vector_t0.norm() + body.speed)) * unit_roundoff;
+    body.extent = path.position_t0.norm() + path.position_step.norm();
     body.poses[0] = path.rotation_vector_t0.isZero(0) ? kinematics::Pose{path.base, path.position_t0} : kinematics::pose_at(path, 0);
     const bool still = body.speed == 0 && path.position_step == Vector3::Zero();
     body.poses[1] = still ? body.poses[0] : kinematics::pose_at(path, 0.5);
@@ -65,7 +66,7 @@ PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radi
     pair.a = {std::shared_ptr<const BodySegment>{}, &a};  // owns nothing, counts nothing
     pair.b = {std::shared_ptr<const BodySegment>{}, &b};
     const double ra = 2 * radius_a * a.base_norm, rb = 2 * radius_b * b.base_norm;
-    const double p = a.path.position_t0.norm() + a.path.position_step.norm() + b.path.position_t0.norm() + b.path.position_step.norm();
+    const double p = a.extent + b.extent;
     pair.slack = ((a.rounding + 48 * unit_roundoff) * ra + (b.rounding + 48 * unit_roundoff) * rb + 24 * unit_roundoff * p) * rounded_up +
                  std::numeric_limits<double>::min();
     return pair;

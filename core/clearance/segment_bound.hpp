@@ -54,6 +54,7 @@ struct BodySegment {
     double twist = 0;                       ///< k = |theta0 x w|, rounded up
     double base_norm = 1;                   ///< >= the norm of the stored base, which is a rotation up to rounding only
     double rounding = 0;                    ///< how far a computed rotation may be off, by norm: see the top of the file
+    double extent = 0;                      ///< |q_t0| + |q_step| [m]
 };
 
 /// A pair of bodies on one path segment.
