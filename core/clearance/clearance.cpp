@@ -318,7 +318,8 @@ private:
         }
         const auto count = static_cast<int>(missing.size());
         parallel_for((count + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
-            const auto from = missing.begin() + block * bodies_at_once, to = missing.begin() + std::min(count, (block + 1) * bodies_at_once);
+            const auto from = missing.begin() + block * bodies_at_once,
+                       to = missing.begin() + std::min(count, (block + 1) * bodies_at_once);
             int begin = static_cast<int>(places_.size()), end = 0;
             for (auto i = from; i != to; ++i) {
                 begin = std::min(begin, body(*i).first);
@@ -354,8 +355,8 @@ private:
     const std::vector<PathPlace>& places_;
     const ClearanceOptions& options_;
     std::vector<BodyShape> shapes_;
-    std::vector<NearWindow> parts_;                // in the order of the windows
-    std::vector<std::vector<int>> stretches_;      // the parts of each
+    std::vector<NearWindow> parts_;            // in the order of the windows
+    std::vector<std::vector<int>> stretches_;  // the parts of each
     std::vector<Stretch> bodies_;
     std::vector<std::vector<BodySegment>> spare_;  // memory of what was forgotten
     int batch_ = -1;

@@ -111,12 +111,7 @@ geometry::Box roomy(const geometry::Box& box, double allowance) {
 void find_near_bodies(const model::Model& model, const std::vector<geometry::Box>& boxes, double allowance, NearBodies& near) {
     near.boxes.clear();
     for (const geometry::Box& box : boxes) near.boxes.push_back(roomy(box, allowance));
-    near.pairs.clear();
-    geometry::visit_overlapping_pairs(near.boxes, [&](int a, int b) {
-        if (model::may_collide(model, a, b)) near.pairs.emplace_back(a, b);
-        return true;
-    });
-    std::sort(near.pairs.begin(), near.pairs.end());
+    near.pairs = geometry::overlapping_pairs(near.boxes, [&](int a, int b) { return model::may_collide(model, a, b); });
 }
 
 // Pairs of bodies whose swept boxes meet, in order: whatever was known before.
@@ -229,7 +224,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
 
     base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];
-        pair.fresh = pair.fresh || !(motion_over(model, pair, segments) <= pair.allowance);
+        pair.fresh = pair.fresh || !(motion_over(model, pair, segments, swept[pair.a].ends[0], swept[pair.b].ends[0]) <= pair.allowance);
     });
     std::vector<BodyPairCandidates*> searched;
     for (BodyPairCandidates& pair : candidates.pairs)
@@ -271,10 +266,14 @@ double motion_since(const model::Model& model, const BodyPairCandidates& pair, c
 }
 
 double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<PathSegment>& segments) {
+    return motion_over(model, pair, segments, pose_at(segments[pair.a], 0), pose_at(segments[pair.b], 0));
+}
+
+double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<PathSegment>& segments, const Pose& start_a,
+                   const Pose& start_b) {
     if (pair.fresh) return 0;
     const PathSegment &a = segments[pair.a], &b = segments[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
-    const Pose start_a = pose_at(a, 0), start_b = pose_at(b, 0);
     const double since_at =
         relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + relative_motion(a, b, radius_a, radius_b);
     return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding(start_a, start_b, radius_a, radius_b) +

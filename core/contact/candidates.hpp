@@ -58,5 +58,8 @@ double motion_since(const model::Model& model, const BodyPairCandidates& pair, c
 
 /// The same over the whole of each segment.
 double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::PathSegment>& segments);
+/// With the poses at the segments' starts known: pose_at(segment, 0) of a and of b.
+double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::PathSegment>& segments,
+                   const kinematics::Pose& start_a, const kinematics::Pose& start_b);
 
 }  // namespace fettle::core::contact

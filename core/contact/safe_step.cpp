@@ -22,7 +22,8 @@ struct Limits {
     double kept_most;      // and never has to keep more than this [m]
 };
 
-constexpr int pairs_a_search = 8;  // pairs of bodies that a thread takes at a time
+constexpr int pairs_a_search = 8;   // pairs of bodies that a thread takes at a time
+constexpr int bodies_at_once = 64;  // that it takes
 
 // Charged to world positions at least, relative to their size: more than their rounding, but where a body's position and its points'
 // cancel near the world's origin.
@@ -47,11 +48,11 @@ PlaceRounding place_rounding(const PathSegment& s) {
 class StepSearch {
 public:
     StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits, const ContactSet* start = nullptr)
-        : model_(model), segments_(segments), limits_(limits), start_(start) {
-        for (const PathSegment& s : segments_) {
-            starts_.push_back(pose_at(s, 0));
-            start_roundings_.push_back(place_rounding(s));
-        }
+        : model_(model), segments_(segments), limits_(limits), start_(start), starts_(segments.size()), start_roundings_(segments.size()) {
+        base::parallel_for(static_cast<int>(segments.size()), bodies_at_once, [&](int i) {
+            starts_[i] = pose_at(segments[i], 0);
+            start_roundings_[i] = place_rounding(segments[i]);
+        });
     }
 
     SafeStep longest(const Candidates& candidates) {
@@ -77,7 +78,7 @@ public:
 private:
     void visit(const BodyPairCandidates& list, SafeStep& shortest) {
         if (list.empty() || are_surely_free(list)) return;
-        const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_);
+        const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_, starts_[list.a], starts_[list.b]);
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;

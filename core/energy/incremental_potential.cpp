@@ -20,7 +20,8 @@ namespace {
 using kinematics::ChartPoint;
 using kinematics::Pose;
 
-constexpr int bodies_a_piece = 16;  // that a thread takes at a time
+constexpr int bodies_a_piece = 16;    // that a thread takes at a time
+constexpr int bodies_to_clear = 128;  // the same, of sums to begin
 
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);
@@ -38,17 +39,24 @@ void pull_back(const Matrix3& j_rows, const Matrix3& j_columns, Matrix6& h) {
     h.bottomRows<3>() = rows;
 }
 
-TermDerivatives sum_of_terms(const DerivativesAt& at) {
+// `d` is memory to use again: what it held is lost.
+void sum_terms(const DerivativesAt& at, TermDerivatives& d) {
     const std::size_t n = at.poses.size();
-    TermDerivatives d;
     d.own.resize(n);
     d.coupling.resize(n);
-    d.own_hessian.assign(n, Matrix6::Zero());
-    d.coupling_hessian.diagonal.assign(n, Matrix6::Zero());
-    d.chart_gradient.assign(n, Vector3::Zero());
-    d.own_magnitude.assign(n, 0);
+    d.own_hessian.resize(n);
+    d.coupling_hessian.diagonal.resize(n);
+    d.coupling_hessian.off_diagonal.clear();
+    d.chart_gradient.resize(n);
+    d.own_magnitude.resize(n);
+    base::parallel_for(static_cast<int>(n), bodies_to_clear, [&](int i) {
+        d.own[i] = d.coupling[i] = {};
+        d.own_hessian[i].setZero();
+        d.coupling_hessian.diagonal[i].setZero();
+        d.chart_gradient[i].setZero();
+        d.own_magnitude[i] = 0;
+    });
     for (const Term* term : terms()) term->add_derivatives(at, d);
-    return d;
 }
 
 }  // namespace
@@ -71,7 +79,9 @@ double incremental_potential(const StepProblem& problem, const std::vector<Chart
 
 ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
                                    const contact::ContactSet& contacts, contact::HessianKind kind) {
-    TermDerivatives d = sum_of_terms({problem, poses, contacts, kind});
+    static thread_local TermDerivatives memory;  // stays from call to call
+    TermDerivatives& d = memory;
+    sum_terms({problem, poses, contacts, kind}, d);
     ChartDerivatives out;
     const std::size_t n = poses.size();
     out.gradient.resize(n);

@@ -3,6 +3,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
@@ -12,6 +13,8 @@ namespace {
 
 using kinematics::pose_matrix;
 using scene::Integrator;
+
+constexpr int bodies_at_once = 64;  // that a thread takes
 
 bool is_prescribed(const model::Body& body) {
     for (int k = 0; k < 6; ++k)
@@ -117,7 +120,7 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
     step.pose_hat.resize(n);
     step.slip_reference.resize(n);
     step.torque.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    base::parallel_for(static_cast<int>(n), bodies_at_once, [&](int i) {
         const Matrix34 pose = pose_matrix(history.poses[i]);
         const Matrix34& velocity = history.velocities[i];
         Matrix34 &hat = step.pose_hat[i], &slip = step.slip_reference[i];
@@ -139,7 +142,7 @@ IntegrationStep integration_step(const model::Model& model, const History& histo
         const model::Body& body = model.bodies[i];
         const bool second_order = model.integrator != Integrator::implicit_euler && !quasi_static && !body.torque.isZero(0);
         step.torque[i] = second_order ? chart_torque(body, history.poses[i].rotation, hat) : body.torque;
-    }
+    });
     return step;
 }
 
@@ -150,7 +153,9 @@ History advanced(const model::Model& model, const History& history, const Integr
     next.velocities.resize(n);
     const bool newmark = model.integrator == Integrator::newmark;
     if (newmark) next.accelerations.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    const bool bdf2 = model.integrator == Integrator::bdf2;
+    if (bdf2) next.poses_before.resize(n);
+    base::parallel_for(static_cast<int>(n), bodies_at_once, [&](int i) {
         const Matrix34 pose = pose_matrix(poses[i]), before = pose_matrix(history.poses[i]);
         if (model.integrator == Integrator::quasi_static) {
             next.velocities[i].setZero();
@@ -164,9 +169,9 @@ History advanced(const model::Model& model, const History& history, const Integr
         } else {
             next.velocities[i] = (pose - step.slip_reference[i]) / step.slip_time;
         }
-        if (model.integrator == Integrator::bdf2) next.poses_before.push_back(before);
-    }
-    if (model.integrator == Integrator::bdf2) next.velocities_before = history.velocities;
+        if (bdf2) next.poses_before[i] = before;
+    });
+    if (bdf2) next.velocities_before = history.velocities;
     next.angles = constraint::angles_at(model.mechanism.set, poses, history.angles);
     next.poses = std::move(poses);
     return next;

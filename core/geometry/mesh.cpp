@@ -12,7 +12,7 @@
 namespace fettle::core::geometry {
 namespace {
 
-/// A hash of words: four chains that do not wait for each other.
+/// A hash of words.
 class WordHash {
 public:
     void add(std::uint64_t word) {
@@ -30,16 +30,23 @@ private:
     std::uint64_t count_ = 0;
 };
 
+/// Of the counts, and of some of the vertices and triangles: meshes that it does not tell apart are compared anyhow.
 std::size_t shape_hash(const Mesh& mesh) {
+    constexpr std::size_t looked_at = 64;
     WordHash hash;
-    const double* x = mesh.vertices.data();
-    for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i) hash.add(std::bit_cast<std::uint64_t>(x[i] + 0.0));  // -0 + 0 = 0
-    const auto word = [](int low, int high) {
-        return static_cast<std::uint64_t>(static_cast<std::uint32_t>(low)) << 32 | static_cast<std::uint32_t>(high);
+    const auto word = [](std::size_t low, std::size_t high) {
+        return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
     };
-    for (const Triangle& t : mesh.triangles) {
-        hash.add(word(t[0], t[1]));
-        hash.add(word(t[2], 0));
+    const auto vertices = static_cast<std::size_t>(mesh.vertices.cols());
+    hash.add(word(vertices, mesh.triangles.size()));
+    hash.add(word(mesh.edges.size(), mesh.codimensional_points.size()));
+    for (std::size_t i = 0; i < vertices; i += vertices / looked_at + 1) {
+        const double* x = mesh.vertices.data() + 3 * i;
+        for (int k = 0; k < 3; ++k) hash.add(std::bit_cast<std::uint64_t>(x[k] + 0.0));  // -0 + 0 = 0
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += mesh.triangles.size() / looked_at + 1) {
+        const Triangle& t = mesh.triangles[i];
+        hash.add(word(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1])) ^ static_cast<std::uint64_t>(t[2]));
     }
     return hash.value();
 }

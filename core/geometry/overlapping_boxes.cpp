@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -21,9 +22,10 @@ struct Node {
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box>& boxes) : boxes_(boxes), order_(boxes.size()) {
-        std::iota(order_.begin(), order_.end(), 0);
+        std::vector<Centre> centres(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) centres[i] = {boxes[i].low / 2 + boxes[i].high / 2, static_cast<int>(i)};
         nodes_.reserve(boxes.size());
-        if (!boxes.empty()) build(0, static_cast<int>(boxes.size()));
+        if (!boxes.empty()) build(centres, 0, static_cast<int>(boxes.size()));
     }
 
     /// False once `visit` has returned false.
@@ -41,26 +43,40 @@ public:
     }
 
 private:
-    int build(int first, int last) {
+    struct Centre {
+        Vector3 x;
+        int box;
+    };
+
+    // The boxes of nodes come from below, each box's once.
+    int build(std::vector<Centre>& centres, int first, int last) {
         const int index = static_cast<int>(nodes_.size());
-        nodes_.push_back({bounds(first, last), first, last});
-        if (last - first <= leaf_size) return index;
+        nodes_.push_back({{}, first, last});
+        if (last - first <= leaf_size) {
+            for (int i = first; i < last; ++i) order_[i] = centres[i].box;
+            Box box = boxes_[order_[first]];
+            for (int i = first + 1; i < last; ++i) box = united(box, boxes_[order_[i]]);
+            nodes_[index].box = box;
+            return index;
+        }
         Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
         for (int i = first; i < last; ++i) {
-            low = low.cwiseMin(centre(order_[i]));
-            high = high.cwiseMax(centre(order_[i]));
+            low = low.cwiseMin(centres[i].x);
+            high = high.cwiseMax(centres[i].x);
         }
         int axis = 0;
         (high - low).maxCoeff(&axis);
         const int middle = first + (last - first) / 2;
-        std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](int i, int j) {
-            const double a = centre(i)(axis), b = centre(j)(axis);
-            return a != b ? a < b : i < j;  // a strict order of all boxes, so that the tree is the same on every platform
+        const auto begin = centres.begin();
+        std::nth_element(begin + first, begin + middle, begin + last, [axis](const Centre& a, const Centre& b) {
+            return a.x[axis] != b.x[axis] ? a.x[axis] < b.x[axis]
+                                          : a.box < b.box;  // strict, so that the tree is the same on every platform
         });
-        const int left = build(first, middle);
-        const int right = build(middle, last);
+        const int left = build(centres, first, middle);
+        const int right = build(centres, middle, last);
         nodes_[index].left = left;
         nodes_[index].right = right;
+        nodes_[index].box = united(nodes_[left].box, nodes_[right].box);
         return index;
     }
 
@@ -84,16 +100,7 @@ private:
         return !boxes_[i].overlaps(boxes_[j]) || visit(std::min(i, j), std::max(i, j));
     }
 
-    Box bounds(int first, int last) const {
-        Box box = boxes_[order_[first]];
-        for (int i = first + 1; i < last; ++i) {
-            box.low = box.low.cwiseMin(boxes_[order_[i]].low);
-            box.high = box.high.cwiseMax(boxes_[order_[i]].high);
-        }
-        return box;
-    }
-
-    Vector3 centre(int i) const { return boxes_[i].low / 2 + boxes_[i].high / 2; }
+    static Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
 
     const std::vector<Box>& boxes_;
     std::vector<int> order_;
@@ -105,6 +112,46 @@ private:
 void visit_overlapping_pairs(const std::vector<Box>& boxes, const std::function<bool(int, int)>& visit) {
     if (boxes.empty()) return;
     BoxTree(boxes).visit_within(0, visit);
+}
+
+std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes, const std::function<bool(int, int)>& wanted) {
+    constexpr int boxes_at_once = 64;  // that a thread takes
+    using Pairs = std::vector<std::pair<int, int>>;
+    if (boxes.empty()) return {};
+    Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+    for (const Box& box : boxes) {
+        const Eigen::Array3d middle = box.low.array() / 2 + box.high.array() / 2;
+        sum += middle;
+        squares += middle.square();
+    }
+    int axis = 0;
+    (squares - sum.square() / static_cast<double>(boxes.size())).maxCoeff(&axis);
+    struct Begin {
+        double low;
+        int box;
+    };
+    std::vector<Begin> begins(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) begins[i] = {boxes[i].low[axis], static_cast<int>(i)};
+    std::sort(begins.begin(), begins.end(), [](const Begin& x, const Begin& y) { return x.low != y.low ? x.low < y.low : x.box < y.box; });
+    const auto found_from = [&](int begin, int end) {
+        Pairs found;
+        for (int i = begin; i < end; ++i) {
+            const int first = begins[i].box;
+            const Box& box = boxes[first];
+            for (std::size_t j = static_cast<std::size_t>(i) + 1; j < begins.size() && begins[j].low <= box.high[axis]; ++j) {
+                const int a = std::min(first, begins[j].box), b = std::max(first, begins[j].box);
+                if (box.overlaps(boxes[begins[j].box]) && wanted(a, b)) found.emplace_back(a, b);
+            }
+        }
+        return found;
+    };
+    Pairs pairs =
+        base::ordered_reduce(static_cast<int>(boxes.size()), boxes_at_once, Pairs{}, found_from, [](Pairs&& so_far, Pairs&& piece) {
+            so_far.insert(so_far.end(), piece.begin(), piece.end());
+            return std::move(so_far);
+        });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
 }
 
 }  // namespace fettle::core::geometry

@@ -32,8 +32,8 @@ kinematics::Pose pose_about(const kinematics::Pose& pose, const Vector3& referen
     return {pose.rotation, kinematics::world_position(pose, reference_point)};
 }
 
-/// All but what follows from its mesh.
-Body build_body(const scene::Body& from, const Vector3& reference_point) {
+/// All but what follows from its mesh. @param mesh  in the file's frame
+Body build_body(const scene::Body& from, geometry::Mesh mesh, const Vector3& reference_point) {
     Body body;
     body.name = from.name;
     body.type = from.type;
@@ -41,7 +41,7 @@ Body build_body(const scene::Body& from, const Vector3& reference_point) {
     body.density = from.density;
     body.mass_kind = from.mass_kind;
     if (from.inertial) body.given_mass = from.inertial->mass;
-    body.mesh = from.mesh;
+    body.mesh = std::move(mesh);
     body.mesh.vertices.colwise() -= reference_point;
     body.pose_start = pose_about(from.pose, reference_point);
     body.velocity_start << cross_matrix(from.angular_velocity) * from.pose.rotation, from.linear_velocity;
@@ -169,10 +169,10 @@ void complete_copies(std::vector<Body>& bodies, const std::vector<std::size_t>& 
         const auto at = static_cast<std::size_t>(i);
         if (first_of_shape[at] == at) complete_geometry(bodies[at]);
     });
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        Body& body = bodies[i];
-        const std::size_t first = first_of_shape[i];
-        if (first == i) continue;
+    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        const std::size_t first = first_of_shape[static_cast<std::size_t>(i)];
+        if (first == static_cast<std::size_t>(i)) return;
+        Body& body = bodies[static_cast<std::size_t>(i)];
         const Body& twin = bodies[first];
         body.radius = twin.radius;
         body.edge_length_squared = twin.edge_length_squared;
@@ -180,7 +180,7 @@ void complete_copies(std::vector<Body>& bodies, const std::vector<std::size_t>& 
         body.edge_area = twin.edge_area;
         body.hierarchy = twin.hierarchy;
         body.flat = twin.flat;
-    }
+    });
 }
 
 // Copies of a mesh that are told from the same reference point are copies in their bodies' frames, too.
@@ -203,7 +203,11 @@ void complete_geometry(std::vector<Body>& bodies) {
     complete_copies(bodies, first_of_shape);
 }
 
-base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options) {
+namespace {
+
+/// @param mesh_of  (int body) -> geometry::Mesh; each is asked for once, on any thread
+template <class MeshOf>
+base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options, const MeshOf& mesh_of) {
     FETTLE_ASSERT(options.reference_points.empty() || options.reference_points.size() == scene.bodies.size(),
                   "one reference point per body is wanted");
     SceneCheck check = check_scene(scene, options.check_meshes);
@@ -228,7 +232,7 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     base::parallel_for(static_cast<int>(scene.bodies.size()), 1, [&](int i) {
         const bool given = !options.reference_points.empty();
         const Vector3 point = given ? options.reference_points[i] : default_reference_point(scene.bodies[i], check.measures[i]);
-        model.bodies[i] = build_body(scene.bodies[i], point);
+        model.bodies[i] = build_body(scene.bodies[i], mesh_of(i), point);
     });
     complete_copies(model.bodies, first_in_frame(model.bodies, check.shapes));
     add_masses(scene, model);
@@ -253,6 +257,16 @@ base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& o
     for (Error& error : errors) error.where = (scene.path.empty() ? "" : scene.path + ": ") + error.where;
     if (!errors.empty()) return errors;
     return model;
+}
+
+}  // namespace
+
+base::Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options) {
+    return build(scene, options, [&](int i) { return scene.bodies[i].mesh; });
+}
+
+base::Result<Model> build_model(scene::Scene&& scene, const BuildOptions& options) {
+    return build(scene, options, [&](int i) { return std::move(scene.bodies[i].mesh); });
 }
 
 }  // namespace fettle::core::model

@@ -34,6 +34,8 @@ struct BuildOptions {
 /// @return the model, with `warnings` (meshes: check_scene.hpp; the start: start_check.hpp), or every fault found: `where` names body, mesh
 /// and element.
 Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options = {});
+/// The same, with the scene's own meshes: large ones need not be copied.
+Result<Model> build_model(scene::Scene&& scene, const BuildOptions& options = {});
 
 /// Fills radius (rounded up), edge_length_squared, areas and hierarchy from the body's mesh.
 void complete_geometry(Body& body);

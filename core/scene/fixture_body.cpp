@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/files/index_rows.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -92,15 +93,21 @@ MeshMass look_at_mass(const geometry::Mesh& mesh) {
     return {MassKind::volume, !(moments(3, 3) > 0), !geometry::is_closed(halves)};
 }
 
-/// A solid that is inside out is turned: which side is out is not what its file meant to say.
-void decide_mass(const files::JsonNode& node, const MeshMass& mass, Body& body) {
+/// A solid that is inside out is turned: which side is out is not what its file meant to say. @return whether it is
+bool decide_mass(const files::JsonNode& node, const MeshMass& mass, const geometry::Mesh& mesh, Body& body) {
     body.mass_kind = mass.kind;
-    if (body.type != BodyType::dynamic_body || body.mesh.triangles.empty()) return;
+    if (body.type != BodyType::dynamic_body || mesh.triangles.empty()) return false;
     if (mass.kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
     if (mass.has_gaps && !mass.inside_out) node.warn("the mesh has gaps: it is a solid with these capped");
-    if (!mass.inside_out) return;
-    node.warn("the mesh is inside out: its triangles are turned");
-    geometry::turn_triangles(body.mesh);
+    if (mass.inside_out) node.warn("the mesh is inside out: its triangles are turned");
+    return mass.inside_out;
+}
+
+geometry::Mesh made(const MeshSource& source) {
+    geometry::Mesh mesh = *source.mesh;
+    geometry::scale_mesh(mesh, source.factors);
+    if (source.turned) geometry::turn_triangles(mesh);
+    return mesh;
 }
 
 void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
@@ -145,36 +152,36 @@ std::optional<Vector3> fixture_vector(const files::JsonNode& node) {
     return Vector3((*found)[0], (*found)[1], (*found)[2]);
 }
 
-std::optional<geometry::Mesh> FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) {
+const geometry::Mesh* FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) {
     const auto known = files_.find(name);
-    if (known != files_.end()) return known->second;
+    if (known != files_.end()) return &known->second;
     const auto file = mesh_files::find_mesh_file(name, document_.path(), options_.mesh_dirs, node.where());
     if (!file) {
         node.fail(file.errors().front().code, file.errors().front().message);
-        return std::nullopt;
+        return nullptr;
     }
     mesh_files::MeshReadOptions options;
     options.unit = 1;
     options.weld = true;
-    const auto found = mesh_files::read_mesh(*file, options);
+    auto found = mesh_files::read_mesh(*file, options);
     if (!found) {
         for (const auto& error : found.errors()) node.fail(error.code, (error.where.empty() ? "" : error.where + ": ") + error.message);
-        return std::nullopt;
+        return nullptr;
     }
     geometry::MeshRequirements requirements;
     requirements.closed = false;
     for (const auto& fault : geometry::validate_mesh(*found, requirements, 1)) node.warn(fault.where + ": " + fault.message);
-    return files_[name] = *found;
+    return &(files_[name] = *std::move(found));
 }
 
-std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const files::JsonNode& node) {
+const geometry::Mesh* FixtureBodies::inline_mesh(const files::JsonNode& node) {
     geometry::Mesh mesh;
     mesh.name = "inline mesh";
     const files::JsonNode vertices = node["vertices"].unless_null();
     const auto rows = vertices.elements();
     if (rows.empty()) {
         node.fail(ErrorCode::missing_key, "a body needs a `mesh` or `vertices`");
-        return std::nullopt;
+        return nullptr;
     }
     mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
     bool good = true;
@@ -187,15 +194,16 @@ std::optional<geometry::Mesh> FixtureBodies::inline_mesh(const files::JsonNode& 
     const int count = static_cast<int>(rows.size());
     mesh.triangles = files::index_rows<3>(node["faces"].unless_null(), count);
     const auto edges = files::index_rows<2>(node["edges"].unless_null(), count);
-    if (!good || document_.errors().size() > faults) return std::nullopt;
+    if (!good || document_.errors().size() > faults) return nullptr;
     build_connectivity(mesh, edges);
-    return weld_exactly(mesh);
+    inline_ = weld_exactly(mesh);
+    return &inline_;
 }
 
-std::optional<geometry::Mesh> FixtureBodies::mesh(const files::JsonNode& node) {
+const geometry::Mesh* FixtureBodies::mesh(const files::JsonNode& node) {
     const files::JsonNode file = node["mesh"].unless_null();
     const auto name = file.string();
-    if (file.exists() && !name) return std::nullopt;
+    if (file.exists() && !name) return nullptr;
     return name && !name->empty() ? mesh_file(file, *name) : inline_mesh(node);
 }
 
@@ -205,11 +213,9 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
     Body& body = out.body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
-    auto mesh = this->mesh(node);
-    if (!mesh) return out;
-    body.mesh = *std::move(mesh);
-    out.factors = scale_factors(node, body.mesh);
-    geometry::scale_mesh(body.mesh, out.factors);
+    out.mesh = mesh(node);
+    if (out.mesh == nullptr || out.mesh->vertices.cols() == 0) return {};
+    out.factors = scale_factors(node, *out.mesh);
     const files::JsonNode file = node["mesh"];
     out.file = file.is_string() ? file.string().value() : "";
     body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
@@ -226,33 +232,48 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
     return out;
 }
 
-std::vector<Body> FixtureBodies::read(const files::JsonNode& node, double timestep) {
+std::vector<FixtureBody> FixtureBodies::read(const files::JsonNode& node, double timestep) {
     node.warn_of_other_keys(fixture_body_keys);
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
     Placed found = placed(node);
+    if (found.mesh == nullptr) return {};
     Body& body = found.body;
-    if (body.mesh.vertices.cols() == 0) return {};
     const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
     body.type = body_type(node["type"].unless_null(), fixed);
     const files::JsonNode density = node["density"].unless_null();
     body.density = (body.type == BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
     body.density_given = density.exists() || body.type == BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
-    std::vector<Body> bodies;
-    std::size_t part = 0;
+    MeshSource source{found.mesh, found.factors};
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
-    for (geometry::Mesh& mesh : split ? geometry::split_shells(body.mesh) : std::vector<geometry::Mesh>{body.mesh}) {
-        bodies.push_back(body);
-        bodies.back().mesh = std::move(mesh);
-        decide_mass(node, mass_of(bodies.back().mesh, found, part++), bodies.back());
-        read_motion(node, fixed, timestep, bodies.back());
+    if (!split && !found.file.empty() && body.type != BodyType::kinematic_body) {  // whose script is about its mesh's centre
+        const MeshMass mass = mass_of(found, 0, [&] { return made(source); });
+        source.turned = decide_mass(node, mass, *found.mesh, body);
+        read_motion(node, fixed, timestep, body);
+        return {{std::move(body), source}};
+    }
+    std::vector<FixtureBody> bodies;
+    std::size_t part = 0;
+    for (geometry::Mesh& mesh : split ? geometry::split_shells(made(source)) : std::vector<geometry::Mesh>{made(source)}) {
+        const MeshMass mass = mass_of(found, part++, [&] { return mesh; });
+        bodies.push_back({body, {}});
+        Body& last = bodies.back().body;
+        if (decide_mass(node, mass, mesh, last)) geometry::turn_triangles(mesh);
+        last.mesh = std::move(mesh);
+        read_motion(node, fixed, timestep, last);
     }
     return bodies;
 }
 
-MeshMass FixtureBodies::mass_of(const geometry::Mesh& mesh, const Placed& from, std::size_t part) {
-    if (from.file.empty()) return look_at_mass(mesh);
+void FixtureBodies::fill(std::vector<Body>& bodies, const std::vector<MeshSource>& sources) {
+    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+        if (sources[i].mesh != nullptr) bodies[i].mesh = made(sources[i]);
+    });
+}
+
+MeshMass FixtureBodies::mass_of(const Placed& from, std::size_t part, const std::function<geometry::Mesh()>& mesh) {
+    if (from.file.empty()) return look_at_mass(mesh());
     const auto [entry, fresh] = masses_.try_emplace({from.file, {from.factors[0], from.factors[1], from.factors[2]}, part});
-    if (fresh) entry->second = look_at_mass(mesh);
+    if (fresh) entry->second = look_at_mass(mesh());
     return entry->second;
 }
 

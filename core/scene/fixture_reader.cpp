@@ -59,9 +59,14 @@ public:
         read_stepper(problem["time_stepper"].unless_null());
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
+        std::vector<MeshSource> meshes;  // of the bodies
         for (const files::JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
-            for (Body& body : bodies_.read(node, scene_.timestep)) scene_.bodies.push_back(std::move(body));
+            for (FixtureBody& read : bodies_.read(node, scene_.timestep)) {
+                scene_.bodies.push_back(std::move(read.body));
+                meshes.push_back(read.source);
+            }
         }
+        FixtureBodies::fill(scene_.bodies, meshes);
         merge_groups();
         make_names_unique();
         read_solver(root["ipc_solver"].unless_null());  // its tolerance is relative to the size at the very start

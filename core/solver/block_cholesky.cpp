@@ -154,10 +154,13 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
 
 // A column needs those that have a row in it.
 void BlockCholesky::find_levels() {
-    constexpr int worthwhile = 150;  // products of blocks that a thread takes at a time
+    constexpr double factor_products = 150, solve_products = 400;  // of blocks, and of blocks with vectors, that a thread takes at a time
     levels_.clear();
     std::vector<std::size_t> level(columns_.size(), 0);
-    std::vector<std::size_t> work;
+    struct Work {
+        double factor = 0, solve = 0;
+    };
+    std::vector<Work> work;
     for (std::size_t j = 0; j < columns_.size(); ++j) {
         std::size_t products = columns_[j].size() + 1;
         for (const Entry& before : rows_[j]) {
@@ -166,14 +169,16 @@ void BlockCholesky::find_levels() {
         }
         if (level[j] >= levels_.size()) {
             levels_.resize(level[j] + 1);
-            work.resize(level[j] + 1, 0);
+            work.resize(level[j] + 1);
         }
         levels_[level[j]].columns.push_back(static_cast<int>(j));
-        work[level[j]] += products;
+        work[level[j]].factor += static_cast<double>(products);
+        work[level[j]].solve += static_cast<double>(columns_[j].size() + 1);
     }
     for (std::size_t k = 0; k < levels_.size(); ++k) {
-        const double each = static_cast<double>(work[k]) / static_cast<double>(levels_[k].columns.size());
-        levels_[k].grain = std::max(1, static_cast<int>(worthwhile / each));
+        const auto count = static_cast<double>(levels_[k].columns.size());
+        levels_[k].factor_grain = std::max(1, static_cast<int>(factor_products * count / work[k].factor));
+        levels_[k].solve_grain = std::max(1, static_cast<int>(solve_products * count / work[k].solve));
     }
 }
 
@@ -218,12 +223,28 @@ bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const Fre
     fill(hessian, dofs);
     for (const Level& level : levels_) {
         std::atomic<bool> is_positive = true;
-        base::parallel_for(static_cast<int>(level.columns.size()), level.grain, [&](int k) {
+        base::parallel_for(static_cast<int>(level.columns.size()), level.factor_grain, [&](int k) {
             if (!eliminate(level.columns[at(k)])) is_positive = false;
         });
         if (!is_positive) return false;
     }
     return true;
+}
+
+// In place, by the nodes: each takes what it needs from those before it, then from those below it, in their order.
+void BlockCholesky::solve_column(std::vector<Vector6>& x) const {
+    for (const Level& level : levels_)
+        base::parallel_for(static_cast<int>(level.columns.size()), level.solve_grain, [&](int i) {
+            const std::size_t k = at(level.columns[at(i)]);
+            for (const Entry& before : rows_[k]) x[k] -= blocks_[at(columns_[at(before.row)][at(before.block)].block)] * x[at(before.row)];
+            diagonal_[k].triangularView<Eigen::Lower>().solveInPlace(x[k]);
+        });
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+        base::parallel_for(static_cast<int>(level->columns.size()), level->solve_grain, [&](int i) {
+            const std::size_t k = at(level->columns[at(i)]);
+            for (const Entry& entry : columns_[k]) x[k] -= blocks_[at(entry.block)].transpose() * x[at(entry.row)];
+            diagonal_[k].transpose().triangularView<Eigen::Upper>().solveInPlace(x[k]);
+        });
 }
 
 MatrixX BlockCholesky::solve(const MatrixX& rhs, const FreeDofs& dofs) const {
@@ -236,14 +257,7 @@ MatrixX BlockCholesky::solve(const MatrixX& rhs, const FreeDofs& dofs) const {
                 const int index = dofs.index[at(body_of_[k])][at(i)];
                 x[k][i] = index >= 0 ? rhs(index, c) : 0;
             }
-        for (std::size_t k = 0; k < n; ++k) {
-            diagonal_[k].triangularView<Eigen::Lower>().solveInPlace(x[k]);
-            for (const Entry& entry : columns_[k]) x[at(entry.row)] -= blocks_[at(entry.block)] * x[k];
-        }
-        for (std::size_t k = n; k-- > 0;) {
-            for (const Entry& entry : columns_[k]) x[k] -= blocks_[at(entry.block)].transpose() * x[at(entry.row)];
-            diagonal_[k].transpose().triangularView<Eigen::Upper>().solveInPlace(x[k]);
-        }
+        solve_column(x);
         for (std::size_t k = 0; k < n; ++k)
             for (int i = 0; i < 6; ++i) {
                 const int index = dofs.index[at(body_of_[k])][at(i)];

@@ -34,6 +34,7 @@ private:
     void fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
     bool eliminate(int column);
     void find_levels();
+    void solve_column(std::vector<Vector6>& x) const;
 
     std::vector<std::pair<int, int>> pattern_;  // bodies of the off-diagonal blocks that the analysis saw
     bool analysed_ = false;
@@ -44,8 +45,8 @@ private:
     std::vector<Matrix6> diagonal_, blocks_;   // the matrix, then its factor
     std::vector<int> block_of_;                // [off-diagonal block of the matrix] into blocks_; -1: one of its bodies has nothing free
     struct Level {
-        std::vector<int> columns;  // each needs columns of lower levels alone
-        int grain = 1;             // of them that a thread takes at a time
+        std::vector<int> columns;               // each needs columns of lower levels alone
+        int factor_grain = 1, solve_grain = 1;  // of them that a thread takes at a time
     };
     std::vector<Level> levels_;
 };

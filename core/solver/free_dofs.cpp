@@ -5,9 +5,13 @@ namespace fettle::core::solver {
 
 FreeDofs free_dofs(const model::Model& model) {
     FreeDofs dofs;
-    for (const model::Body& body : model.bodies) {
+    for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
         std::array<int, 6> index;
-        for (int k = 0; k < 6; ++k) index[k] = model::is_free(body, k) ? dofs.count++ : -1;
+        for (int k = 0; k < 6; ++k) {
+            const bool is_free = model::is_free(model.bodies[i], k);
+            index[k] = is_free ? dofs.count++ : -1;
+            if (!is_free) dofs.prescribed.emplace_back(i, k);
+        }
         dofs.index.push_back(index);
     }
     return dofs;

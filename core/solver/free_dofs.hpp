@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
@@ -12,7 +13,8 @@ namespace fettle::core::solver {
 
 /// Their numbering.
 struct FreeDofs {
-    std::vector<std::array<int, 6>> index;  ///< [body][dof]: column, or -1 if prescribed
+    std::vector<std::array<int, 6>> index;        ///< [body][dof]: column, or -1 if prescribed
+    std::vector<std::pair<int, int>> prescribed;  ///< the others: body, dof
     int count = 0;
 };
 FreeDofs free_dofs(const model::Model& model);

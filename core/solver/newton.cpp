@@ -298,6 +298,7 @@ private:
     // What has gone farther than anything that is held would. @return empty if nothing has
     std::string lost_bodies() const {
         constexpr double company = 0.5;  // others that have gone half as far go with it
+        if (!std::isfinite(options_.farthest) && !std::isfinite(options_.widest_turn)) return {};
         double most = 0;
         std::vector<double> gone(at_.points.size(), 0);
         for (std::size_t i = 0; i < gone.size(); ++i) {

@@ -18,12 +18,13 @@ using energy::ChartDerivatives;
 using energy::StepProblem;
 using kinematics::ChartPoint;
 
-constexpr int bodies_at_once = 16;               // that a thread takes
+constexpr int bodies_at_once = 16;               // that a thread takes,
+constexpr int bodies_a_pass = 128;               // where there is little to do for each
 constexpr double largest_turn = 0.3;             // of one iteration [rad], or twice what the body turns in a step as it goes
 constexpr double largest_shift = 0.1;            // of the scene's size, or twice what the body moves
 constexpr double rounding_shift = 1e-12;         // of the diagonal
 constexpr double smallest_hessian_shift = 1e-2;  // of the body's inertia
-constexpr double rounding_share = 1e-10;         // of the diagonal, for one of the inertia
+constexpr double diagonal_share = 1e-10;         // of the diagonal, for one of the inertia
 
 Vector6 coordinates(const ChartPoint& p) {
     Vector6 y;
@@ -45,28 +46,39 @@ void add_row_forces(const model::Model& model, const NewtonWorkspace& workspace,
     for (std::size_t i = 0; i < magnitude.size(); ++i) d.force_magnitude[i] += magnitude[i];
 }
 
-double residual_of(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs) {
+// Of one body: its free forces, squared, and what they are measured by.
+struct ResidualShare {
     double square = 0, magnitude = 0;
-    for (std::size_t i = 0; i < d.gradient.size(); ++i) {
-        for (int k = 0; k < 6; ++k) {
-            if (dofs.index[i][k] < 0) continue;
-            const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(model.bodies[i].radius, model.dhat);
-            square += g * g;
-        }
-        magnitude += d.force_magnitude[i] + model.bodies[i].moments(3, 3) * model.velocity_tolerance * model.timestep;
+};
+
+ResidualShare residual_share(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, std::size_t i) {
+    const model::Body& body = model.bodies[i];
+    ResidualShare share;
+    for (int k = 0; k < 6; ++k) {
+        if (dofs.index[i][k] < 0) continue;
+        const double g = k < 3 ? d.gradient[i][k] : d.gradient[i][k] / std::max(body.radius, model.dhat);
+        share.square += g * g;
     }
-    return magnitude > 0 ? std::sqrt(square) / magnitude : std::sqrt(square);
+    share.magnitude = d.force_magnitude[i] + body.moments(3, 3) * model.velocity_tolerance * model.timestep;
+    return share;
+}
+
+double residual_of(const ResidualShare& sum) { return sum.magnitude > 0 ? std::sqrt(sum.square) / sum.magnitude : std::sqrt(sum.square); }
+
+double residual_of(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs) {
+    ResidualShare sum;
+    for (std::size_t i = 0; i < d.gradient.size(); ++i) {
+        const ResidualShare share = residual_share(d, model, dofs, i);
+        sum.square += share.square;
+        sum.magnitude += share.magnitude;
+    }
+    return residual_of(sum);
 }
 
 // Positions carry an error of a few ulp of their size; the value moves by force times that, and by its square through the inertia.
-double rounding_of(const ChartDerivatives& d, const model::Model& model, const std::vector<ChartPoint>& points) {
-    double sum = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const model::Body& body = model.bodies[i];
-        const double ulp = 16 * std::numeric_limits<double>::epsilon() * (points[i].position.norm() + body.radius);
-        sum += d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
-    }
-    return sum;
+double rounding_share(const ChartDerivatives& d, const model::Body& body, const ChartPoint& point, std::size_t i) {
+    const double ulp = 16 * std::numeric_limits<double>::epsilon() * (point.position.norm() + body.radius);
+    return d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
 }
 
 bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
@@ -98,7 +110,7 @@ std::vector<Matrix6> shift_unit(const StepProblem& problem, const Iterate& at, c
     double largest = 0;
     for (std::size_t i = 0; i < unit.size(); ++i) {
         unit[i] = inertia_in_chart(problem, at, i);
-        unit[i].diagonal() += rounding_share * d.hessian.diagonal[i].diagonal().cwiseAbs();
+        unit[i].diagonal() += diagonal_share * d.hessian.diagonal[i].diagonal().cwiseAbs();
         largest = std::max(largest, unit[i].diagonal().maxCoeff());
     }
     for (Matrix6& block : unit)  // a body without mass that nothing holds
@@ -178,13 +190,9 @@ double inertia_along(const StepProblem& problem, const Iterate& at, const std::v
 void measure_remaining(const std::vector<Vector6>& targets, const std::vector<ChartPoint>& points, const model::Model& model,
                        const FreeDofs& dofs, Direction& direction) {
     direction.remaining.assign(points.size(), Vector6::Zero());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vector6 current = coordinates(points[i]);
-        for (int k = 0; k < 6; ++k) {
-            if (dofs.index[i][k] >= 0) continue;
-            direction.remaining[i][k] = targets[i][k] - current[k];
-            direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model.bodies[i].radius);
-        }
+    for (const auto& [i, k] : dofs.prescribed) {
+        direction.remaining[i][k] = targets[i][k] - coordinates(points[i])[k];
+        direction.remaining_norm += std::abs(direction.remaining[i][k]) * (k < 3 ? 1.0 : model.bodies[i].radius);
     }
 }
 
@@ -206,27 +214,49 @@ void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direc
 
 // A nearly singular Hessian sends bodies round the world, where every search is dear and nothing is gained.
 void shorten(const StepProblem& problem, Direction& direction) {
-    double fraction = 1;
-    for (std::size_t i = 0; i < direction.step.size(); ++i) {
-        const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
-        const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
-        const double shift = std::max(largest_shift * problem.model->diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
-        const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
-        fraction = std::min(fraction, shift / std::max(shift, step.head<3>().norm()));
-        fraction = std::min(fraction, turn / std::max(turn, step.tail<3>().norm()));
-    }
+    const auto least_share = [&](int begin, int end) {
+        double fraction = 1;
+        for (int i = begin; i < end; ++i) {
+            const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
+            const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
+            const double shift = std::max(largest_shift * problem.model->diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
+            const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
+            fraction = std::min(fraction, shift / std::max(shift, step.head<3>().norm()));
+            fraction = std::min(fraction, turn / std::max(turn, step.tail<3>().norm()));
+        }
+        return fraction;
+    };
+    const double fraction = base::ordered_reduce(static_cast<int>(direction.step.size()), bodies_a_pass, 1.0, least_share,
+                                                 [](double so_far, double piece) { return std::min(so_far, piece); });
     if (fraction == 1) return;
     for (Vector6& step : direction.step) step *= fraction;
     direction.drive *= fraction;
 }
 
-void measure_step(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, Direction& direction) {
-    for (std::size_t i = 0; i < direction.step.size(); ++i) {
+// Slope, motion, residual and rounding.
+void measure(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, const std::vector<ChartPoint>& points,
+             Direction& direction) {
+    struct Shares {
+        double slope = 0, motion = 0, rounding = 0;
+        ResidualShare residual;
+    };
+    std::vector<Shares> shares(points.size());
+    base::parallel_for(static_cast<int>(points.size()), bodies_a_pass, [&](int k) {
+        const auto i = static_cast<std::size_t>(k);
         const Vector6& step = direction.step[i];
-        direction.slope += d.gradient[i].dot(step);
         const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
-        if (solved_for) direction.motion = std::max(direction.motion, motion_of(model.bodies[i], step));
+        shares[i] = {d.gradient[i].dot(step), solved_for ? motion_of(model.bodies[i], step) : 0,
+                     rounding_share(d, model.bodies[i], points[i], i), residual_share(d, model, dofs, i)};
+    });
+    ResidualShare residual;
+    for (const Shares& share : shares) {
+        direction.slope += share.slope;
+        direction.motion = std::max(direction.motion, share.motion);
+        direction.rounding += share.rounding;
+        residual.square += share.residual.square;
+        residual.magnitude += share.residual.magnitude;
     }
+    direction.residual = residual_of(residual);
 }
 
 }  // namespace
@@ -249,9 +279,7 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     solve_for_step(d, workspace, direction);
     shorten(problem, direction);
     add_row_forces(model, workspace, d);
-    measure_step(d, model, dofs, direction);
-    direction.residual = residual_of(d, model, dofs);
-    direction.rounding = rounding_of(d, model, at.points);
+    measure(d, model, dofs, at.points, direction);
     if (workspace.rows) {
         direction.slope -= workspace.rows->work_of_unmet(direction.drive);
         direction.rounding += workspace.rows->work_of_rounding();
@@ -264,13 +292,13 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
 std::vector<ChartPoint> moved(const std::vector<ChartPoint>& points, const Direction& direction, double fraction,
                               const std::vector<Vector6>& targets, const FreeDofs& dofs) {
     std::vector<ChartPoint> out(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    base::parallel_for(static_cast<int>(points.size()), bodies_a_pass, [&](int i) {
         Vector6 y = coordinates(points[i]) + fraction * direction.step[i];
         if (fraction == 1 && direction.drive == 1)
             for (int k = 0; k < 6; ++k)
                 if (dofs.index[i][k] < 0) y[k] = targets[i][k];
         out[i] = {y.head<3>(), y.tail<3>()};
-    }
+    });
     return out;
 }
 

@@ -84,14 +84,14 @@ Result<LoadedModel> load_design(const std::string& path, const CommonOptions& co
 Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& common, bool check_start) {
     core::scene::ReadOptions read_options = reading::scene_read_options(common.mesh_dirs, programs_of(common));
     read_options.strict_meshes = common.strict;
-    const Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
+    Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
     if (!scene) return scene.errors();
     LoadedModel loaded;
     loaded.scene_path = path;
-    loaded.warnings = scene->warnings;
+    loaded.warnings = std::move(scene->warnings);
     core::model::BuildOptions options;
     options.check_start = check_start;
-    Result<core::model::Model> model = core::model::build_model(*scene, options);
+    Result<core::model::Model> model = core::model::build_model(*std::move(scene), options);
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
     return loaded;
