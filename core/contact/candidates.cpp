@@ -129,11 +129,11 @@ std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const s
     return pairs;
 }
 
-// The entries of `from` that are still wanted, and new ones. @return sorted as `wanted`
-std::vector<BodyPairCandidates> taken_over(std::vector<BodyPairCandidates> from, const std::vector<std::pair<int, int>>& wanted) {
+// Leaves the entries that are still wanted, and new ones, sorted as `wanted`.
+void take_over(const std::vector<std::pair<int, int>>& wanted, Candidates& candidates) {
+    std::vector<BodyPairCandidates>&from = candidates.pairs, &out = candidates.spare;
     const auto is_wanted = [](const BodyPairCandidates& x, const std::pair<int, int>& y) { return std::pair(x.a, x.b) == y; };
-    if (std::equal(from.begin(), from.end(), wanted.begin(), wanted.end(), is_wanted)) return from;
-    std::vector<BodyPairCandidates> out;
+    if (std::equal(from.begin(), from.end(), wanted.begin(), wanted.end(), is_wanted)) return;
     out.reserve(wanted.size());
     auto old = from.begin();
     for (const auto& [a, b] : wanted) {
@@ -147,7 +147,8 @@ std::vector<BodyPairCandidates> taken_over(std::vector<BodyPairCandidates> from,
             out.back().fresh = true;
         }
     }
-    return out;
+    from.swap(out);
+    out.clear();
 }
 
 // A part of a pair's work: what a thread does in one go.
@@ -214,13 +215,17 @@ void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandi
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
     const double activation = model.dmin + model.dhat;
-    std::vector<SweptBody> swept(segments.size());
-    std::vector<geometry::Box> boxes(segments.size());
+    static thread_local std::vector<SweptBody> swept_memory;  // stays from call to call
+    static thread_local std::vector<geometry::Box> box_memory;
+    std::vector<SweptBody>& swept = swept_memory;
+    std::vector<geometry::Box>& boxes = box_memory;
+    swept.resize(segments.size());
+    boxes.resize(segments.size());
     base::parallel_for(static_cast<int>(segments.size()), pairs_a_query, [&](int i) {
         swept[i] = swept_body(model.bodies[i], segments[i]);
         boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
     });
-    candidates.pairs = taken_over(std::move(candidates.pairs), close_bodies(model, boxes, allowance, candidates.near));
+    take_over(close_bodies(model, boxes, allowance, candidates.near), candidates);
 
     base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];

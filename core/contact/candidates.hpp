@@ -35,6 +35,7 @@ struct NearBodies {
 struct Candidates {
     std::vector<BodyPairCandidates> pairs;  ///< sorted by (a, b). Pairs of bodies that are near but have no candidates are listed too
     NearBodies near;
+    std::vector<BodyPairCandidates> spare;  ///< memory for the next list of pairs; empty
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most

@@ -60,7 +60,9 @@ public:
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
         std::vector<MeshSource> meshes;  // of the bodies
-        for (const files::JsonNode& node : problem["rigid_bodies"].unless_null().elements()) {
+        const std::vector<files::JsonNode> nodes = problem["rigid_bodies"].unless_null().elements();
+        scene_.bodies.reserve(nodes.size());
+        for (const files::JsonNode& node : nodes) {
             for (FixtureBody& read : bodies_.read(node, scene_.timestep)) {
                 scene_.bodies.push_back(std::move(read.body));
                 meshes.push_back(read.source);

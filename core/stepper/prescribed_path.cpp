@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/stepper/rotation_lift.hpp"
 
 namespace fettle::core::stepper {
@@ -146,20 +147,20 @@ Vector6 coordinates_at(const std::vector<Waypoint>& way, const Pose& start, doub
 }  // namespace
 
 std::vector<PrescribedNode> prescribed_path(const model::Model& model, const std::vector<Pose>& poses, double time) {
-    std::vector<std::vector<Waypoint>> ways;
-    ways.reserve(poses.size());
+    constexpr int bodies_at_once = 64;  // that a thread takes
+    const auto count = static_cast<int>(poses.size());
+    std::vector<std::vector<Waypoint>> ways(poses.size());
+    base::parallel_for(count, bodies_at_once,
+                       [&](int i) { ways[i] = BodyPath(model.bodies[i], poses[i], time, time + model.timestep).waypoints(); });
     std::vector<double> fractions{1};
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        ways.push_back(BodyPath(model.bodies[i], poses[i], time, time + model.timestep).waypoints());
-        for (const Waypoint& waypoint : ways.back()) fractions.push_back(waypoint.fraction);
-    }
+    for (const std::vector<Waypoint>& way : ways)
+        for (const Waypoint& waypoint : way) fractions.push_back(waypoint.fraction);
     std::sort(fractions.begin(), fractions.end());
     fractions.erase(std::unique(fractions.begin(), fractions.end()), fractions.end());
     std::vector<PrescribedNode> out;
     for (const double fraction : fractions) {
-        out.push_back({fraction, {}});
-        out.back().targets.reserve(poses.size());
-        for (std::size_t i = 0; i < poses.size(); ++i) out.back().targets.push_back(coordinates_at(ways[i], poses[i], fraction));
+        out.push_back({fraction, std::vector<Vector6>(poses.size())});
+        base::parallel_for(count, bodies_at_once, [&](int i) { out.back().targets[i] = coordinates_at(ways[i], poses[i], fraction); });
     }
     return out;
 }
