@@ -364,14 +364,30 @@ private:
 
 }  // namespace
 
-NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options) {
+namespace {
+
+NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
+                            double reach, ClearanceOptions options) {
     FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
                   "a trajectory of the model's bodies");
     FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
-    const std::vector<PathPlace> places = path_places(trajectory, options.motion);
     const NearWindows near = near_windows(model, trajectory, places, reach);
     options.enough = std::min(options.enough, reach);
     return {WindowSearch(model, trajectory, places, near.windows, options).run(), near.everything};
+}
+
+}  // namespace
+
+NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options) {
+    const std::vector<PathPlace> places = path_places(trajectory, options.motion);
+    return certify_near(model, trajectory, places, reach, std::move(options));
+}
+
+NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, StepRange steps, double reach,
+                            ClearanceOptions options) {
+    FETTLE_ASSERT(steps.first >= 0 && steps.first < steps.last && steps.last <= static_cast<int>(trajectory.steps.size()),
+                  "steps of the trajectory");
+    return certify_near(model, trajectory, path_places(trajectory, steps.first, steps.last), reach, std::move(options));
 }
 
 std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,

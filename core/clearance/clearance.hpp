@@ -28,6 +28,14 @@ struct NearClearances {
 /// Contract: no certificate is asked for.
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options);
 
+/// Steps [first, last) of a trajectory.
+struct StepRange {
+    int first = 0, last = 0;
+};
+/// The same over some of the steps alone; `options.motion` is of no matter. Contract: 0 <= first < last <= the trajectory's steps.
+NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, StepRange steps, double reach,
+                            ClearanceOptions options);
+
 /// Steps [first, last) of a trajectory, and into how many equal parts they are divided: at most one part a step.
 struct TimeWindows {
     int first = 0, last = 0;

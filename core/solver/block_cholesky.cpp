@@ -183,7 +183,7 @@ void BlockCholesky::find_levels() {
 }
 
 void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
-    constexpr int blocks_a_piece = 256;
+    constexpr int blocks_a_piece = 64;
     base::parallel_for(static_cast<int>(body_of_.size()), blocks_a_piece, [&](int k) {
         const std::size_t body = at(body_of_[at(k)]);
         Matrix6& block = diagonal_[at(k)];

@@ -19,7 +19,7 @@ using energy::StepProblem;
 using kinematics::ChartPoint;
 
 constexpr int bodies_at_once = 16;               // that a thread takes,
-constexpr int bodies_a_pass = 128;               // where there is little to do for each
+constexpr int bodies_a_pass = 32;                // where there is little to do for each
 constexpr double largest_turn = 0.3;             // of one iteration [rad], or twice what the body turns in a step as it goes
 constexpr double largest_shift = 0.1;            // of the scene's size, or twice what the body moves
 constexpr double rounding_shift = 1e-12;         // of the diagonal
@@ -82,7 +82,7 @@ double rounding_share(const ChartDerivatives& d, const model::Body& body, const 
 }
 
 bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
-    constexpr int blocks_at_once = 256;
+    constexpr int blocks_at_once = 64;
     std::atomic<bool> finite = true;
     base::parallel_for(static_cast<int>(d.gradient.size()), blocks_at_once, [&](int i) {
         if (d.gradient[i].allFinite() && d.hessian.diagonal[i].allFinite()) return;

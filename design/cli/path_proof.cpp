@@ -2,7 +2,9 @@
 #include "fettle/design/cli/path_proof.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -17,7 +19,7 @@ using core::clearance::PairRequest;
 
 constexpr int most_rounds = 4;    // of pairs that are left open
 constexpr int most_reaches = 60;  // looked at one after another, each some times the last
-constexpr double share = 1e-2;    // of the least distance: how well it is told
+constexpr double share = 1e-2;    // of the least distance: how well it is told, twice
 
 bool any_may_collide(const core::model::Model& model) {
     const int count = static_cast<int>(model.bodies.size());
@@ -66,19 +68,28 @@ Judgement judge(const core::model::Model& model, const std::vector<PairClearance
     return judged;
 }
 
-PathProof stopped() { return {ProofState::stopped, std::nullopt, "the proof of the path was stopped on request"}; }
-
-// Pairs that are left open are searched again, a hundred times closer each time.
-PathProof look_closer(const core::model::Model& model, const core::stepper::Simulation& simulation,
-                      core::clearance::ClearanceOptions options, Judgement judged) {
-    for (int round = 1; !judged.refuted && round < most_rounds; ++round) {
-        options.tolerance *= 1e-2;
-        judged = judge(model, core::clearance::certify_clearance(model, simulation.trajectory, judged.open, options), judged.settled);
-        if (!judged.whole && options.should_stop()) return stopped();
-        if (judged.open.empty()) return {ProofState::proven, judged.settled, {}};
-    }
-    return {ProofState::not_certified, judged.lower, judged.reason};
+core::clearance::ClearanceOptions proof_options(double tolerance, const std::function<bool()>& should_stop) {
+    core::clearance::ClearanceOptions options;
+    options.motion = true;
+    options.sample_nodes = false;
+    options.measure_overlap = false;
+    options.tolerance = tolerance;
+    options.should_stop = should_stop;
+    return options;
 }
+
+// Adds the time of its life.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& sum) : sum_(sum), begin_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& sum_;
+    std::chrono::steady_clock::time_point begin_;
+};
 
 }  // namespace
 
@@ -95,31 +106,134 @@ const char* to_string(ProofState state) {
     return "not certified";
 }
 
+// Steps [first, last); of no steps, the start.
+struct PathProver::Stretch {
+    int first = 0, last = 0;
+    double reach = 0;  // up to which it was searched last
+    Judgement judged;
+
+    // Is the least distance over the path told by this, if it is `known` and not elsewhere?
+    bool tells(double known) const { return judged.lower >= (1 - 2 * share) * known || (known <= reach && reach <= 2 * known); }
+};
+
+PathProver::PathProver(const core::model::Model& model, std::function<bool()> should_stop, int stretch)
+    : model_(model), should_stop_(std::move(should_stop)), stretch_(stretch), any_pair_(any_may_collide(model)), known_(infinity) {}
+
+PathProver::~PathProver() = default;
+
+// So that what the ends of the steps saw is found within it.
+double PathProver::first_reach(const core::stepper::Simulation& simulation) const {
+    const double contact = model_.dmin + model_.dhat;
+    double reach = std::min(contact, known_);
+    for (const auto& step : simulation.report.steps) reach = std::min(reach, step.minimum_distance);
+    reach *= 1 + share;
+    return reach > model_.dmin ? reach : contact;
+}
+
+// @return false: it was stopped
+bool PathProver::prove(const core::stepper::Simulation& simulation, Stretch& stretch, double reach) {
+    const auto options = proof_options(share * reach, should_stop_);
+    const bool all = stretch.first == stretch.last;
+    const core::clearance::NearClearances near =
+        all ? certify_near(model_, simulation.trajectory, reach, options)
+            : certify_near(model_, simulation.trajectory, {stretch.first, stretch.last}, reach, options);
+    Judgement judged = judge(model_, near.windows, near.everything ? infinity : reach);
+    if (!judged.whole && should_stop_()) return false;
+    stretch.reach = reach;
+    stretch.judged = std::move(judged);
+    known_ = std::min(known_, stretch.judged.upper);
+    return true;
+}
+
+// Goes on to this step. @return false: it was stopped
+bool PathProver::prove_steps(const core::stepper::Simulation& simulation, int last) {
+    Stretch next;
+    next.first = stretches_.empty() ? 0 : stretches_.back().last;
+    next.last = last;
+    if (!prove(simulation, next, first_reach(simulation))) return false;
+    stretches_.push_back(std::move(next));
+    return true;
+}
+
+void PathProver::follow(const core::stepper::Simulation& so_far) {
+    if (!any_pair_ || should_stop_()) return;
+    const Stopwatch watch(seconds_);
+    const auto steps = static_cast<int>(so_far.trajectory.steps.size());
+    for (int last = (stretches_.empty() ? 0 : stretches_.back().last) + stretch_; last <= steps; last += stretch_)
+        if (!prove_steps(so_far, last)) return;
+}
+
+double PathProver::lower() const {
+    double lower = infinity;
+    for (const Stretch& stretch : stretches_) lower = std::min(lower, stretch.judged.lower);
+    return lower;
+}
+
+PathProof PathProver::stopped() const {
+    PathProof proof{ProofState::stopped, std::nullopt, "the proof of the path was stopped on request", 0};
+    for (const Stretch& stretch : stretches_) {
+        if (!stretch.judged.open.empty()) break;
+        proof.lower = std::min(proof.lower.value_or(infinity), stretch.judged.lower);
+        proof.steps = stretch.last;
+    }
+    return proof;
+}
+
+// Pairs that are left open are searched again, a hundred times closer each time.
+PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
+    Judgement judged;
+    double tolerance = infinity;
+    for (const Stretch& stretch : stretches_) {
+        const Judgement& other = stretch.judged;
+        if (judged.reason.empty()) judged.reason = other.reason;
+        judged.lower = std::min(judged.lower, other.lower);
+        judged.settled = std::min(judged.settled, other.settled);
+        judged.refuted = judged.refuted || other.refuted;
+        judged.open.insert(judged.open.end(), other.open.begin(), other.open.end());
+        tolerance = std::min(tolerance, share * stretch.reach);
+    }
+    const auto key = [](const PairRequest& pair) { return std::pair(pair.a, pair.b); };
+    std::sort(judged.open.begin(), judged.open.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) < key(y); });
+    judged.open.erase(
+        std::unique(judged.open.begin(), judged.open.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) == key(y); }),
+        judged.open.end());
+    for (int round = 1; !judged.refuted && round < most_rounds; ++round) {
+        tolerance *= 1e-2;
+        const auto options = proof_options(tolerance, should_stop_);
+        judged = judge(model_, core::clearance::certify_clearance(model_, simulation.trajectory, judged.open, options), judged.settled);
+        if (!judged.whole && should_stop_()) return stopped();
+        if (judged.open.empty()) return {ProofState::proven, judged.settled, {}, static_cast<int>(simulation.trajectory.steps.size())};
+    }
+    PathProof proof = stopped();  // as far as it goes
+    return {ProofState::not_certified, judged.lower, judged.reason, proof.steps};
+}
+
+PathProof PathProver::finish(const core::stepper::Simulation& simulation) {
+    if (!any_pair_) return {};
+    const Stopwatch watch(seconds_);
+    return finished(simulation);
+}
+
+PathProof PathProver::finished(const core::stepper::Simulation& simulation) {
+    const auto steps = static_cast<int>(simulation.trajectory.steps.size());
+    const int done = stretches_.empty() ? 0 : stretches_.back().last;
+    if ((steps > done || stretches_.empty()) && !prove_steps(simulation, steps)) return stopped();
+    double reach = first_reach(simulation);
+    for (int round = 1;; ++round) {
+        const auto is_open = [](const Stretch& stretch) { return !stretch.judged.open.empty(); };
+        if (std::any_of(stretches_.begin(), stretches_.end(), is_open)) return look_closer(simulation);
+        const auto tells = [&](const Stretch& stretch) { return stretch.tells(known_); };
+        if (round == most_reaches || std::all_of(stretches_.begin(), stretches_.end(), tells)) break;
+        reach = known_ <= reach ? known_ : std::min(known_, 8 * reach);
+        for (Stretch& stretch : stretches_)
+            if (!tells(stretch) && !prove(simulation, stretch, reach)) return stopped();
+    }
+    return {ProofState::proven, lower(), {}, steps};
+}
+
 PathProof prove_path(const core::model::Model& model, const core::stepper::Simulation& simulation,
                      const std::function<bool()>& should_stop) {
-    if (!any_may_collide(model)) return {};
-    double reach = model.dmin + model.dhat;
-    for (const auto& step : simulation.report.steps) reach = std::min(reach, step.minimum_distance);
-    reach *= 1 + share;  // so that what was seen is found within it
-    if (!(reach > model.dmin)) reach = model.dmin + model.dhat;
-    core::clearance::ClearanceOptions options;
-    options.motion = true;
-    options.sample_nodes = false;
-    options.measure_overlap = false;
-    options.should_stop = should_stop;
-    double known = infinity;  // a distance that was found: the least is no more
-    for (int round = 1;; ++round) {
-        options.tolerance = share * reach;
-        const core::clearance::NearClearances near = core::clearance::certify_near(model, simulation.trajectory, reach, options);
-        const Judgement judged = judge(model, near.windows, near.everything ? infinity : reach);
-        if (!judged.whole && should_stop()) return stopped();
-        if (!judged.open.empty()) return look_closer(model, simulation, options, judged);
-        known = std::min(known, judged.upper);
-        // Found within the reach, and the reach is no coarse measure of it.
-        const bool told = known <= reach && 2 * known >= reach;
-        if (told || round == most_reaches) return {ProofState::proven, judged.lower, {}};
-        reach = known <= reach ? known : std::min(known, 8 * reach);
-    }
+    return PathProver(model, should_stop).finish(simulation);
 }
 
 }  // namespace fettle::design::cli

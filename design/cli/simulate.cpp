@@ -172,6 +172,8 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
         text += formatted("smallest distance of two bodies over the path: %.6g m, proven\n", *proof.lower);
     } else {
         text += "smallest distance of two bodies over the path: not certified\n";
+        if (proof.state == ProofState::stopped && proof.lower)
+            text += formatted("smallest distance of two bodies over the first %d steps: %.6g m, proven\n", proof.steps, *proof.lower);
     }
     if (!out.empty()) text += "trajectory: " + (std::filesystem::path(out) / "trajectory.json").string() + "\n";
     return text;
@@ -186,6 +188,7 @@ struct FinishedRun {
     Simulation& simulation;                     // nodes may be added to its path
     const Simulation& earlier;                  // that it went on with
     std::optional<GrowingTrajectory>& growing;  // with --out
+    PathProver& prover;                         // has followed the motion, unless nodes are to be added to it
 };
 
 // Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
@@ -206,8 +209,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!errors.empty()) return console.input_errors(errors);
     if (run.growing) run.growing->remove();
     console.narrate("certifying the path");
-    const auto begin = std::chrono::steady_clock::now();
-    const PathProof proof = prove_path(model, simulation, interrupted);
+    const PathProof proof = run.prover.finish(simulation);
     Outcome outcome = outcome_of(report, proof);
     if (outcome.status == "ok" && !loose.empty()) outcome = {"joints_part", loose, exit_undecided};
     json["status"] = outcome.status;
@@ -215,9 +217,12 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     json["steps"] = simulation.trajectory.steps.size();
     json["newton_iterations"] = report.newton_iterations;
     json["wall_seconds"] = report.wall_seconds;
-    json["certify_seconds"] = seconds_since(begin);
-    json["minimum_distance"] = proof.lower ? Json(*proof.lower) : Json();
+    json["certify_seconds"] = run.prover.seconds();
+    const bool stopped = proof.state == ProofState::stopped;
+    json["minimum_distance"] = proof.lower && !stopped ? Json(*proof.lower) : Json();
     json["certification"] = to_string(proof.state);
+    if (stopped) json["certified_steps"] = proof.steps;
+    if (stopped) json["certified_distance"] = proof.lower ? Json(*proof.lower) : Json();
     json["bodies"] = bodies_at_end(model, simulation.trajectory);
     add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
@@ -245,8 +250,11 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
     std::optional<GrowingTrajectory> growing;
+    PathProver prover(model, interrupted);
+    const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then
     simulate_options.on_step = [&](const core::stepper::Progress& p) {
         if (growing) growing->write(*p.so_far, console);
+        if (!adds_nodes) prover.follow(*p.so_far);
         console.progress("simulating", p.step, p.steps);
     };
     simulate_options.should_stop = interrupted;
@@ -271,7 +279,8 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
     Simulation simulation = core::stepper::simulate(model, simulate_options);
-    return finish(options, common, {*loaded, simulation, earlier, growing}, std::move(json), console);
+    simulation.report.wall_seconds -= prover.seconds();
+    return finish(options, common, {*loaded, simulation, earlier, growing, prover}, std::move(json), console);
 }
 
 }  // namespace

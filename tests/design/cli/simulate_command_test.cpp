@@ -144,28 +144,101 @@ TEST_CASE("simulate: a folder that cannot be written to is told before the work"
     }
 }
 
+// A box above a plate that goes down to each of these heights in turn, in a step each, and up again.
+struct Hopping {
+    fettle::core::model::Model model;
+    fettle::core::stepper::Simulation run;
+
+    explicit Hopping(const std::vector<double>& lows) {
+        using namespace fettle::tests::support;
+        using fettle::core::kinematics::ChartPoint;
+        model.dhat = 1e-3;
+        model.bodies = {ground_plate(),
+                        make_body("box", box_mesh(Vector3(-0.1, -0.1, 0), Vector3(0.1, 0.1, 0.2)), make_pose({0, 0, 0}, {0, 0, 1}))};
+        run.trajectory.body_names = {"plate", "box"};
+        run.trajectory.timestep = 0.1;
+        const std::vector<fettle::core::kinematics::Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
+        run.trajectory.poses = {poses};
+        for (const double low : lows) {
+            const auto at = [&](double z) {
+                return std::vector<ChartPoint>{{model.bodies[0].pose_start.position, Vector3::Zero()}, {Vector3(0, 0, z), Vector3::Zero()}};
+            };
+            fettle::core::stepper::TrajectoryStep step;
+            step.nodes = {at(1), at(low), at(1)};
+            run.trajectory.steps.push_back(step);
+            run.trajectory.poses.push_back(poses);
+            run.report.steps.emplace_back().minimum_distance = 1;
+        }
+    }
+};
+
+TEST_CASE("A path is proven while it is simulated, stretch by stretch") {
+    using namespace fettle::design::cli;
+    const std::vector<double> lows{0.9, 0.5, 3e-4, 0.2, 0.01, 7e-4, 2e-4, 0.3};
+    const double least = 2e-4;
+    const auto never = [] { return false; };
+    const auto following = [&](const Hopping& whole, int stretch, const std::function<bool()>& should_stop) {
+        auto prover = std::make_unique<PathProver>(whole.model, should_stop, stretch);
+        for (std::size_t steps = 1; steps <= whole.run.trajectory.steps.size(); ++steps) {
+            fettle::core::stepper::Simulation so_far = whole.run;
+            so_far.trajectory.steps.resize(steps);
+            so_far.trajectory.poses.resize(steps + 1);
+            so_far.report.steps.resize(steps);
+            prover->follow(so_far);
+        }
+        return prover;
+    };
+    const Hopping hopping(lows);
+    for (const int stretch : {1, 2, 3, 5, 8, 100}) {
+        CAPTURE(stretch);
+        const PathProof proof = following(hopping, stretch, never)->finish(hopping.run);
+        CHECK(proof.state == ProofState::proven);
+        CHECK(proof.steps == 8);
+        CHECK((*proof.lower >= 0.98 * least && *proof.lower <= least));
+    }
+    SECTION("what crosses in the middle is found, and where it begins") {
+        std::vector<double> crossing = lows;
+        crossing[3] = -0.1;
+        const Hopping through(crossing);
+        for (const int stretch : {1, 2, 3, 5, 8, 100}) {
+            CAPTURE(stretch);
+            const PathProof proof = following(through, stretch, never)->finish(through.run);
+            CHECK(proof.state == ProofState::not_certified);
+            CHECK(proof.reason.find("pass through each other") != std::string::npos);
+            CHECK(proof.steps == 3 / stretch * stretch);
+        }
+    }
+    SECTION("one that is hardly apart is looked at closer") {
+        std::vector<double> close = lows;
+        close[3] = 1e-9;
+        const Hopping touching(close);
+        for (const int stretch : {1, 3, 100}) {
+            CAPTURE(stretch);
+            const PathProof proof = following(touching, stretch, never)->finish(touching.run);
+            CHECK(proof.state == ProofState::proven);
+            CHECK((*proof.lower > 0.9e-9 && *proof.lower <= 1e-9));
+        }
+    }
+    SECTION("stopped, it holds up to there") {
+        bool stop = false;
+        const auto prover = following(hopping, 3, [&] { return stop; });
+        stop = true;
+        const PathProof proof = prover->finish(hopping.run);
+        CHECK(proof.state == ProofState::stopped);
+        CHECK(proof.steps == 6);
+        CHECK((*proof.lower >= 0.98 * 3e-4 && *proof.lower <= 3e-4));
+        stop = false;  // it may still be finished
+        CHECK(prover->finish(hopping.run).state == ProofState::proven);
+    }
+}
+
 TEST_CASE("A path is proven, refuted or left open: never taken for granted") {
     using namespace fettle;
     using namespace fettle::tests::support;
-    core::model::Model model;
-    model.dhat = 1e-3;
-    model.bodies = {ground_plate(),
-                    make_body("box", box_mesh(Vector3(-0.1, -0.1, 0), Vector3(0.1, 0.1, 0.2)), make_pose({0, 0, 0}, {0, 0, 1}))};
+    core::model::Model model = Hopping({}).model;
     core::stepper::Simulation run;
-    run.trajectory.body_names = {"plate", "box"};
-    run.trajectory.timestep = 0.1;
-    run.report.steps.resize(1);
-    run.report.steps[0].minimum_distance = 1;
     const auto to = [&](double lowest) {
-        using core::kinematics::ChartPoint;
-        const auto at = [&](double z) {
-            return std::vector<ChartPoint>{{model.bodies[0].pose_start.position, Vector3::Zero()}, {Vector3(0, 0, z), Vector3::Zero()}};
-        };
-        core::stepper::TrajectoryStep step;
-        step.nodes = {at(1), at(lowest), at(1)};
-        run.trajectory.steps = {step};
-        const std::vector<core::kinematics::Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
-        run.trajectory.poses = {poses, poses};
+        run = Hopping({lowest}).run;
         return design::cli::prove_path(model, run, [] { return false; });
     };
     using design::cli::ProofState;
