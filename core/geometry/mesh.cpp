@@ -32,7 +32,7 @@ private:
 
 /// Of the counts, and of some of the vertices and triangles: meshes that it does not tell apart are compared anyhow.
 std::size_t shape_hash(const Mesh& mesh) {
-    constexpr std::size_t looked_at = 64;
+    constexpr std::size_t looked_at = 256;
     WordHash hash;
     const auto word = [](std::size_t low, std::size_t high) {
         return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
@@ -61,8 +61,8 @@ bool have_same_bytes(const std::vector<Row>& a, const std::vector<Row>& b) {
 }  // namespace
 
 bool have_same_shape(const Mesh& a, const Mesh& b) {
-    return a.vertices.cols() == b.vertices.cols() && have_same_bytes(a.triangles, b.triangles) && have_same_bytes(a.edges, b.edges) &&
-           have_same_bytes(a.codimensional_points, b.codimensional_points) && a.vertices == b.vertices;
+    return a.vertices.cols() == b.vertices.cols() && a.vertices == b.vertices && have_same_bytes(a.triangles, b.triangles) &&
+           have_same_bytes(a.edges, b.edges) && have_same_bytes(a.codimensional_points, b.codimensional_points);
 }
 
 std::size_t ShapeIndex::add(const Mesh& mesh) {

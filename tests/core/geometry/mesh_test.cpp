@@ -142,4 +142,19 @@ TEST_CASE("copies of a shape are found, other shapes are not") {
     CHECK(shapes.add(first) == 0);
 }
 
+TEST_CASE("of large shapes a single vertex tells, wherever it is") {
+    constexpr int count = 1000;
+    Matrix3X x(3, count);
+    std::vector<Triangle> faces;
+    for (int i = 0; i < count; ++i) x.col(i) = Vector3(i, i % 7, i % 11);
+    for (int i = 0; i + 2 < count; ++i) faces.push_back({i, i + 1, i + 2});
+    const Mesh first = make_mesh("first", x, faces);
+    std::vector<Mesh> others(200, first);
+    for (int k = 0; k < 200; k += 2) others[static_cast<std::size_t>(k)].vertices(1, 5 * k) += 1e-9;
+    ShapeIndex shapes;
+    CHECK(shapes.add(first) == 0);
+    for (int k = 0; k < 200; ++k)
+        CHECK(shapes.add(others[static_cast<std::size_t>(k)]) == (k % 2 == 0 ? static_cast<std::size_t>(k) + 1 : 0));
+}
+
 }  // namespace fettle::core::geometry::mesh_test

@@ -97,6 +97,16 @@ TEST_CASE("Copies of a part share its hierarchy, and are what they would be alon
     CHECK(bodies[2].edge_length_squared == alone->bodies[0].edge_length_squared);
     CHECK(bodies[2].vertex_area == alone->bodies[0].vertex_area);
     CHECK(bodies[2].edge_area == alone->bodies[0].edge_area);
+    const auto moved = build_model(scene_of({a, other, b, shifted}), options);  // the scene's meshes are its own
+    const scene::Scene kept = scene_of({a, other, b, shifted});
+    const auto copied = build_model(kept, options);
+    REQUIRE((moved && copied));
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(moved->bodies[i].mesh.vertices == copied->bodies[i].mesh.vertices);
+        CHECK(moved->bodies[i].mesh.triangles == copied->bodies[i].mesh.triangles);
+        CHECK(moved->bodies[i].moments == copied->bodies[i].moments);
+        CHECK(kept.bodies[i].mesh.vertices.cols() == 8);
+    }
 }
 
 TEST_CASE("A reference point is the caller's, the scene's, or a default", "[model]") {

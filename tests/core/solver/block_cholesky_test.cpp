@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/solver/linear_solver.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
@@ -73,6 +74,26 @@ TEST_CASE("the factor by blocks solves as a dense one does", "[block_cholesky]")
         CHECK((factor.solve(rhs, dofs) - expected).norm() <= 1e-11 * expected.norm() * matrix.norm());
         CHECK((matrix * factor.solve(rhs, dofs) - rhs).norm() <= 1e-10 * rhs.norm());
     }
+}
+
+TEST_CASE("a factor of many bodies solves, with the same bits for any number of threads", "[block_cholesky]") {
+    std::mt19937 random(13);
+    constexpr int bodies = 700;
+    const FreeDofs dofs = some_free(bodies, random);
+    const auto h = coupled(bodies, 1.2 / bodies, 0.1, random);
+    const VectorX rhs = VectorX::Random(dofs.count);
+    std::vector<MatrixX> solutions;
+    for (const int threads : {1, 2, 4}) {
+        const base::ThreadLimit limit(threads);
+        BlockCholesky factor;
+        REQUIRE(factor.factorise(h, dofs));
+        solutions.push_back(factor.solve(rhs, dofs));
+    }
+    std::vector<Vector6> x(bodies, Vector6::Zero());
+    scatter(dofs, solutions[0], x);
+    CHECK((gather(dofs, multiply(h, x)) - rhs).norm() <= 1e-10 * rhs.norm());
+    CHECK(solutions[1] == solutions[0]);
+    CHECK(solutions[2] == solutions[0]);
 }
 
 TEST_CASE("what is not positive definite, or no number, has no factor", "[block_cholesky]") {
