@@ -138,6 +138,30 @@ TEST_CASE("Bounds over many segments at once hold against samples in extended pr
     CHECK(useful > spans / 4);
 }
 
+TEST_CASE("A path that jumps between its segments is bounded all the same", "[clearance]") {
+    // A bar swings down and begins anew: at every node it points straight ahead, but for the end.
+    constexpr double swing = 0.3;
+    Corners bar, below;
+    bar.x << 1, 0.9, 0.9, 0, 0.01, -0.01, 0, 0, 0;
+    below.x << 1, 0.9, 0.9, -2, -2, -2, -0.1, 0.1, 0;
+    core::kinematics::PathSegment swinging, still;
+    swinging.rotation_vector_step = Vector3(0, 0, -swing);
+    const std::vector<PairSegment> segments(4, pair_segment(swinging, still, 1, 3));
+    const RelativeSpans spans(segments, 1, 3);
+    const SpanGroup& group = spans.group(spans.root());
+    REQUIRE(group.count == 4);
+    for (const int node : {0, 2}) {
+        const TurningPlane n{node, Vector3(0, 1 - 1e-12, 0), 0};
+        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(bar), bar, below);
+        const SpanBounds of_boxes = spans.of_boxes(group, n, piece_of(bar), piece_of(below));
+        for (int j = 0; j < group.count; ++j) {
+            CHECK(of_elements.spans[j] <= 2 - std::sin(swing));
+            CHECK(of_boxes.spans[j] <= 2 - std::sin(swing));
+            CHECK(of_elements.spans[j] > 1);
+        }
+    }
+}
+
 TEST_CASE("Bounds over many segments without their rests are found out", "[clearance]") {
     std::mt19937 random(4);
     int wrong = 0, spans = 0;
