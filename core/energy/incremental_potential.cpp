@@ -20,8 +20,8 @@ namespace {
 using kinematics::ChartPoint;
 using kinematics::Pose;
 
-constexpr int bodies_a_piece = 16;    // that a thread takes at a time
-constexpr int bodies_to_clear = 32;   // the same, of sums to begin
+constexpr int bodies_a_piece = 16;   // that a thread takes at a time
+constexpr int bodies_to_clear = 32;  // the same, of sums to begin
 
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);

@@ -345,7 +345,7 @@ private:
     }
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
-        constexpr int bodies_at_once = 32;   // that a thread takes
+        constexpr int bodies_at_once = 32;  // that a thread takes
         std::vector<PathSegment> segments(at_.points.size());
         base::parallel_for(static_cast<int>(end.size()), bodies_at_once,
                            [&](int i) { segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end[i]); });
