@@ -34,7 +34,7 @@ class PathProver {
 public:
     /// @param should_stop  asked often, on any thread
     /// @param stretch      so many steps are proven at a time; fewer would cost more in all
-    PathProver(const core::model::Model& model, std::function<bool()> should_stop, int stretch = 256);
+    PathProver(const core::model::Model& model, std::function<bool()> should_stop, int stretch = 512);
     ~PathProver();
     PathProver(const PathProver&) = delete;
     PathProver& operator=(const PathProver&) = delete;
