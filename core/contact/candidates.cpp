@@ -130,10 +130,9 @@ std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const s
 }
 
 // Leaves the entries that are still wanted, and new ones, sorted as `wanted`.
-void take_over(const std::vector<std::pair<int, int>>& wanted, Candidates& candidates) {
+void take_over(std::vector<std::pair<int, int>> wanted, Candidates& candidates) {
+    if (wanted == candidates.bodies && wanted.size() == candidates.pairs.size()) return;
     std::vector<BodyPairCandidates>&from = candidates.pairs, &out = candidates.spare;
-    const auto is_wanted = [](const BodyPairCandidates& x, const std::pair<int, int>& y) { return std::pair(x.a, x.b) == y; };
-    if (std::equal(from.begin(), from.end(), wanted.begin(), wanted.end(), is_wanted)) return;
     out.reserve(wanted.size());
     auto old = from.begin();
     for (const auto& [a, b] : wanted) {
@@ -149,6 +148,7 @@ void take_over(const std::vector<std::pair<int, int>>& wanted, Candidates& candi
     }
     from.swap(out);
     out.clear();
+    candidates.bodies = std::move(wanted);
 }
 
 // A part of a pair's work: what a thread does in one go.
@@ -227,13 +227,21 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     });
     take_over(close_bodies(model, boxes, allowance, candidates.near), candidates);
 
+    static thread_local std::vector<char> fresh_memory;
+    std::vector<char>& is_fresh = fresh_memory;
+    is_fresh.resize(candidates.pairs.size());
     base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];
         pair.fresh = pair.fresh || !(motion_over(model, pair, segments, swept[pair.a].ends[0], swept[pair.b].ends[0]) <= pair.allowance);
+        is_fresh[k] = pair.fresh ? 1 : 0;
     });
+    candidates.fresh.clear();
     std::vector<BodyPairCandidates*> searched;
-    for (BodyPairCandidates& pair : candidates.pairs)
-        if (pair.fresh) searched.push_back(&pair);
+    for (std::size_t k = 0; k < is_fresh.size(); ++k) {
+        if (is_fresh[k] == 0) continue;
+        candidates.fresh.push_back(static_cast<int>(k));
+        searched.push_back(&candidates.pairs[k]);
+    }
     std::vector<SweptPair> pairs(searched.size());
     base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = *searched[k];
@@ -245,11 +253,12 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
 }
 
 void settle(const std::vector<Pose>& poses, Candidates& candidates) {
-    for (BodyPairCandidates& pair : candidates.pairs) {
-        if (!pair.fresh) continue;
+    for (const int k : candidates.fresh) {
+        BodyPairCandidates& pair = candidates.pairs[k];
         pair.fresh = false;
         pair.at = {poses[pair.a], poses[pair.b]};
     }
+    candidates.fresh.clear();
 }
 
 Candidates find_candidates(const model::Model& model, const std::vector<Pose>& poses, double allowance) {

@@ -35,7 +35,9 @@ struct NearBodies {
 struct Candidates {
     std::vector<BodyPairCandidates> pairs;  ///< sorted by (a, b). Pairs of bodies that are near but have no candidates are listed too
     NearBodies near;
-    std::vector<BodyPairCandidates> spare;  ///< memory for the next list of pairs; empty
+    std::vector<std::pair<int, int>> bodies;  ///< of `pairs`
+    std::vector<int> fresh;                   ///< those of `pairs` that are
+    std::vector<BodyPairCandidates> spare;    ///< memory for the next list of pairs; empty
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most

@@ -78,10 +78,14 @@ Matrix6 free_part(const Matrix6& block, const std::array<int, 6>& rows, const st
 }  // namespace
 
 void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+    const auto is_same = [](const kinematics::OffDiagonalBlock& b, const std::pair<int, int>& known) {
+        return b.a == known.first && b.b == known.second;
+    };
+    const auto& couplings = hessian.off_diagonal;
+    if (analysed_ && std::equal(couplings.begin(), couplings.end(), pattern_.begin(), pattern_.end(), is_same)) return;
     std::vector<std::pair<int, int>> pattern;
-    pattern.reserve(hessian.off_diagonal.size());
-    for (const auto& b : hessian.off_diagonal) pattern.emplace_back(b.a, b.b);
-    if (analysed_ && pattern == pattern_) return;
+    pattern.reserve(couplings.size());
+    for (const auto& b : couplings) pattern.emplace_back(b.a, b.b);
     FETTLE_ASSERT(std::adjacent_find(pattern.begin(), pattern.end(), std::greater_equal<>()) == pattern.end(), "blocks out of order");
     pattern_ = std::move(pattern);
     analysed_ = true;
@@ -149,6 +153,12 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
             std::lower_bound(column.begin(), column.end(), std::max(na, nb), [](const Entry& e, int row) { return e.row < row; });
         block_of_.push_back(entry->block);
     }
+    std::vector<char> is_coupling(blocks_.size(), 0);
+    for (const int block : block_of_)
+        if (block >= 0) is_coupling[at(block)] = 1;
+    filled_in_.clear();
+    for (std::size_t block = 0; block < blocks_.size(); ++block)
+        if (is_coupling[block] == 0) filled_in_.push_back(static_cast<int>(block));
     find_levels();
 }
 
@@ -184,15 +194,18 @@ void BlockCholesky::find_levels() {
 
 void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
     constexpr int blocks_a_piece = 64;
-    base::parallel_for(static_cast<int>(body_of_.size()), blocks_a_piece, [&](int k) {
-        const std::size_t body = at(body_of_[at(k)]);
-        Matrix6& block = diagonal_[at(k)];
-        block = free_part(hessian.diagonal[body], dofs.index[body], dofs.index[body]);
-        for (int i = 0; i < 6; ++i)
-            if (dofs.index[body][at(i)] < 0) block(i, i) = 1;
-    });
-    std::fill(blocks_.begin(), blocks_.end(), Matrix6::Zero());
-    base::parallel_for(static_cast<int>(hessian.off_diagonal.size()), blocks_a_piece, [&](int k) {
+    const auto nodes = static_cast<int>(body_of_.size()), couplings = static_cast<int>(hessian.off_diagonal.size());
+    for (const int block : filled_in_) blocks_[at(block)].setZero();
+    base::parallel_for(nodes + couplings, blocks_a_piece, [&](int i) {
+        if (i < nodes) {
+            const std::size_t body = at(body_of_[at(i)]);
+            Matrix6& block = diagonal_[at(i)];
+            block = free_part(hessian.diagonal[body], dofs.index[body], dofs.index[body]);
+            for (int k = 0; k < 6; ++k)
+                if (dofs.index[body][at(k)] < 0) block(k, k) = 1;
+            return;
+        }
+        const int k = i - nodes;
         if (block_of_[at(k)] < 0) return;
         const kinematics::OffDiagonalBlock& b = hessian.off_diagonal[at(k)];
         const Matrix6 block = free_part(b.block, dofs.index[at(b.a)], dofs.index[at(b.b)]);

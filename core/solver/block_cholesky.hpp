@@ -43,6 +43,7 @@ private:
     std::vector<std::vector<Entry>> columns_;  // [node] rows below it, ascending
     std::vector<std::vector<Entry>> rows_;     // [node] columns before it that reach it: .row is the column, .block its place there
     std::vector<Matrix6> diagonal_, blocks_;   // the matrix, then its factor
+    std::vector<int> filled_in_;               // those of blocks_ that are none of the matrix
     std::vector<int> block_of_;                // [off-diagonal block of the matrix] into blocks_; -1: one of its bodies has nothing free
     struct Level {
         std::vector<int> columns;               // each needs columns of lower levels alone

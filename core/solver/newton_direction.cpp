@@ -19,7 +19,8 @@ using energy::StepProblem;
 using kinematics::ChartPoint;
 
 constexpr int bodies_at_once = 16;               // that a thread takes,
-constexpr int bodies_a_pass = 32;                // where there is little to do for each
+constexpr int bodies_a_pass = 32;                // where there is little to do for each,
+constexpr int blocks_a_pass = 64;                // and blocks
 constexpr double largest_turn = 0.3;             // of one iteration [rad], or twice what the body turns in a step as it goes
 constexpr double largest_shift = 0.1;            // of the scene's size, or twice what the body moves
 constexpr double rounding_shift = 1e-12;         // of the diagonal
@@ -81,16 +82,23 @@ double rounding_share(const ChartDerivatives& d, const model::Body& body, const 
     return d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
 }
 
+// x - x is 0 but for what is infinite or no number; so is their sum.
+template <class Matrix>
+bool all_finite(const Matrix& m) {
+    return (m - m).sum() == 0;
+}
+
 bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
-    constexpr int blocks_at_once = 64;
+    const auto bodies = static_cast<int>(d.gradient.size()), blocks = static_cast<int>(d.hessian.off_diagonal.size());
     std::atomic<bool> finite = true;
-    base::parallel_for(static_cast<int>(d.gradient.size()), blocks_at_once, [&](int i) {
-        if (d.gradient[i].allFinite() && d.hessian.diagonal[i].allFinite()) return;
+    base::parallel_for(bodies + blocks, blocks_a_pass, [&](int i) {
+        if (i >= bodies) {
+            if (!all_finite(d.hessian.off_diagonal[i - bodies].block)) finite = false;
+            return;
+        }
+        if (all_finite(d.gradient[i]) && all_finite(d.hessian.diagonal[i])) return;
         for (int k = 0; k < 6; ++k)
-            if (dofs.index[i][k] >= 0 && !(std::isfinite(d.gradient[i][k]) && d.hessian.diagonal[i].col(k).allFinite())) finite = false;
-    });
-    base::parallel_for(static_cast<int>(d.hessian.off_diagonal.size()), blocks_at_once, [&](int k) {
-        if (!d.hessian.off_diagonal[k].block.allFinite()) finite = false;
+            if (dofs.index[i][k] >= 0 && !(std::isfinite(d.gradient[i][k]) && all_finite(d.hessian.diagonal[i].col(k)))) finite = false;
     });
     return finite;
 }

@@ -27,10 +27,12 @@ std::string contents(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Whole ones: a run that is killed may leave a part of a line.
 int steps_in(const std::filesystem::path& path) {
     const std::string text = contents(path);
     int count = 0;
-    for (std::size_t at = text.find("{\"nodes\""); at != std::string::npos; at = text.find("{\"nodes\"", at + 1)) ++count;
+    for (std::size_t at = text.find("{\"nodes\""); at != std::string::npos; at = text.find("{\"nodes\"", at + 1))
+        if (text.find('\n', at) != std::string::npos) ++count;
     return count;
 }
 
