@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/geometry/mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <unordered_map>
 
 #include "fettle/core/base/mixed_bits.hpp"
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::geometry {
 namespace {
@@ -65,14 +68,26 @@ bool have_same_shape(const Mesh& a, const Mesh& b) {
            have_same_bytes(a.edges, b.edges) && have_same_bytes(a.codimensional_points, b.codimensional_points);
 }
 
-std::size_t ShapeIndex::add(const Mesh& mesh) {
-    const std::size_t index = meshes_.size(), hash = shape_hash(mesh);
-    meshes_.push_back(&mesh);
-    const auto [begin, end] = by_hash_.equal_range(hash);
-    for (auto at = begin; at != end; ++at)
-        if (have_same_shape(*meshes_[at->second], mesh)) return at->second;
-    by_hash_.emplace(hash, index);
-    return index;
+std::vector<std::size_t> first_of_shape(const std::vector<const Mesh*>& meshes) {
+    constexpr int meshes_at_once = 8;  // that a thread takes
+    const auto count = static_cast<int>(meshes.size());
+    std::vector<std::size_t> hashes(meshes.size()), first(meshes.size());
+    base::parallel_for(count, meshes_at_once, [&](int i) { hashes[i] = shape_hash(*meshes[i]); });
+    std::unordered_map<std::size_t, std::vector<std::size_t>> by_hash;  // the first of each shape
+    for (std::size_t i = 0; i < meshes.size(); ++i) first[i] = by_hash.try_emplace(hashes[i], 1, i).first->second.front();
+    std::vector<char> is_copy(meshes.size());
+    base::parallel_for(count, 1, [&](int i) {
+        is_copy[i] = first[i] == static_cast<std::size_t>(i) || have_same_shape(*meshes[first[i]], *meshes[i]) ? 1 : 0;
+    });
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (is_copy[i] != 0) continue;  // else other shapes have its hash
+        std::vector<std::size_t>& others = by_hash[hashes[i]];
+        const auto same =
+            std::find_if(others.begin(), others.end(), [&](std::size_t k) { return have_same_shape(*meshes[k], *meshes[i]); });
+        first[i] = same == others.end() ? i : *same;
+        if (same == others.end()) others.push_back(i);
+    }
+    return first;
 }
 
 }  // namespace fettle::core::geometry

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
@@ -36,16 +35,9 @@ Mesh make_mesh(std::string name, Matrix3X vertices, std::vector<Triangle> triang
 /// Have both the same vertices (to the bit, but for the sign of zero), triangles, edges and points, in the same order?
 bool have_same_shape(const Mesh& a, const Mesh& b);
 
-/// Finds meshes of the same shape among many: copies of a part share what is worked out from it.
-class ShapeIndex {
-public:
-    /// Position of the first mesh of this shape that was added; that of this one if it is the first. Contract: `mesh` stays where it is.
-    std::size_t add(const Mesh& mesh);
-
-private:
-    std::vector<const Mesh*> meshes_;
-    std::unordered_multimap<std::size_t, std::size_t> by_hash_;
-};
+/// For each of many meshes the index of the first that has the same shape, its own if it is that: copies of a part share what is worked out
+/// from it. On all threads.
+std::vector<std::size_t> first_of_shape(const std::vector<const Mesh*>& meshes);
 
 /// Merges vertices with exactly equal coordinates (-0 equals +0), drops triangles that become degenerate by index, and
 /// rebuilds connectivity. Order of first occurrence is kept.

@@ -196,11 +196,10 @@ std::vector<std::size_t> first_in_frame(const std::vector<Body>& bodies, const s
 }  // namespace
 
 void complete_geometry(std::vector<Body>& bodies) {
-    geometry::ShapeIndex shapes;
-    std::vector<std::size_t> first_of_shape;
-    first_of_shape.reserve(bodies.size());
-    for (const Body& body : bodies) first_of_shape.push_back(shapes.add(body.mesh));
-    complete_copies(bodies, first_of_shape);
+    std::vector<const geometry::Mesh*> meshes;
+    meshes.reserve(bodies.size());
+    for (const Body& body : bodies) meshes.push_back(&body.mesh);
+    complete_copies(bodies, geometry::first_of_shape(meshes));
 }
 
 namespace {

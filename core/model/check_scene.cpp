@@ -189,8 +189,8 @@ class BodyChecks {
 public:
     explicit BodyChecks(bool check_meshes) : check_meshes_(check_meshes) {}
 
-    void add(const scene::Body& body, const std::string& where, SceneCheck& check) {
-        const std::size_t shape = shapes_.add(body.mesh);
+    /// @param shape  the first body with the same mesh
+    void add(const scene::Body& body, std::size_t shape, const std::string& where, SceneCheck& check) {
         Errors found;
         if (usable_.count(shape) == 0) found = check_usable(body, where);
         if (found.empty()) usable_.insert(shape);
@@ -208,7 +208,6 @@ public:
         }
         for (const Errors& more : {found, check_motion(body, where)}) check.errors.insert(check.errors.end(), more.begin(), more.end());
         check.measures.push_back(measure);
-        check.shapes.push_back(shape);
     }
 
 private:
@@ -220,7 +219,6 @@ private:
     }
 
     bool check_meshes_;
-    geometry::ShapeIndex shapes_;
     std::set<std::size_t> usable_;
     std::map<std::size_t, bool> closed_;
     std::set<std::tuple<std::size_t, bool, MeshPolicy>> sound_;
@@ -235,7 +233,11 @@ SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
     const Errors friction = check_friction(scene);
     check.errors.insert(check.errors.end(), friction.begin(), friction.end());
     BodyChecks bodies(check_meshes);
-    for (const scene::Body& body : scene.bodies) bodies.add(body, place_of(scene, body), check);
+    std::vector<const geometry::Mesh*> meshes;
+    meshes.reserve(scene.bodies.size());
+    for (const scene::Body& body : scene.bodies) meshes.push_back(&body.mesh);
+    check.shapes = geometry::first_of_shape(meshes);
+    for (std::size_t i = 0; i < meshes.size(); ++i) bodies.add(scene.bodies[i], check.shapes[i], place_of(scene, scene.bodies[i]), check);
     return check;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -19,19 +20,36 @@ double table_value(const MotionCurve& curve, double time) {
     return curve.values[i - 1] + fraction * (curve.values[i] - curve.values[i - 1]);
 }
 
+struct Extent {
+    Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+
+    void take(const Vector3& other_low, const Vector3& other_high) {
+        low = low.cwiseMin(other_low);
+        high = high.cwiseMax(other_high);
+    }
+};
+
 template <class Counts>
 double diagonal_of(const Scene& scene, const Counts& counts) {
-    Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
-    Vector3 high = -low;
-    for (const Body& body : scene.bodies) {
-        if (!counts(body)) continue;
-        for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
-            const Vector3 x = kinematics::world_position(body.pose, body.mesh.vertices.col(i));
-            low = low.cwiseMin(x);
-            high = high.cwiseMax(x);
+    constexpr int bodies_at_once = 8;  // that a thread takes
+    const auto extent_of = [&](int begin, int end) {
+        Extent extent;
+        for (int b = begin; b < end; ++b) {
+            const Body& body = scene.bodies[static_cast<std::size_t>(b)];
+            if (!counts(body)) continue;
+            for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
+                const Vector3 x = kinematics::world_position(body.pose, body.mesh.vertices.col(i));
+                extent.take(x, x);
+            }
         }
-    }
-    return low.x() <= high.x() ? (high - low).norm() : 0;
+        return extent;
+    };
+    const Extent all = base::ordered_reduce(static_cast<int>(scene.bodies.size()), bodies_at_once, Extent{}, extent_of,
+                                            [](Extent&& so_far, Extent&& piece) {
+                                                so_far.take(piece.low, piece.high);
+                                                return so_far;
+                                            });
+    return all.low.x() <= all.high.x() ? (all.high - all.low).norm() : 0;
 }
 
 }  // namespace

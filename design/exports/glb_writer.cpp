@@ -47,7 +47,10 @@ public:
         json_["scene"] = 0;
         json_["scenes"] = Json::array({{{"name", "fettle"}, {"nodes", Json::array({0})}}});
         json_["nodes"] = Json::array({root()});
-        for (const AssemblyPart& part : assembly_.parts) add_part(part);
+        std::vector<const Mesh*> meshes;
+        for (const AssemblyPart& part : assembly_.parts) meshes.push_back(&part.mesh);
+        const std::vector<std::size_t> shapes = core::geometry::first_of_shape(meshes);
+        for (std::size_t i = 0; i < shapes.size(); ++i) add_part(assembly_.parts[i], shapes[i]);
         if (assembly_.keyframes.size() > 1) add_motion();
         if (!json_.contains("accessors")) return with_header();
         json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
@@ -132,8 +135,8 @@ private:
         return static_cast<int>(json_["materials"].size()) - 1;
     }
 
-    void add_part(const AssemblyPart& part) {
-        const std::size_t shape = shapes_.add(part.mesh);
+    /// @param shape  the first part of the same
+    void add_part(const AssemblyPart& part, std::size_t shape) {
         primitives_.emplace_back();
         if (shape + 1 == primitives_.size() && part.mesh.vertices.cols() > 0) primitives_.back() = primitives_of(part.mesh);
         Json primitives = primitives_[shape];
@@ -219,7 +222,6 @@ private:
     const Assembly& assembly_;
     Json json_;
     std::string binary_;
-    core::geometry::ShapeIndex shapes_;
     std::vector<Json> primitives_;  // per part; filled of the first of its shape
 };
 

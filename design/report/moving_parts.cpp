@@ -110,12 +110,14 @@ void add_view(Json& data, const std::string& name, const core::model::Model& mod
     std::vector<double> times;
     for (const Node& node : nodes) times.push_back(time_of(trajectory, node));
     if (!data.contains("meshes")) data["meshes"] = Json::array();
-    core::geometry::ShapeIndex shapes;
+    std::vector<const core::geometry::Mesh*> meshes;
+    for (const core::model::Body& body : model.bodies) meshes.push_back(&body.mesh);
+    const std::vector<std::size_t> shapes = core::geometry::first_of_shape(meshes);
     std::vector<std::size_t> mesh_of_first;  // where the first mesh of a shape went
     Json bodies = Json::array();
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const core::model::Body& body = model.bodies[i];
-        const std::size_t first = shapes.add(body.mesh);
+        const std::size_t first = shapes[i];
         mesh_of_first.push_back(data["meshes"].size());
         if (first == i) data["meshes"].push_back(mesh_json(body.mesh));
         std::vector<float> poses;

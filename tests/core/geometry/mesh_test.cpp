@@ -132,14 +132,9 @@ TEST_CASE("copies of a shape are found, other shapes are not") {
     turned.triangles[0] = {2, 1, 0};
     wire.triangles.clear();
     build_connectivity(wire, first.edges);
-    ShapeIndex shapes;
-    CHECK(shapes.add(first) == 0);
-    CHECK(shapes.add(moved) == 1);
-    CHECK(shapes.add(negative_zero) == 0);
-    CHECK(shapes.add(turned) == 3);
-    CHECK(shapes.add(wire) == 4);
-    CHECK(shapes.add(moved) == 1);
-    CHECK(shapes.add(first) == 0);
+    const std::vector<std::size_t> found = first_of_shape({&first, &moved, &negative_zero, &turned, &wire, &moved, &first});
+    CHECK(found == std::vector<std::size_t>{0, 1, 0, 3, 4, 1, 0});
+    CHECK(first_of_shape({}).empty());
 }
 
 TEST_CASE("of large shapes a single vertex tells, wherever it is") {
@@ -151,10 +146,15 @@ TEST_CASE("of large shapes a single vertex tells, wherever it is") {
     const Mesh first = make_mesh("first", x, faces);
     std::vector<Mesh> others(200, first);
     for (int k = 0; k < 200; k += 2) others[static_cast<std::size_t>(k)].vertices(1, 5 * k) += 1e-9;
-    ShapeIndex shapes;
-    CHECK(shapes.add(first) == 0);
-    for (int k = 0; k < 200; ++k)
-        CHECK(shapes.add(others[static_cast<std::size_t>(k)]) == (k % 2 == 0 ? static_cast<std::size_t>(k) + 1 : 0));
+    std::vector<const Mesh*> meshes{&first};
+    std::vector<std::size_t> expected{0};
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        meshes.push_back(&others[k]);
+        expected.push_back(k % 2 == 0 ? k + 1 : 0);
+    }
+    meshes.push_back(&others[4]);
+    expected.push_back(5);
+    CHECK(first_of_shape(meshes) == expected);
 }
 
 }  // namespace fettle::core::geometry::mesh_test
