@@ -191,7 +191,7 @@ struct FinishedRun {
     PathProver& prover;                         // has followed the motion, unless nodes are to be added to it
 };
 
-// Once the motion is there: writes it, proves its path, and answers. What was simulated is on the disk before the proof begins.
+// Once the motion is there: writes it, proves what is left of its path, and answers. What was simulated is on the disk before that.
 int finish(const SimulateArguments& options, const CommonOptions& common, const FinishedRun& run, Json json, Console& console) {
     Simulation& simulation = run.simulation;
     const Simulation& earlier = run.earlier;
