@@ -19,7 +19,7 @@ using core::clearance::PairRequest;
 
 constexpr int most_rounds = 4;    // of pairs that are left open
 constexpr int most_reaches = 60;  // looked at one after another, each some times the last
-constexpr double share = 1e-2;    // of the least distance: how well it is told, twice
+constexpr double share = 1e-2;    // of the least distance: how well it is told
 
 bool any_may_collide(const core::model::Model& model) {
     const int count = static_cast<int>(model.bodies.size());
@@ -113,7 +113,7 @@ struct PathProver::Stretch {
     Judgement judged;
 
     // Is the least distance over the path told by this, if it is `known` and not elsewhere?
-    bool tells(double known) const { return judged.lower >= (1 - 2 * share) * known || (known <= reach && reach <= 2 * known); }
+    bool tells(double known) const { return judged.lower >= (1 - share) * known || (known <= reach && reach <= 2 * known); }
 };
 
 PathProver::PathProver(const core::model::Model& model, std::function<bool()> should_stop, int stretch)

@@ -29,7 +29,8 @@ struct PathProof {
 /// Of all pairs that may collide, over the whole path: first to about 1% of what the ends of the steps saw; where that tells the least
 /// distance badly once more, by what was found; pairs that this leaves open a hundred times closer each time.
 /// The path may be proven while it is simulated, stretch by stretch, each by the least distance that was known by then: so a run that is
-/// interrupted is proven up to there, and little is left to do at the end. Same answer to its 2%; the same bits for the same stretches.
+/// interrupted is proven up to there, and little is left to do at the end. Same answer to what it is told to; the same bits for the same
+/// stretches.
 class PathProver {
 public:
     /// @param should_stop  asked often, on any thread
