@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
@@ -30,18 +29,16 @@ namespace {
 
 const json& value_of(const void* value) { return *static_cast<const json*>(value); }
 
-/// A `/` or `~` inside a key, written as RFC 6901 wants it.
-std::string escaped(const std::string& key) {
-    std::string out;
+/// A `/` or `~` inside a key is written as RFC 6901 wants it.
+void append_escaped(std::string_view key, std::string& to) {
     for (const char c : key) {
         if (c == '~')
-            out += "~0";
+            to += "~0";
         else if (c == '/')
-            out += "~1";
+            to += "~1";
         else
-            out += c;
+            to += c;
     }
-    return out;
 }
 
 std::string shortest(double number) { return json(number).dump(); }
@@ -106,30 +103,66 @@ Error overflow_fault(const std::string& text, const std::string& name, const std
     return not_finite_error(offset == std::string::npos ? name : at(name, place_of(text, offset)), number + " is beyond double precision");
 }
 
-/// Sees every key as it is parsed: the tree would keep only the last of two equal ones.
-class DuplicateKeys {
+/// Makes the tree from what the parser sees, and sees every key: a tree keeps only one of two equal ones.
+class TreeBuilder {
 public:
-    explicit DuplicateKeys(const std::string& name) : name_(name) {}
-
-    bool operator()(json::parse_event_t event, json& parsed) {
-        if (event == json::parse_event_t::object_start) {
-            open_.emplace_back();
-        } else if (event == json::parse_event_t::object_end) {
-            open_.pop_back();
-        } else if (event == json::parse_event_t::key) {
-            const auto key = parsed.get<std::string>();
-            if (!open_.back().insert(key).second) {
-                errors.push_back({ErrorCode::inconsistent, name_, "the key `" + key + "` stands twice in one object; keep one of them"});
-            }
-        }
-        return true;
-    }
+    TreeBuilder(const std::string& text, const std::string& name, json& tree) : text_(text), name_(name), root_(tree) {}
 
     base::Errors errors;
 
+    // The parser calls these. @return whether to go on
+    bool null() { return place(nullptr); }
+    bool boolean(bool value) { return place(value); }
+    bool number_integer(json::number_integer_t value) { return place(value); }
+    bool number_unsigned(json::number_unsigned_t value) { return place(value); }
+    bool number_float(json::number_float_t value, const std::string&) { return place(value); }
+    bool string(std::string& value) { return place(std::move(value)); }
+    bool binary(json::binary_t& value) { return place(std::move(value)); }
+    bool start_object(std::size_t) { return open(json::object()); }
+    bool end_object() { return close(); }
+    bool start_array(std::size_t) { return open(json::array()); }
+    bool end_array() { return close(); }
+    bool key(std::string& key) {
+        const auto [entry, fresh] = open_.back()->get_ref<json::object_t&>().try_emplace(std::move(key));
+        if (!fresh)
+            errors.push_back(
+                {ErrorCode::inconsistent, name_, "the key `" + entry->first + "` stands twice in one object; keep one of them"});
+        member_ = &entry->second;
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const json::exception& fault) {
+        const auto* syntax = dynamic_cast<const json::parse_error*>(&fault);
+        errors = {syntax != nullptr ? parse_fault(text_, name_, *syntax) : overflow_fault(text_, name_, fault.what())};
+        return false;
+    }
+
 private:
-    std::string name_;
-    std::vector<std::set<std::string>> open_;
+    template <class Value>
+    json& put(Value&& value) {
+        if (open_.empty()) return root_ = std::forward<Value>(value);
+        json& parent = *open_.back();
+        if (parent.is_array()) return parent.get_ref<json::array_t&>().emplace_back(std::forward<Value>(value));
+        return *member_ = std::forward<Value>(value);
+    }
+    template <class Value>
+    bool place(Value&& value) {
+        put(std::forward<Value>(value));
+        return true;
+    }
+    bool open(json&& value) {
+        open_.push_back(&put(std::move(value)));
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    const std::string& text_;
+    const std::string& name_;
+    json& root_;
+    std::vector<json*> open_;  // objects and arrays, outermost first
+    json* member_ = nullptr;   // of the last object, whose value comes next
 };
 
 }  // namespace
@@ -161,18 +194,23 @@ void JsonNode::fail(ErrorCode code, std::string message) const { context_->error
 
 void JsonNode::warn(const std::string& message) const { context_->warnings.push_back({pointer_, message}); }
 
-JsonNode JsonNode::child(const void* value, const std::string& key) const { return {context_, value, pointer_ + "/" + escaped(key)}; }
+JsonNode JsonNode::child(const void* value, std::string_view key) const {
+    std::string pointer;
+    pointer.reserve(pointer_.size() + key.size() + 2);
+    pointer.append(pointer_).push_back('/');
+    append_escaped(key, pointer);
+    return {context_, value, std::move(pointer)};
+}
 
 JsonNode JsonNode::operator[](std::string_view key) const {
-    const std::string name(key);
-    if (!exists()) return child(nullptr, name);
+    if (!exists()) return child(nullptr, key);
     if (!is_object()) {
         fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
-        return child(nullptr, name);
+        return child(nullptr, key);
     }
     const json& object = value_of(value_);
-    const auto found = object.find(name);
-    return child(found == object.end() ? nullptr : &*found, name);
+    const auto found = object.find(key);
+    return child(found == object.end() ? nullptr : &*found, key);
 }
 
 JsonNode JsonNode::require(std::string_view key) const {
@@ -181,7 +219,8 @@ JsonNode JsonNode::require(std::string_view key) const {
     return found;
 }
 
-JsonNode JsonNode::unless_null() const { return {context_, is_null() ? nullptr : value_, pointer_}; }
+JsonNode JsonNode::unless_null() const& { return JsonNode(*this).unless_null(); }
+JsonNode JsonNode::unless_null() && { return {context_, is_null() ? nullptr : value_, std::move(pointer_)}; }
 
 std::vector<JsonNode> JsonNode::elements() const {
     std::vector<JsonNode> out;
@@ -191,6 +230,7 @@ std::vector<JsonNode> JsonNode::elements() const {
         return out;
     }
     const json& array = value_of(value_);
+    out.reserve(array.size());
     for (std::size_t i = 0; i < array.size(); ++i) out.push_back(child(&array[i], std::to_string(i)));
     return out;
 }
@@ -206,19 +246,25 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
     return out;
 }
 
+std::vector<std::string> JsonNode::other_keys(const std::vector<std::string_view>& known) const {
+    std::vector<std::string> out;
+    for (const auto& [key, value] : value_of(value_).get_ref<const json::object_t&>())
+        if (!key.starts_with('#') && std::find(known.begin(), known.end(), key) == known.end()) out.push_back(key);
+    return out;
+}
+
 void JsonNode::allow_keys(const std::vector<std::string_view>& known) const {
-    for (const auto& [key, node] : members()) {
-        if (key.starts_with('#') || std::find(known.begin(), known.end(), key) != known.end()) continue;
-        node.fail(ErrorCode::unknown_key, "unknown key `" + key + "`; " + did_you_mean(key, known, '`'));
-    }
+    if (!exists()) return;
+    if (!is_object()) return fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+    for (const std::string& key : other_keys(known))
+        (*this)[key].fail(ErrorCode::unknown_key, "unknown key `" + key + "`; " + did_you_mean(key, known, '`'));
 }
 
 void JsonNode::warn_of_other_keys(const std::vector<std::string_view>& known) const {
     if (!is_object()) return;
-    for (const auto& [key, node] : members()) {
-        if (key.starts_with('#') || std::find(known.begin(), known.end(), key) != known.end()) continue;
+    for (const std::string& key : other_keys(known)) {
         const auto nearest = nearest_word(key, known);
-        node.warn("unknown key `" + key + "` is ignored" + (nearest ? "; did you mean `" + *nearest + "`?" : ""));
+        (*this)[key].warn("unknown key `" + key + "` is ignored" + (nearest ? "; did you mean `" + *nearest + "`?" : ""));
     }
 }
 
@@ -371,16 +417,9 @@ base::Result<JsonDocument> JsonDocument::read(const std::string& path) {
 base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const std::string& name) {
     JsonDocument document;
     document.context_->path = name;
-    DuplicateKeys duplicates(name);
-    try {
-        document.context_->tree =
-            json::parse(text, [&](int, json::parse_event_t event, json& parsed) { return duplicates(event, parsed); });
-    } catch (const json::parse_error& fault) {
-        return parse_fault(text, name, fault);
-    } catch (const json::out_of_range& fault) {
-        return overflow_fault(text, name, fault.what());
-    }
-    if (!duplicates.errors.empty()) return duplicates.errors;
+    TreeBuilder builder(text, name, document.context_->tree);
+    json::sax_parse(text, &builder);
+    if (!builder.errors.empty()) return builder.errors;
     return document;
 }
 

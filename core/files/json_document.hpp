@@ -60,7 +60,8 @@ public:
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;
     /// This node; absent if it is null (for formats where null means "as if it were not there").
-    JsonNode unless_null() const;
+    JsonNode unless_null() const&;
+    JsonNode unless_null() &&;
     std::vector<JsonNode> elements() const;                         ///< of an array; wrong_type otherwise; empty if absent
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
 
@@ -90,7 +91,8 @@ private:
     friend class JsonDocument;
     struct Context;
     JsonNode(Context* context, const void* value, std::string pointer) : context_(context), value_(value), pointer_(std::move(pointer)) {}
-    JsonNode child(const void* value, const std::string& key) const;
+    JsonNode child(const void* value, std::string_view key) const;
+    std::vector<std::string> other_keys(const std::vector<std::string_view>& known) const;
     bool check_range(double number, const NumberRange& range, std::string_view unit) const;
     template <class Read>
     std::optional<Vector3> three(const Read& read, std::string_view what) const;

@@ -42,11 +42,11 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
     Json list = Json::array();
     for (size_t i = 0; i < model.bodies.size(); ++i) {
         const core::kinematics::Pose& pose = trajectory.poses.back()[i];
-        Json rotation = Json::array();
+        Json& body = list.emplace_back(Json::object());  // a list of pairs would be copied, twice
+        body["name"] = model.bodies[i].name;
+        body["position"] = answers::vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point));
+        Json& rotation = body["rotation"] = Json::array();
         for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
-        list.push_back({{"name", model.bodies[i].name},
-                        {"position", answers::vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point))},
-                        {"rotation", rotation}});
     }
     return list;
 }
