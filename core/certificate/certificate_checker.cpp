@@ -86,7 +86,8 @@ private:
     // Decided here, then compared: the lower bound is proven by now.
     void check_solids(const PairCertificate& pair, const std::string& where) {
         if (pair.solids == Solids::overlap) return fault(where, "the solids overlap: there is no clearance to certify");
-        const Solids found = solids_of(solid(pair.a), solid(pair.b), path(0, pair.a), path(0, pair.b), pair.lower);
+        const Solids found =
+            solids_of(solid(pair.a), solid(pair.b), {trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b}, pair.lower);
         if (found == Solids::overlap) return fault(where, "one body lies inside the other's material");
         if (pair.solids == Solids::unproven || pair.solids == found) return;
         fault(where, std::string("\"") + to_string(pair.solids) + "\" is claimed, " +

@@ -98,10 +98,13 @@ bool is_in_material(const Vector3& point, const SolidMesh& solid) {
     return winding != 0;
 }
 
-Solids solids_of(const SolidMesh& a, const SolidMesh& b, const BodyPath& path_a, const BodyPath& path_b, double lower) {
-    if (!(lower > 0) || !is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
+Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower) {
+    if (!(lower > 0)) return Solids::unproven;
     const bool a_holds = a.is_closed && !a.shells.empty(), b_holds = b.is_closed && !b.shells.empty();
     if (a_holds || b_holds) {
+        const BodyPath path_a = body_path(start.trajectory, start.step, start.segment, start.a),
+                       path_b = body_path(start.trajectory, start.step, start.segment, start.b);
+        if (!is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
         Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, {}}, back{at.outer, at.inner, {}};
         for (std::size_t k = 0; k < 3; ++k) {
             at.offset[k] = path_a.place[k] - path_b.place[k];

@@ -34,8 +34,15 @@ SolidMesh solid_mesh(const geometry::Mesh& mesh);
 /// Is the point, in the body's frame, in the material? Exact; false on the surface. Contract: closed.
 bool is_in_material(const Vector3& point, const SolidMesh& solid);
 
-/// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided where both paths begin.
+/// Where the time begins during which two bodies are looked at: as in body_path().
+struct PairStart {
+    const stepper::Trajectory& trajectory;
+    int step = -1, segment = 0;
+    int a = 0, b = 0;
+};
+
+/// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
 /// `not_closed` where what is not closed keeps the question open; `unproven` if lower is 0 or within rounding.
-Solids solids_of(const SolidMesh& a, const SolidMesh& b, const BodyPath& path_a, const BodyPath& path_b, double lower);
+Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower);
 
 }  // namespace fettle::core::certificate

@@ -144,7 +144,7 @@ private:
     void check_solids(const RangePairCertificate& pair, const std::string& where, CertificateReport& report) const {
         if (pair.solids == Solids::overlap) return add(report, {where, "the solids overlap: there is no clearance to certify"});
         const Solids found = solids_of(*solids_[static_cast<std::size_t>(pair.a)], *solids_[static_cast<std::size_t>(pair.b)],
-                                       body_path(trajectory_, -1, 0, pair.a), body_path(trajectory_, -1, 0, pair.b), pair.lower);
+                                       {trajectory_, -1, 0, pair.a, pair.b}, pair.lower);
         if (found == Solids::overlap) return add(report, {where, "one body lies inside the other's material"});
         if (pair.solids == Solids::unproven || pair.solids == found) return;
         add(report, {where, std::string("\"") + to_string(pair.solids) + "\" is claimed, but it is " + to_string(found)});

@@ -68,9 +68,9 @@ private:
 
     Solids solids_at_start(const PairRequest& request, double lower) const {
         const PathPlace& start = places_.front();
-        const auto path = [&](int body) { return certificate::body_path(trajectory_, start.step, start.segment, body); };
         return certificate::solids_of(*shapes_[static_cast<std::size_t>(request.a)].solid,
-                                      *shapes_[static_cast<std::size_t>(request.b)].solid, path(request.a), path(request.b), lower);
+                                      *shapes_[static_cast<std::size_t>(request.b)].solid,
+                                      {trajectory_, start.step, start.segment, request.a, request.b}, lower);
     }
 
     const stepper::Trajectory& trajectory_;

@@ -137,9 +137,8 @@ private:
     // Surfaces that never meet leave one thing to ask, whose answer never changes.
     void decide_solids() {
         const PairSegment& first = pair_.segments.front();
-        result_.solids = certificate::solids_of(
-            pair_.solid_a, pair_.solid_b, certificate::body_path(pair_.trajectory, first.step, first.segment, result_.a),
-            certificate::body_path(pair_.trajectory, first.step, first.segment, result_.b), found_.lower);
+        result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b,
+                                                {pair_.trajectory, first.step, first.segment, result_.a, result_.b}, found_.lower);
         if (!record_ || result_.solids != Solids::overlap) return;
         record_->certificate.lower = 0;
         record_->certificate.segments.clear();

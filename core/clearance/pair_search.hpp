@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Branch and bound for the least distance of two bodies over a list of path segments: pieces of both bodies and intervals of time, the
-/// most promising first. Bounds: segment_bound.hpp. What callers use: clearance.hpp.
+/// most promising first (but see search_front.hpp). Bounds: segment_bound.hpp. What callers use: clearance.hpp.
 ///
 /// An entry is (interval, piece of a, piece of b) with a proven lower bound. The least of the entries in the queue and of those set
 /// aside (within the tolerance of the upper bound, or at the limit of rounding) bounds the distance from below at any moment, so the

@@ -183,9 +183,8 @@ private:
     // Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box.
     void decide_solids(RangeClearance& out) const {
         if (out.intersecting || !(out.lower > 0)) return;
-        out.solids =
-            certificate::solids_of(*shapes_[static_cast<std::size_t>(out.a)].solid, *shapes_[static_cast<std::size_t>(out.b)].solid,
-                                   certificate::body_path(start_, -1, 0, out.a), certificate::body_path(start_, -1, 0, out.b), out.lower);
+        out.solids = certificate::solids_of(*shapes_[static_cast<std::size_t>(out.a)].solid,
+                                            *shapes_[static_cast<std::size_t>(out.b)].solid, {start_, -1, 0, out.a, out.b}, out.lower);
         if (out.solids != Solids::overlap) return;
         out.lower = out.upper = 0;
     }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, most promising first, the
-/// bounds so far, and the upper bounds with their witnesses.
+/// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, the bounds so far, and the
+/// upper bounds with their witnesses.
+///
+/// The most promising entry comes first. Not where a bound of `enough` is to be proven and nothing nearer has been seen: then each entry
+/// below it has to be looked at, in whatever order, and the last one made comes first, whose data are still at hand.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/limits.hpp"
@@ -56,7 +60,12 @@ public:
     /// `within` >= 0: everything as near as that is wanted, instead of the least distance.
     SearchFront(const PieceTree& tree_a, const PieceTree& tree_b, const std::vector<PairSegment>& all_segments,
                 const SearchOptions& search_options, double within)
-        : a(tree_a), b(tree_b), segments(all_segments), options(search_options), within_(within) {
+        : a(tree_a),
+          b(tree_b),
+          segments(all_segments),
+          options(search_options),
+          within_(within),
+          in_order_(within >= 0 || options.seek_intersection || options.sample_nodes || !(options.enough < infinity)) {
         result.upper = infinity;
         result.sampled.pair.distance = infinity;
     }
@@ -84,10 +93,10 @@ public:
     void push(double lower, EntryKind kind, int entry) {
         if (std::isnan(lower)) return set_aside(lower);  // nor would its parts be one
         queue_.push_back({lower, made_++, static_cast<std::uint32_t>(entry), kind == EntryKind::spans});
-        std::push_heap(queue_.begin(), queue_.end(), Later{});
+        if (in_order_) std::push_heap(queue_.begin(), queue_.end(), Later{});
     }
     Key pop() {
-        std::pop_heap(queue_.begin(), queue_.end(), Later{});
+        if (in_order_) std::pop_heap(queue_.begin(), queue_.end(), Later{});
         const Key key = queue_.back();
         queue_.pop_back();
         return key;
@@ -95,6 +104,7 @@ public:
 
     bool is_settled() const {
         if (queue_.empty() || result.upper < options.refuted) return true;
+        if (!in_order_) return false;
         const double next = queue_.front().lower;
         if (is_collecting()) return next > within_;
         if (options.seek_intersection) return result.intersecting || next > 0;
@@ -102,7 +112,10 @@ public:
     }
 
     /// Of everything searched, however far the search has come.
-    double lower_bound() const { return std::max(0.0, std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result.upper})); }
+    double lower_bound() {
+        put_in_order();
+        return std::max(0.0, std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result.upper}));
+    }
 
     void take_upper(const Encounter& encounter) {
         const double slack = segments[static_cast<std::size_t>(encounter.segment)].slack, sum = encounter.pair.distance + slack;
@@ -114,6 +127,7 @@ public:
         result.upper = upper;
         result.nearest = encounter;
         result.intersecting = clash;
+        if (result.upper - options.tolerance < options.enough) put_in_order();
     }
 
 private:
@@ -121,8 +135,13 @@ private:
         bool operator()(const Key& x, const Key& y) const { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
     };
 
+    void put_in_order() {
+        if (!std::exchange(in_order_, true)) std::make_heap(queue_.begin(), queue_.end(), Later{});
+    }
+
     double within_ = -1;
-    std::vector<Key> queue_;   // a heap
+    bool in_order_;            // else the last one first
+    std::vector<Key> queue_;   // a heap if in order
     double aside_ = infinity;  // least bound of the entries that are not in the queue any more and were not split
     std::uint32_t made_ = 0;
 };

@@ -93,11 +93,11 @@ TEST_CASE("Inside and outside are told right up to rounding", "[clearance]") {
         Vector3 local = place;
         local[trial % 3] = inside ? 1 - gap - 1e-6 : 1 + gap + 1e-6;
         trajectory.poses.push_back({{rotation, origin}, {rotation, rotation * local + origin}});
-        const Solids found = solids_of(a, b, body_path(trajectory, -1, 0, 0), body_path(trajectory, -1, 0, 1), gap / 2);
+        const Solids found = solids_of(a, b, {trajectory, -1, 0, 0, 1}, gap / 2);
         CAPTURE(trial, gap);
         CHECK(found == (inside ? Solids::overlap : Solids::disjoint));
-        CHECK(solids_of(a, b, body_path(trajectory, -1, 0, 0), body_path(trajectory, -1, 0, 1), 1e-18) == Solids::unproven);
-        CHECK(solids_of(a, b, body_path(trajectory, -1, 0, 0), body_path(trajectory, -1, 0, 1), 0) == Solids::unproven);
+        CHECK(solids_of(a, b, {trajectory, -1, 0, 0, 1}, 1e-18) == Solids::unproven);
+        CHECK(solids_of(a, b, {trajectory, -1, 0, 0, 1}, 0) == Solids::unproven);
     }
 }
 
