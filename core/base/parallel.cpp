@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/base/parallel.hpp"
 
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <span>
 #include <thread>
 
 #ifndef FETTLE_THREAD_SANITIZER
-#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 #endif
 
 namespace fettle::core::base {
@@ -84,12 +86,62 @@ int thread_count() {
 
 namespace {
 
+// Pieces that are left of a block, taken from both ends.
+class alignas(64) Block {
+public:
+    void set(std::uint32_t first, std::uint32_t last) { range_.store(packed(first, last), std::memory_order_relaxed); }
+    /// @return the piece; -1: none is left
+    int take_first() {
+        return take([](std::uint32_t first, std::uint32_t last) { return std::pair(first, packed(first + 1, last)); });
+    }
+    int take_last() {
+        return take([](std::uint32_t first, std::uint32_t last) { return std::pair(last - 1, packed(first, last - 1)); });
+    }
+
+private:
+    static std::uint64_t packed(std::uint32_t first, std::uint32_t last) { return std::uint64_t{last} << 32 | first; }
+
+    template <class Taken>
+    int take(const Taken& taken) {
+        std::uint64_t range = range_.load(std::memory_order_relaxed);
+        for (;;) {
+            const auto first = static_cast<std::uint32_t>(range), last = static_cast<std::uint32_t>(range >> 32);
+            if (first >= last) return -1;
+            const auto [piece, rest] = taken(first, last);
+            if (range_.compare_exchange_weak(range, rest, std::memory_order_relaxed)) return static_cast<int>(piece);
+        }
+    }
+
+    std::atomic<std::uint64_t> range_ = 0;
+};
+
+// Each thread has a block of neighbouring pieces, the same one in loop after loop: what it has written there is in its caches. Those that
+// have done with theirs help the others, from the far end.
 void run_pieces(int pieces, const std::function<void(int)>& run) {
+    constexpr int few = 8;
+    const int threads = std::min(thread_count(), pieces);
+    std::array<Block, few> on_stack;
+    std::vector<Block> on_heap(threads > few ? static_cast<std::size_t>(threads) : 0);
+    const std::span<Block> blocks(threads > few ? on_heap.data() : on_stack.data(), static_cast<std::size_t>(threads));
+    for (int i = 0; i < threads; ++i) {
+        const auto begin_of = [&](int block) { return static_cast<std::uint32_t>(std::int64_t{block} * pieces / threads); };
+        blocks[static_cast<std::size_t>(i)].set(begin_of(i), begin_of(i + 1));
+    }
+    const auto work = [&] {
+        const int own = std::max(0, tbb::this_task_arena::current_thread_index()) % threads;
+        for (int piece; (piece = blocks[static_cast<std::size_t>(own)].take_first()) >= 0;) run(piece);
+        for (int i = 1; i < threads; ++i) {
+            Block& other = blocks[static_cast<std::size_t>((own + i) % threads)];
+            for (int piece; (piece = other.take_last()) >= 0;) run(piece);
+        }
+    };
+    if (threads == 1) return work();
     // Isolated: a thread that waits for an inner loop must not pick up a piece of an outer one, whose scratch memory it is using.
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(tbb::blocked_range<int>(0, pieces, 1), [&](const tbb::blocked_range<int>& range) {
-            for (int piece = range.begin(); piece < range.end(); ++piece) run(piece);
-        });
+        tbb::task_group helpers;
+        for (int i = 1; i < threads; ++i) helpers.run(work);
+        work();
+        helpers.wait();
     });
 }
 

@@ -43,6 +43,24 @@ TEST_CASE("every index is visited once", "[base]") {
     }
 }
 
+TEST_CASE("every index is visited once where threads help each other, loop after loop", "[base]") {
+    for (const int threads : {2, 3, 16}) {
+        const ThreadLimit limit(threads);
+        for (int run = 0; run < 300; ++run) {
+            const int count = 1 + run % 97, slow = run % 5;  // the first pieces, the last, or one in five
+            std::vector<std::atomic<int>> visits(count);
+            std::vector<double> seen(count);
+            parallel_for(count, 1, [&](int i) {
+                double sum = i;
+                for (int k = 0; (i + 4 * i / count) % 5 == slow && k < 2000; ++k) sum = std::sin(sum);
+                seen[i] = sum;
+                ++visits[i];
+            });
+            REQUIRE(std::all_of(visits.begin(), visits.end(), [](const auto& v) { return v == 1; }));
+        }
+    }
+}
+
 TEST_CASE("a sum has the same bits for any number of threads", "[base]") {
     const std::uint64_t expected = [] {
         const ThreadLimit one(1);
