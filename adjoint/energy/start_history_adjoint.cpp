@@ -28,10 +28,10 @@ public:
     const std::vector<Pose>& poses() const { return problem_.poses_t0; }
     StepEnd end() const { return {{problem_, problem_.poses_t0, none_, core::contact::HessianKind::exact}, nullptr}; }
 
-    core::energy::TermDerivatives derivatives() const {
-        core::energy::TermDerivatives d;
-        d.coupling.resize(poses().size());
-        d.coupling_hessian.diagonal.assign(poses().size(), Matrix6::Zero());
+    core::energy::CouplingDerivatives derivatives() const {
+        core::energy::CouplingDerivatives d;
+        d.gradient.resize(poses().size());
+        d.hessian.diagonal.assign(poses().size(), Matrix6::Zero());
         core::energy::measure_terms.add_derivatives(end(), d);
         return d;
     }
@@ -71,15 +71,15 @@ void subtract_terms(const Model& model, const std::vector<std::vector<Vector6>>&
     step_bar.start_bar.assign(motion.size(), std::vector<Matrix34>(n, Matrix34::Zero()));
     step_bar.slip_reference_bar = step_bar.start_bar;
     measure_terms_adjoint.subtract_reverse(terms.end(), motion, step_bar, to.model_bar);
-    const core::energy::TermDerivatives d = terms.derivatives();
+    const core::energy::CouplingDerivatives d = terms.derivatives();
     for (std::size_t s = 0; s < motion.size(); ++s) {
-        const std::vector<Vector6> along = core::solver::multiply(d.coupling_hessian, motion[s]);
+        const std::vector<Vector6> along = core::solver::multiply(d.hessian, motion[s]);
         for (std::size_t i = 0; i < n; ++i) {
             const Matrix3& rotation = terms.poses()[i].rotation;
             const Matrix34& slip_bar = step_bar.slip_reference_bar[s][i];
             Matrix34& bar = to.poses_bar[s][i];
             bar += step_bar.start_bar[s][i] + slip_bar - entries_of(along[i], rotation);
-            bar.leftCols<3>() -= cross_matrix(motion[s][i].tail<3>()).transpose() * d.coupling[i].arm * rotation;
+            bar.leftCols<3>() -= cross_matrix(motion[s][i].tail<3>()).transpose() * d.gradient[i].arm * rotation;
             to.model_bar[s].bodies[i].velocity_start_bar -= terms.problem().slip_time * slip_bar;
         }
     }

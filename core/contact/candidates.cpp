@@ -151,6 +151,14 @@ void take_over(std::vector<std::pair<int, int>> wanted, Candidates& candidates) 
     candidates.bodies = std::move(wanted);
 }
 
+// What the pairs are searched along.
+struct Search {
+    const std::vector<PathSegment>& segments;
+    const std::vector<SweptBody>& swept;
+    double activation, allowance;
+    SweptPair of(const BodyPairCandidates& pair) const { return swept_pair(swept[pair.a], swept[pair.b], activation + allowance); }
+};
+
 // A part of a pair's work: what a thread does in one go.
 struct Task {
     int pair = 0;  // among those searched
@@ -159,18 +167,18 @@ struct Task {
 };
 
 // Large meshes in parts where there are few pairs: enough for two threads or more.
-std::vector<Task> make_tasks(const std::vector<SweptPair>& pairs) {
+std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, const Search& along) {
     constexpr std::size_t large = 512, most_parts = 16, wanted = 48;  // `large`: nodes of both bodies
-    const std::size_t parts = std::min(most_parts, wanted / std::max<std::size_t>(pairs.size(), 1));
+    const std::size_t parts = std::min(most_parts, wanted / std::max<std::size_t>(searched.size(), 1));
     std::vector<Task> tasks;
-    tasks.reserve(pairs.size());
-    for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
-        const std::size_t size = pairs[k].a->body->hierarchy->nodes().size() + pairs[k].b->body->hierarchy->nodes().size();
-        if (parts < 2 || size < large) {
+    tasks.reserve(searched.size());
+    const auto size_of = [&](int body) { return along.swept[body].body->hierarchy->nodes().size(); };
+    for (int k = 0; k < static_cast<int>(searched.size()); ++k) {
+        if (parts < 2 || size_of(searched[k]->a) + size_of(searched[k]->b) < large) {
             tasks.push_back({k, {0, 0}, {}});
             continue;
         }
-        for (const NodePair& from : close_nodes(pairs[k], {0, 0}, parts)) tasks.push_back({k, from, {}});
+        for (const NodePair& from : close_nodes(along.of(*searched[k]), {0, 0}, parts)) tasks.push_back({k, from, {}});
     }
     return tasks;
 }
@@ -184,19 +192,23 @@ void sort_by_distance(PrimitivePairs& pairs) {
         });
 }
 
-// Fills the lists of searched[k] with what pairs[k] has.
-void search(const std::vector<SweptPair>& pairs, const std::vector<BodyPairCandidates*>& searched) {
-    std::vector<Task> tasks = make_tasks(pairs);
+// Fills the lists of all that are searched.
+void search(const Search& along, const std::vector<BodyPairCandidates*>& searched) {
+    std::vector<Task> tasks = make_tasks(searched, along);
     base::parallel_for(static_cast<int>(tasks.size()), 1, [&](int k) {
         Task& task = tasks[k];
-        search_leaves(pairs[task.pair], close_nodes(pairs[task.pair], task.from), task.found);
+        const SweptPair pair = along.of(*searched[task.pair]);  // large, and soon made: not kept
+        search_leaves(pair, close_nodes(pair, task.from), task.found);
     });
     // A pair's tasks follow one another.
-    std::vector<std::size_t> first(pairs.size() + 1, tasks.size());
+    std::vector<std::size_t> first(searched.size() + 1, tasks.size());
     for (std::size_t k = tasks.size(); k-- > 0;) first[tasks[k].pair] = k;
-    for (std::size_t p = pairs.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
+    for (std::size_t p = searched.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
     base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int p) {
-        PrimitivePairs& out = *searched[p];
+        BodyPairCandidates& pair = *searched[p];
+        pair.allowance = along.allowance;
+        pair.along = {along.segments[pair.a], along.segments[pair.b]};
+        PrimitivePairs& out = pair;
         out = {};
         for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
             if (k == first[p]) {
@@ -242,14 +254,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
         candidates.fresh.push_back(static_cast<int>(k));
         searched.push_back(&candidates.pairs[k]);
     }
-    std::vector<SweptPair> pairs(searched.size());
-    base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int k) {
-        BodyPairCandidates& pair = *searched[k];
-        pair.allowance = allowance;
-        pair.along = {segments[pair.a], segments[pair.b]};
-        pairs[k] = swept_pair(swept[pair.a], swept[pair.b], activation + allowance);
-    });
-    search(pairs, searched);
+    search({segments, swept, activation, allowance}, searched);
 }
 
 void settle(const std::vector<Pose>& poses, Candidates& candidates) {

@@ -17,8 +17,12 @@ using kinematics::Pose;
 
 kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
     auto& blocks = hessian.off_diagonal;
-    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b),
-                                     [](const auto& block, const std::pair<int, int>& key) { return std::pair(block.a, block.b) < key; });
+    const auto is_before = [](const kinematics::OffDiagonalBlock& block, const std::pair<int, int>& key) {
+        return std::pair(block.a, block.b) < key;
+    };
+    // Most come in order.
+    if (blocks.empty() || is_before(blocks.back(), {a, b})) return blocks.emplace_back(kinematics::OffDiagonalBlock{a, b, Matrix6::Zero()});
+    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b), is_before);
     if (at != blocks.end() && at->a == a && at->b == b) return *at;
     return *blocks.insert(at, {a, b, Matrix6::Zero()});
 }

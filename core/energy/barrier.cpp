@@ -7,12 +7,10 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_barrier_value(const ValueAt& at, TermValues& values) {
-    values.couplings.push_back(contact::barrier_potential(at.contacts, at.problem.barrier));
-}
+double barrier_value(const ValueAt& at) { return contact::barrier_potential(at.contacts, at.problem.barrier); }
 
-void add_barrier_derivatives(const DerivativesAt& at, TermDerivatives& d) {
-    contact::add_barrier_derivatives(at.contacts, at.poses, at.problem.barrier, at.kind, d.coupling, d.coupling_hessian);
+void add_barrier_derivatives(const DerivativesAt& at, CouplingDerivatives& d) {
+    contact::add_barrier_derivatives(at.contacts, at.poses, at.problem.barrier, at.kind, d.gradient, d.hessian);
 }
 
 // Adds one pair of primitives. @param begin, end  its vertices on body f.a.
@@ -47,6 +45,6 @@ void add_barrier_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term barrier_term{"barrier", add_barrier_value, add_barrier_derivatives, add_barrier_report};
+const CouplingTerm barrier_term{"barrier", barrier_value, add_barrier_derivatives, add_barrier_report};
 
 }  // namespace fettle::core::energy

@@ -7,6 +7,6 @@
 
 namespace fettle::core::energy {
 
-extern const Term barrier_term;
+extern const CouplingTerm barrier_term;
 
 }  // namespace fettle::core::energy

@@ -4,15 +4,15 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_contact_damping_value(const ValueAt& at, TermValues& values) {
-    if (!(at.problem.contact_damping.factor > 0)) return;
-    values.couplings.push_back(contact::contact_damping_potential({*at.problem.model, at.contacts, at.problem.contact_damping}));
+double contact_damping_value(const ValueAt& at) {
+    if (!(at.problem.contact_damping.factor > 0)) return 0;
+    return contact::contact_damping_potential({*at.problem.model, at.contacts, at.problem.contact_damping});
 }
 
-void add_contact_damping_derivatives_here(const DerivativesAt& at, TermDerivatives& d) {
+void add_contact_damping_derivatives_here(const DerivativesAt& at, CouplingDerivatives& d) {
     if (!(at.problem.contact_damping.factor > 0)) return;
-    contact::add_contact_damping_derivatives({*at.problem.model, at.contacts, at.problem.contact_damping}, at.poses, at.kind, d.coupling,
-                                             d.coupling_hessian);
+    contact::add_contact_damping_derivatives({*at.problem.model, at.contacts, at.problem.contact_damping}, at.poses, at.kind, d.gradient,
+                                             d.hessian);
 }
 
 void add_contact_damping_report(const SolvedStep& step, TermReport& report) {
@@ -38,7 +38,7 @@ void add_contact_damping_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term contact_damping_term{"contact damping", add_contact_damping_value, add_contact_damping_derivatives_here,
-                                add_contact_damping_report};
+const CouplingTerm contact_damping_term{"contact damping", contact_damping_value, add_contact_damping_derivatives_here,
+                                        add_contact_damping_report};
 
 }  // namespace fettle::core::energy

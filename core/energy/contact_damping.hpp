@@ -6,6 +6,6 @@
 
 namespace fettle::core::energy {
 
-extern const Term contact_damping_term;
+extern const CouplingTerm contact_damping_term;
 
 }  // namespace fettle::core::energy

@@ -13,33 +13,28 @@ bool takes_part(const StepProblem& problem, const model::Body& body) {
     return problem.damping_weight > 0 && is_damped(body) && has_free_dof(body);
 }
 
-void add_damping_value(const ValueAt& at, TermValues& values) {
-    for (std::size_t i = 0; i < at.poses.size(); ++i) {
-        const model::Body& body = at.problem.model->bodies[i];
-        if (!takes_part(at.problem, body)) continue;
-        values.bodies[i] +=
-            at.problem.damping_weight * inertia_potential(pose_matrix(at.poses[i]), at.problem.slip_reference[i], damping_moments(body));
-    }
+void add_damping_value(const ValueAt& at, std::size_t i, double& value) {
+    const model::Body& body = at.problem.model->bodies[i];
+    if (!takes_part(at.problem, body)) return;
+    value += at.problem.damping_weight * inertia_potential(pose_matrix(at.poses[i]), at.problem.slip_reference[i], damping_moments(body));
 }
 
-void add_damping_derivatives(const DerivativesAt& at, TermDerivatives& d) {
-    for (std::size_t i = 0; i < at.poses.size(); ++i) {
-        const model::Body& body = at.problem.model->bodies[i];
-        if (!takes_part(at.problem, body)) continue;
-        const Matrix4 moments = at.problem.damping_weight * damping_moments(body);
-        kinematics::PoseGradient gradient;
-        add_inertia_gradient(at.poses[i], at.problem.slip_reference[i], moments, gradient);
-        d.own[i].force += gradient.force;
-        d.own[i].arm += gradient.arm;
-        d.own_hessian[i] += mass_matrix(at.poses[i].rotation, moments);
-        d.own_magnitude[i] += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
-    }
+void add_damping_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivatives& d) {
+    const model::Body& body = at.problem.model->bodies[i];
+    if (!takes_part(at.problem, body)) return;
+    const Matrix4 moments = at.problem.damping_weight * damping_moments(body);
+    kinematics::PoseGradient gradient;
+    add_inertia_gradient(at.poses[i], at.problem.slip_reference[i], moments, gradient);
+    d.gradient.force += gradient.force;
+    d.gradient.arm += gradient.arm;
+    if (at.kind != contact::HessianKind::none) d.hessian += mass_matrix(at.poses[i].rotation, moments);
+    d.magnitude += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
 }
 
 void report_no_damping(const SolvedStep&, TermReport&) {}
 
 }  // namespace
 
-const Term damping_term{"damping", add_damping_value, add_damping_derivatives, report_no_damping};
+const BodyTerm damping_term{"damping", add_damping_value, add_damping_derivatives, report_no_damping};
 
 }  // namespace fettle::core::energy

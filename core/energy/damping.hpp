@@ -10,6 +10,6 @@
 
 namespace fettle::core::energy {
 
-extern const Term damping_term;
+extern const BodyTerm damping_term;
 
 }  // namespace fettle::core::energy

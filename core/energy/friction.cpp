@@ -4,12 +4,10 @@
 namespace fettle::core::energy {
 namespace {
 
-void add_friction_value(const ValueAt& at, TermValues& values) {
-    values.couplings.push_back(contact::friction_potential(at.problem.friction, at.poses));
-}
+double friction_value(const ValueAt& at) { return contact::friction_potential(at.problem.friction, at.poses); }
 
-void add_friction_derivatives(const DerivativesAt& at, TermDerivatives& d) {
-    contact::add_friction_derivatives(at.problem.friction, at.poses, at.kind, d.coupling, d.coupling_hessian);
+void add_friction_derivatives(const DerivativesAt& at, CouplingDerivatives& d) {
+    contact::add_friction_derivatives(at.problem.friction, at.poses, at.kind, d.gradient, d.hessian);
 }
 
 void add_friction_report(const SolvedStep& step, TermReport& report) {
@@ -28,6 +26,6 @@ void add_friction_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term friction_term{"friction", add_friction_value, add_friction_derivatives, add_friction_report};
+const CouplingTerm friction_term{"friction", friction_value, add_friction_derivatives, add_friction_report};
 
 }  // namespace fettle::core::energy

@@ -7,6 +7,6 @@
 
 namespace fettle::core::energy {
 
-extern const Term friction_term;
+extern const CouplingTerm friction_term;
 
 }  // namespace fettle::core::energy

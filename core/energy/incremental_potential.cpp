@@ -21,7 +21,8 @@ using kinematics::ChartPoint;
 using kinematics::Pose;
 
 constexpr int bodies_a_piece = 16;   // that a thread takes at a time
-constexpr int bodies_to_clear = 32;  // the same, of sums to begin
+constexpr int bodies_to_clear = 64;  // the same, of sums to begin
+constexpr int values_a_piece = 128;  // the same, of values alone
 
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);
@@ -39,49 +40,50 @@ void pull_back(const Matrix3& j_rows, const Matrix3& j_columns, Matrix6& h) {
     h.bottomRows<3>() = rows;
 }
 
-// `d` is memory to use again: what it held is lost.
-void sum_terms(const DerivativesAt& at, TermDerivatives& d) {
+// Of the terms that couple bodies. `d` is memory to use again: what it held is lost.
+void sum_couplings(const DerivativesAt& at, CouplingDerivatives& d) {
     const std::size_t n = at.poses.size();
-    d.own.resize(n);
-    d.coupling.resize(n);
-    d.own_hessian.resize(n);
-    d.coupling_hessian.diagonal.resize(n);
-    d.coupling_hessian.off_diagonal.clear();
-    d.chart_gradient.resize(n);
-    d.own_magnitude.resize(n);
+    d.gradient.resize(n);
+    d.hessian.diagonal.resize(n);
+    d.hessian.off_diagonal.clear();
     base::parallel_for(static_cast<int>(n), bodies_to_clear, [&](int i) {
-        d.own[i] = d.coupling[i] = {};
-        d.own_hessian[i].setZero();
-        d.coupling_hessian.diagonal[i].setZero();
-        d.chart_gradient[i].setZero();
-        d.own_magnitude[i] = 0;
+        d.gradient[i] = {};
+        d.hessian.diagonal[i].setZero();
     });
-    for (const Term* term : terms()) term->add_derivatives(at, d);
+    for (const CouplingTerm* term : coupling_terms()) term->add_derivatives(at, d);
 }
 
 }  // namespace
 
-std::span<const Term* const> terms() {
-    static const std::array list{&inertia_term,         &loads_term,    &damping_term, &barrier_term,
-                                 &contact_damping_term, &friction_term, &measure_terms};
+std::span<const BodyTerm* const> body_terms() {
+    static constexpr std::array list{&inertia_term, &loads_term, &damping_term};
+    return list;
+}
+
+std::span<const CouplingTerm* const> coupling_terms() {
+    static constexpr std::array list{&barrier_term, &contact_damping_term, &friction_term, &measure_terms};
     return list;
 }
 
 double incremental_potential(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
                              const contact::ContactSet& contacts) {
-    TermValues values{std::vector<double>(poses.size(), 0.0), {}};
-    for (const Term* term : terms()) term->add_value({problem, points, poses, contacts}, values);
+    const ValueAt at{problem, points, poses, contacts};
+    std::vector<double> values(poses.size(), 0.0);
+    base::parallel_for(static_cast<int>(poses.size()), values_a_piece, [&](int i) {
+        for (const BodyTerm* term : body_terms()) term->add_value(at, static_cast<std::size_t>(i), values[i]);
+    });
     double sum = 0;
-    for (const double value : values.bodies) sum += value;
-    for (const double value : values.couplings) sum += value;
+    for (const double value : values) sum += value;
+    for (const CouplingTerm* term : coupling_terms()) sum += term->value(at);
     return sum;
 }
 
 ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
                                    const contact::ContactSet& contacts, contact::HessianKind kind) {
-    static thread_local TermDerivatives memory;  // stays from call to call
-    TermDerivatives& d = memory;
-    sum_terms({problem, poses, contacts, kind}, d);
+    static thread_local CouplingDerivatives memory;  // stays from call to call
+    CouplingDerivatives& d = memory;
+    const DerivativesAt at{problem, poses, contacts, kind};
+    sum_couplings(at, d);
     ChartDerivatives out;
     const std::size_t n = poses.size();
     out.gradient.resize(n);
@@ -89,31 +91,32 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     out.force_magnitude.resize(n);
     std::vector<Matrix3> jacobian(n);
     base::parallel_for(static_cast<int>(n), bodies_a_piece, [&](int i) {
+        BodyDerivatives own;
+        for (const BodyTerm* term : body_terms()) term->add_derivatives(at, static_cast<std::size_t>(i), own);
         const Vector3& theta = points[i].rotation_vector;
         jacobian[i] = kinematics::left_jacobian(theta);
-        out.force_magnitude[i] = d.coupling[i].force.norm() + d.own_magnitude[i];
-        const kinematics::PoseGradient gradient{d.coupling[i].force + d.own[i].force, d.coupling[i].arm + d.own[i].arm};
+        out.force_magnitude[i] = d.gradient[i].force.norm() + own.magnitude;
+        const kinematics::PoseGradient gradient{d.gradient[i].force + own.gradient.force, d.gradient[i].arm + own.gradient.arm};
         out.gradient[i] = tangent_gradient(gradient);
         const Vector3 turning = jacobian[i].transpose() * out.gradient[i].tail<3>();
-        out.gradient[i].tail<3>() = turning + d.chart_gradient[i];
+        out.gradient[i].tail<3>() = turning + own.chart_gradient;
         if (kind == contact::HessianKind::none) return;
         const Matrix3 curvature = kinematics::chart_curvature(gradient.arm, theta);
         Matrix6& sum = out.hessian.diagonal[i];
         if (kind == contact::HessianKind::projected) {
-            Matrix6 own = d.own_hessian[i];
-            pull_back(jacobian[i], jacobian[i], own);
-            own.bottomRightCorner<3, 3>() += curvature;
-            sum = d.coupling_hessian.diagonal[i];
+            pull_back(jacobian[i], jacobian[i], own.hessian);
+            own.hessian.bottomRightCorner<3, 3>() += curvature;
+            sum = d.hessian.diagonal[i];
             pull_back(jacobian[i], jacobian[i], sum);
-            sum += positive_part(own);
+            sum += positive_part(own.hessian);
         } else {
-            sum = d.own_hessian[i] + d.coupling_hessian.diagonal[i];
+            sum = own.hessian + d.hessian.diagonal[i];
             pull_back(jacobian[i], jacobian[i], sum);
             sum.bottomRightCorner<3, 3>() += curvature;
         }
     });
     if (kind == contact::HessianKind::none) return out;
-    out.hessian.off_diagonal = std::move(d.coupling_hessian.off_diagonal);
+    out.hessian.off_diagonal = std::move(d.hessian.off_diagonal);
     base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {
         kinematics::OffDiagonalBlock& b = out.hessian.off_diagonal[k];
         pull_back(jacobian[b.a], jacobian[b.b], b.block);
@@ -123,7 +126,8 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
 
 TermReport term_report(const SolvedStep& step) {
     TermReport report;
-    for (const Term* term : terms()) term->add_report(step, report);
+    for (const BodyTerm* term : body_terms()) term->add_report(step, report);
+    for (const CouplingTerm* term : coupling_terms()) term->add_report(step, report);
     return report;
 }
 

@@ -13,8 +13,9 @@
 
 namespace fettle::core::energy {
 
-/// Inertia, loads, damping, barrier, contact damping, friction, terms of measures: in the order of their sums.
-std::span<const Term* const> terms();
+/// Inertia, loads, damping; barrier, contact damping, friction, terms of measures: in the order of their sums.
+std::span<const BodyTerm* const> body_terms();
+std::span<const CouplingTerm* const> coupling_terms();
 
 /// The value; infinity where a pair is at or below dmin. `poses` are those of `points` (poses_of), `contacts` those there.
 double incremental_potential(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,

@@ -3,32 +3,25 @@
 
 #include <algorithm>
 
-#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 
 namespace fettle::core::energy {
 namespace {
 
-constexpr int bodies_a_call = 16, values_a_call = 128;  // that a thread takes at a time
-
-void add_inertia_value(const ValueAt& at, TermValues& values) {
-    base::parallel_for(static_cast<int>(at.poses.size()), values_a_call, [&](int i) {
-        const model::Body& body = at.problem.model->bodies[i];
-        if (has_free_dof(body)) values.bodies[i] += inertia_potential(pose_matrix(at.poses[i]), at.problem.pose_hat[i], body.moments);
-    });
+void add_inertia_value(const ValueAt& at, std::size_t i, double& value) {
+    const model::Body& body = at.problem.model->bodies[i];
+    if (has_free_dof(body)) value += inertia_potential(pose_matrix(at.poses[i]), at.problem.pose_hat[i], body.moments);
 }
 
-void add_inertia_derivatives(const DerivativesAt& at, TermDerivatives& d) {
-    base::parallel_for(static_cast<int>(at.poses.size()), bodies_a_call, [&](int i) {
-        const model::Body& body = at.problem.model->bodies[i];
-        if (!has_free_dof(body)) return;
-        kinematics::PoseGradient gradient;
-        add_inertia_gradient(at.poses[i], at.problem.pose_hat[i], body.moments, gradient);
-        d.own[i].force += gradient.force;
-        d.own[i].arm += gradient.arm;
-        d.own_hessian[i] += mass_matrix(at.poses[i].rotation, body.moments);
-        d.own_magnitude[i] += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
-    });
+void add_inertia_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivatives& d) {
+    const model::Body& body = at.problem.model->bodies[i];
+    if (!has_free_dof(body)) return;
+    kinematics::PoseGradient gradient;
+    add_inertia_gradient(at.poses[i], at.problem.pose_hat[i], body.moments, gradient);
+    d.gradient.force += gradient.force;
+    d.gradient.arm += gradient.arm;
+    if (at.kind != contact::HessianKind::none) d.hessian += mass_matrix(at.poses[i].rotation, body.moments);
+    d.magnitude += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
 }
 
 // Momenta: with M = integral rho [X;1][X;1]^T, integral rho x v^T = P M V^T.
@@ -59,6 +52,6 @@ void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat
     gradient.arm += g.leftCols<3>() * pose.rotation.transpose();
 }
 
-const Term inertia_term{"inertia", add_inertia_value, add_inertia_derivatives, add_inertia_report};
+const BodyTerm inertia_term{"inertia", add_inertia_value, add_inertia_derivatives, add_inertia_report};
 
 }  // namespace fettle::core::energy

@@ -16,6 +16,6 @@ void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat
                           kinematics::PoseGradient& gradient);
 
 /// Of the bodies that are solved for.
-extern const Term inertia_term;
+extern const BodyTerm inertia_term;
 
 }  // namespace fettle::core::energy

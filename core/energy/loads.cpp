@@ -3,12 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/base/parallel.hpp"
-
 namespace fettle::core::energy {
 namespace {
-
-constexpr int loads_a_call = 128;  // that a thread takes at a time
 
 // What gravity does along the step, where the inertia leaves it out; from the poses' difference, so that nothing large cancels.
 double gravity_work(const StepProblem& problem, std::size_t i, const kinematics::Pose& pose) {
@@ -16,34 +12,30 @@ double gravity_work(const StepProblem& problem, std::size_t i, const kinematics:
     return problem.gravity.dot(moved * problem.model->bodies[i].moments.col(3));
 }
 
-void add_loads_value(const ValueAt& at, TermValues& values) {
+void add_loads_value(const ValueAt& at, std::size_t i, double& value) {
     const StepProblem& problem = at.problem;
-    base::parallel_for(static_cast<int>(at.poses.size()), loads_a_call, [&](int i) {
-        const model::Body& body = problem.model->bodies[i];
-        if (!has_free_dof(body)) return;
-        values.bodies[i] -= problem.weight * (body.force.dot(at.poses[i].position - problem.poses_t0[i].position) +
-                                              problem.torque[i].dot(at.points[i].rotation_vector));
-        if (!problem.gravity.isZero(0)) values.bodies[i] -= problem.weight * gravity_work(problem, i, at.poses[i]);
-    });
+    const model::Body& body = problem.model->bodies[i];
+    if (!has_free_dof(body)) return;
+    value -= problem.weight *
+             (body.force.dot(at.poses[i].position - problem.poses_t0[i].position) + problem.torque[i].dot(at.points[i].rotation_vector));
+    if (!problem.gravity.isZero(0)) value -= problem.weight * gravity_work(problem, i, at.poses[i]);
 }
 
 // A held body's torque counts, so that what drives it is told; its force is left to that report (stepper/step_outputs.hpp).
-void add_loads_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+void add_loads_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivatives& d) {
     const StepProblem& problem = at.problem;
-    base::parallel_for(static_cast<int>(at.poses.size()), loads_a_call, [&](int i) {
-        const model::Body& body = problem.model->bodies[i];
-        d.chart_gradient[i] -= problem.weight * problem.torque[i];
-        if (!has_free_dof(body)) return;
-        const double arm = std::max(body.radius, problem.model->dhat);
-        d.own[i].force -= problem.weight * body.force;
-        d.own_magnitude[i] += problem.weight * (body.force.norm() + body.torque.norm() / arm);
-        if (problem.gravity.isZero(0)) return;
-        kinematics::PoseGradient gradient;
-        add_gravity_gradient(problem, i, at.poses[i], gradient);
-        d.own[i].force += gradient.force;
-        d.own[i].arm += gradient.arm;
-        d.own_magnitude[i] += gradient.force.norm() + gradient.arm.norm() / arm;
-    });
+    const model::Body& body = problem.model->bodies[i];
+    d.chart_gradient -= problem.weight * problem.torque[i];
+    if (!has_free_dof(body)) return;
+    const double arm = std::max(body.radius, problem.model->dhat);
+    d.gradient.force -= problem.weight * body.force;
+    d.magnitude += problem.weight * (body.force.norm() + body.torque.norm() / arm);
+    if (problem.gravity.isZero(0)) return;
+    kinematics::PoseGradient gradient;
+    add_gravity_gradient(problem, i, at.poses[i], gradient);
+    d.gradient.force += gradient.force;
+    d.gradient.arm += gradient.arm;
+    d.magnitude += gradient.force.norm() + gradient.arm.norm() / arm;
 }
 
 void add_loads_report(const SolvedStep& step, TermReport& report) {
@@ -65,6 +57,6 @@ void add_gravity_gradient(const StepProblem& problem, std::size_t body, const ki
     gradient.arm -= problem.weight * problem.gravity * first.transpose();
 }
 
-const Term loads_term{"loads", add_loads_value, add_loads_derivatives, add_loads_report};
+const BodyTerm loads_term{"loads", add_loads_value, add_loads_derivatives, add_loads_report};
 
 }  // namespace fettle::core::energy

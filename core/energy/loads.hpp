@@ -12,6 +12,6 @@ namespace fettle::core::energy {
 /// Adds dE/dP of gravity as a load; nothing where the inertia has it.
 void add_gravity_gradient(const StepProblem& problem, std::size_t body, const kinematics::Pose& pose, kinematics::PoseGradient& gradient);
 
-extern const Term loads_term;
+extern const BodyTerm loads_term;
 
 }  // namespace fettle::core::energy

@@ -12,14 +12,14 @@ double measure_at(const StepProblem& problem, int measure, const Frames& frames)
     return constraint::value_at(problem.model->mechanism.set, measure, frames, problem.mechanism.angles);
 }
 
-void add_measures_value(const ValueAt& at, TermValues& values) {
+double measures_value(const ValueAt& at) {
     const model::Mechanism& mechanism = at.problem.model->mechanism;
-    if (mechanism.terms.empty()) return;
+    if (mechanism.terms.empty()) return 0;
     const Frames frames = placed(mechanism.set.frames, at.poses);
     double sum = 0;
     for (const model::MeasureTerm& term : mechanism.terms)
         sum += measure_law(at.problem, term, measure_at(at.problem, term.measure, frames)).value;
-    values.couplings.push_back(sum);
+    return sum;
 }
 
 Matrix12 positive_part_of(const Matrix12& h) {
@@ -56,15 +56,15 @@ TermGradient derivatives_of(const DerivativesAt& at, const model::MeasureTerm& t
     return out;
 }
 
-void add_side(int body, const kinematics::PoseGradient& gradient, const Eigen::Ref<const Matrix6>& hessian, TermDerivatives& d) {
+void add_side(int body, const kinematics::PoseGradient& gradient, const Eigen::Ref<const Matrix6>& hessian, CouplingDerivatives& d) {
     if (body == measure::world) return;
     const auto i = static_cast<std::size_t>(body);
-    d.coupling[i].force += gradient.force;
-    d.coupling[i].arm += gradient.arm;
-    d.coupling_hessian.diagonal[i] += hessian;
+    d.gradient[i].force += gradient.force;
+    d.gradient[i].arm += gradient.arm;
+    d.hessian.diagonal[i] += hessian;
 }
 
-void add_measures_derivatives(const DerivativesAt& at, TermDerivatives& d) {
+void add_measures_derivatives(const DerivativesAt& at, CouplingDerivatives& d) {
     const model::Mechanism& mechanism = at.problem.model->mechanism;
     if (mechanism.terms.empty()) return;
     const Frames frames = placed(mechanism.set.frames, at.poses);
@@ -79,7 +79,7 @@ void add_measures_derivatives(const DerivativesAt& at, TermDerivatives& d) {
         else
             blocks.push_back({t.b, t.a, t.hessian.bottomLeftCorner<6, 6>()});
     }
-    constraint::add_blocks(std::move(blocks), d.coupling_hessian);
+    constraint::add_blocks(std::move(blocks), d.hessian);
 }
 
 void add_measures_report(const SolvedStep& step, TermReport& report) {
@@ -97,7 +97,7 @@ void add_measures_report(const SolvedStep& step, TermReport& report) {
 
 }  // namespace
 
-const Term measure_terms{"springs, dampers, stops and forces along measures", add_measures_value, add_measures_derivatives,
-                         add_measures_report};
+const CouplingTerm measure_terms{"springs, dampers, stops and forces along measures", measures_value, add_measures_derivatives,
+                                 add_measures_report};
 
 }  // namespace fettle::core::energy

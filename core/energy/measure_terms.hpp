@@ -8,6 +8,6 @@
 
 namespace fettle::core::energy {
 
-extern const Term measure_terms;
+extern const CouplingTerm measure_terms;
 
 }  // namespace fettle::core::energy

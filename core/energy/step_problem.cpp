@@ -34,13 +34,17 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> 
 std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points) {
     constexpr int bodies_at_once = 64;  // that a thread takes
     std::vector<Pose> poses(points.size());
-    base::parallel_for(static_cast<int>(points.size()), bodies_at_once, [&](int i) {
-        const Vector3& theta = points[i].rotation_vector;
-        const Matrix3& start = problem.poses_t0[i].rotation;
-        poses[i].position = points[i].position;
-        poses[i].rotation = theta.isZero(0) ? start : kinematics::orthonormalised(kinematics::rotation(theta) * start);
-    });
+    base::parallel_for(static_cast<int>(points.size()), bodies_at_once, [&](int i) { poses[i] = pose_of(problem, i, points[i]); });
     return poses;
+}
+
+Pose pose_of(const StepProblem& problem, int body, const kinematics::ChartPoint& point) {
+    const Matrix3& start = problem.poses_t0[body].rotation;
+    const Vector3& theta = point.rotation_vector;
+    Pose pose;
+    pose.position = point.position;
+    pose.rotation = theta.isZero(0) ? start : kinematics::orthonormalised(kinematics::rotation(theta) * start);
+    return pose;
 }
 
 bool has_free_dof(const model::Body& body) {

@@ -40,6 +40,7 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<kinema
 
 /// Rotations to rounding, however many steps there were before; what has not turned keeps its bits.
 std::vector<kinematics::Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points);
+kinematics::Pose pose_of(const StepProblem& problem, int body, const kinematics::ChartPoint& point);
 
 /// Is anything of this body solved for? Terms of one body leave out those of which nothing is.
 bool has_free_dof(const model::Body& body);

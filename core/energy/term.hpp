@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// One term of the incremental potential (incremental_potential.hpp): a value, its derivatives, and what it reports once a step is solved.
-/// Each term is one file here, an entry in the list of incremental_potential.cpp, and one file in adjoint/energy. A term sees all bodies at
-/// once, so that its inner loops stay its own and the calls are as few as the terms.
+/// Each term is one file here, an entry in a list of incremental_potential.cpp, and one file in adjoint/energy.
 ///
-/// Terms of one body (inertia, loads) and terms that couple bodies (barrier, friction) go into sums of their own: what a body has by itself
-/// is added up body by body, what couples bodies term by term, always in the list's order, so that no sum depends on anything else.
+/// Terms of one body (inertia, loads, damping) are added up body by body, in one loop for all of them. A term that couples bodies (barrier,
+/// friction) sees all bodies at once, so that its inner loops stay its own. The order is always the lists', so that no sum depends on
+/// anything else.
 #pragma once
 
 #include <vector>
@@ -24,12 +24,6 @@ struct ValueAt {
     const contact::ContactSet& contacts;  ///< at `poses`
 };
 
-/// Potentials times the problem's weight [kg m^2].
-struct TermValues {
-    std::vector<double> bodies;     ///< [body]: what the terms of one body add up to
-    std::vector<double> couplings;  ///< one for each term that couples bodies; infinity where it is not defined
-};
-
 /// Where derivatives are wanted.
 struct DerivativesAt {
     const StepProblem& problem;
@@ -40,12 +34,15 @@ struct DerivativesAt {
 
 /// Sums over the terms, in the potential's units. The curvature of the rotations follows from the gradients (kinematics/tangent_system.hpp)
 /// and is no term's business; the Hessians are in tangent coordinates (q, phi).
-struct TermDerivatives {
-    std::vector<kinematics::PoseGradient> own, coupling;  ///< [body]
-    std::vector<Matrix6> own_hessian;                     ///< [body]
-    kinematics::BlockHessian coupling_hessian;            ///< off-diagonal blocks are inserted as needed and stay sorted
-    std::vector<Vector3> chart_gradient;                  ///< [body]: of what is linear in theta itself
-    std::vector<double> own_magnitude;                    ///< [body]: of the forces' parts in `own`, in gradient units per metre
+struct BodyDerivatives {
+    kinematics::PoseGradient gradient;
+    Matrix6 hessian = Matrix6::Zero();         ///< of no use where the kind is `none`
+    Vector3 chart_gradient = Vector3::Zero();  ///< of what is linear in theta itself
+    double magnitude = 0;                      ///< of the forces' parts, in gradient units per metre
+};
+struct CouplingDerivatives {
+    std::vector<kinematics::PoseGradient> gradient;  ///< [body]
+    kinematics::BlockHessian hessian;                ///< off-diagonal blocks are inserted as needed and stay sorted
 };
 
 /// A step that is solved.
@@ -56,10 +53,18 @@ struct SolvedStep {
     const History& end;                          ///< what the next step starts from
 };
 
-struct Term {
+/// Potentials are times the problem's weight [kg m^2].
+struct BodyTerm {
     const char* name;
-    void (*add_value)(const ValueAt& at, TermValues& values);
-    void (*add_derivatives)(const DerivativesAt& at, TermDerivatives& derivatives);
+    void (*add_value)(const ValueAt& at, std::size_t body, double& value);
+    void (*add_derivatives)(const DerivativesAt& at, std::size_t body, BodyDerivatives& derivatives);
+    void (*add_report)(const SolvedStep& step, TermReport& report);
+};
+
+struct CouplingTerm {
+    const char* name;
+    double (*value)(const ValueAt& at);  ///< infinity where it is not defined
+    void (*add_derivatives)(const DerivativesAt& at, CouplingDerivatives& derivatives);
     void (*add_report)(const SolvedStep& step, TermReport& report);
 };
 

@@ -45,11 +45,20 @@ constexpr Series b_g_series = make_series(2, 1);
 constexpr Series b_h_series = make_series(2, 2);
 constexpr Series c_series = make_series(3, 0);
 
+/// Most turns of a step are small: up to here six terms leave less than 1e-20 of the first.
+constexpr double few_terms_limit = 1.0 / 64;
+constexpr int few_terms = 6;
+
 template <int terms>
-double evaluate(const Series& series, double z) {
+double sum_of(const Series& series, double z) {
     double sum = series[terms - 1];
     for (int i = terms - 2; i >= 0; --i) sum = series[static_cast<std::size_t>(i)] + z * sum;
     return sum;
+}
+
+template <int terms>
+double evaluate(const Series& series, double z) {
+    return z <= few_terms_limit ? sum_of<few_terms>(series, z) : sum_of<terms>(series, z);
 }
 
 /// R = cosine I + a [theta] + b theta theta^T, and what differentiation makes of a and b: f_g = f'/x, f_h = f_g'/x.

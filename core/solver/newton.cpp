@@ -40,11 +40,12 @@ constexpr double settled_motion = 1e-13;      // of the scene's size: that
 constexpr double friction_resolution = 0.1;   // of eps_v
 constexpr double usable_residual = 1e-8;      // of a solve to rounding: the adjoint's accuracy
 constexpr double rounding_of_places = 1e-14;  // of the scene's size
+constexpr int bodies_a_loop = 32;             // that a thread takes
 
 class Minimiser {
 public:
-    Minimiser(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
-        : problem_(std::move(problem)),
+    Minimiser(energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace, const NewtonOptions& options)
+        : problem_(problem),
           model_(*problem_.model),
           targets_(targets),
           workspace_(workspace),
@@ -70,7 +71,7 @@ public:
         } while (frictional_ && another_round());
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
-        result_.friction = std::move(problem_.friction);
+        result_.friction = std::exchange(problem_.friction, {});
         if (workspace_.rows) result_.multipliers = workspace_.rows->multipliers();
         return std::move(result_);
     }
@@ -78,6 +79,7 @@ public:
 private:
     Iterate start_of_step() const {
         Iterate start;
+        start.points.reserve(problem_.poses_t0.size());
         for (const Pose& pose : problem_.poses_t0) start.points.push_back({pose.position, Vector3::Zero()});
         start.poses = problem_.poses_t0;
         return start;
@@ -345,30 +347,48 @@ private:
     }
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
-        constexpr int bodies_at_once = 32;  // that a thread takes
         std::vector<PathSegment> segments(at_.points.size());
-        base::parallel_for(static_cast<int>(end.size()), bodies_at_once,
+        base::parallel_for(static_cast<int>(end.size()), bodies_a_loop,
                            [&](int i) { segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end[i]); });
         return segments;
     }
 
-    std::vector<ChartPoint> moved_by(const Direction& direction, double fraction) const {
-        return moved(at_.points, direction, fraction, targets_, workspace_.dofs);
+    // Where the fraction of a step leads.
+    Iterate moved_by(const Direction& direction, double fraction) const {
+        Iterate out;
+        out.points.resize(at_.points.size());
+        out.poses.resize(at_.points.size());
+        base::parallel_for(static_cast<int>(out.points.size()), bodies_a_loop, [&](int i) {
+            out.points[i] = moved(i, at_.points, direction, fraction, targets_, workspace_.dofs);
+            out.poses[i] = pose_of(problem_, i, out.points[i]);
+        });
+        return out;
+    }
+
+    // The whole way.
+    std::vector<PathSegment> segments_along(const Direction& direction) const {
+        std::vector<PathSegment> segments(at_.points.size());
+        base::parallel_for(static_cast<int>(segments.size()), bodies_a_loop, [&](int i) {
+            const ChartPoint end = moved(i, at_.points, direction, 1, targets_, workspace_.dofs);
+            segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end);
+        });
+        return segments;
     }
 
     // How far all bodies may go.
     contact::SafeStep safe_step(const Direction& direction) {
-        const std::vector<PathSegment> segments = segments_to(moved_by(direction, 1));
+        const std::vector<PathSegment> segments = segments_along(direction);
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
         return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts);
     }
 
     // From the straight step onto the rows, and whether the way there is clear too.
-    bool reach_by_rows(const Direction& direction, double fraction, std::vector<ChartPoint>& points) {
+    bool reach_by_rows(const Direction& direction, double fraction, Iterate& trial) {
         const double left = 1 - fraction * direction.drive;
-        if (!workspace_.rows->put_on_rows(problem_, workspace_.dofs, left, points)) return false;
-        const std::vector<PathSegment> segments = segments_to(points);
+        if (!workspace_.rows->put_on_rows(problem_, workspace_.dofs, left, trial.points)) return false;
+        trial.poses = poses_of(problem_, trial.points);
+        const std::vector<PathSegment> segments = segments_to(trial.points);
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
         return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts).fraction == 1;
@@ -382,9 +402,8 @@ private:
         const double slope = direction.slope - drive_.penalty() * remaining;
         double fraction = 2 * limiting_.fraction;
         while ((fraction *= 0.5) > smallest_step) {
-            Iterate trial{moved_by(direction, fraction), {}, {}};
-            if (workspace_.rows && !reach_by_rows(direction, fraction, trial.points)) continue;
-            trial.poses = poses_of(problem_, trial.points);
+            Iterate trial = moved_by(direction, fraction);
+            if (workspace_.rows && !reach_by_rows(direction, fraction, trial)) continue;
             find_contacts(trial);
             const double value = potential(trial);
             const double change = value - value_ - drive_.penalty() * fraction * remaining;
@@ -434,7 +453,7 @@ private:
                                  workspace_.rows ? &*workspace_.rows : nullptr, &at_.points, &at_.poses});
     }
 
-    energy::StepProblem problem_;  // the friction lag changes from round to round
+    energy::StepProblem& problem_;  // the friction lag changes from round to round
     const model::Model& model_;
     const std::vector<Vector6>& targets_;
     NewtonWorkspace& workspace_;
@@ -465,9 +484,9 @@ const char* to_string(SolvePhase phase) {
 
 double candidate_allowance(const model::Model& model) { return model.dhat; }
 
-NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+NewtonResult minimise(energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options) {
-    return Minimiser(std::move(problem), targets, workspace, options).run();
+    return Minimiser(problem, targets, workspace, options).run();
 }
 
 }  // namespace fettle::core::solver

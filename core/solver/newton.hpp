@@ -59,8 +59,9 @@ struct NewtonResult {
 /// without, [m].
 double candidate_allowance(const model::Model& model);
 
+/// @param problem  its friction is lagged here, and left in the result: the problem has none after
 /// @param targets  per body: chart coordinates (q, theta) of the prescribed DOFs at the end of the step (free entries are ignored).
-NewtonResult minimise(energy::StepProblem problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
+NewtonResult minimise(energy::StepProblem& problem, const std::vector<Vector6>& targets, NewtonWorkspace& workspace,
                       const NewtonOptions& options);
 
 }  // namespace fettle::core::solver

@@ -220,32 +220,23 @@ void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direc
     scatter(workspace.dofs, workspace.linear.solve(rhs), direction.step);
 }
 
-// A nearly singular Hessian sends bodies round the world, where every search is dear and nothing is gained.
-void shorten(const StepProblem& problem, Direction& direction) {
-    const auto least_share = [&](int begin, int end) {
-        double fraction = 1;
-        for (int i = begin; i < end; ++i) {
-            const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
-            const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
-            const double shift = std::max(largest_shift * problem.model->diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
-            const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
-            fraction = std::min(fraction, shift / std::max(shift, step.head<3>().norm()));
-            fraction = std::min(fraction, turn / std::max(turn, step.tail<3>().norm()));
-        }
-        return fraction;
-    };
-    const double fraction = base::ordered_reduce(static_cast<int>(direction.step.size()), bodies_a_pass, 1.0, least_share,
-                                                 [](double so_far, double piece) { return std::min(so_far, piece); });
-    if (fraction == 1) return;
-    for (Vector6& step : direction.step) step *= fraction;
-    direction.drive *= fraction;
+// Of a body's step, what it may take of it: a nearly singular Hessian sends bodies round the world, where every search is dear and nothing
+// is gained.
+double allowed_share(const StepProblem& problem, const Direction& direction, std::size_t i) {
+    const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
+    const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];
+    const double shift = std::max(largest_shift * problem.model->diagonal, 2 * (stride.col(3).norm() + remaining.head<3>().norm()));
+    const double turn = std::max(largest_turn, 2 * (stride.leftCols<3>().norm() + remaining.tail<3>().norm()));
+    return std::min(shift / std::max(shift, step.head<3>().norm()), turn / std::max(turn, step.tail<3>().norm()));
 }
 
-// Slope, motion, residual and rounding.
-void measure(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, const std::vector<ChartPoint>& points,
-             Direction& direction) {
+// Slope, motion, residual and rounding of the step as it is. @return what all bodies may take of it: if less than the whole, it is to be
+// shortened, and measured again.
+double measure(const StepProblem& problem, const ChartDerivatives& d, const FreeDofs& dofs, const std::vector<ChartPoint>& points,
+               Direction& direction) {
+    const model::Model& model = *problem.model;
     struct Shares {
-        double slope = 0, motion = 0, rounding = 0;
+        double slope = 0, motion = 0, rounding = 0, allowed = 1;
         ResidualShare residual;
     };
     std::vector<Shares> shares(points.size());
@@ -254,17 +245,28 @@ void measure(const ChartDerivatives& d, const model::Model& model, const FreeDof
         const Vector6& step = direction.step[i];
         const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
         shares[i] = {d.gradient[i].dot(step), solved_for ? motion_of(model.bodies[i], step) : 0,
-                     rounding_share(d, model.bodies[i], points[i], i), residual_share(d, model, dofs, i)};
+                     rounding_share(d, model.bodies[i], points[i], i), allowed_share(problem, direction, i),
+                     residual_share(d, model, dofs, i)};
     });
-    ResidualShare residual;
+    Shares sum;
     for (const Shares& share : shares) {
-        direction.slope += share.slope;
-        direction.motion = std::max(direction.motion, share.motion);
-        direction.rounding += share.rounding;
-        residual.square += share.residual.square;
-        residual.magnitude += share.residual.magnitude;
+        sum.slope += share.slope;
+        sum.motion = std::max(sum.motion, share.motion);
+        sum.rounding += share.rounding;
+        sum.allowed = std::min(sum.allowed, share.allowed);
+        sum.residual.square += share.residual.square;
+        sum.residual.magnitude += share.residual.magnitude;
     }
-    direction.residual = residual_of(residual);
+    direction.slope = sum.slope;
+    direction.motion = sum.motion;
+    direction.rounding = sum.rounding;
+    direction.residual = residual_of(sum.residual);
+    return sum.allowed;
+}
+
+void shorten(Direction& direction, double share) {
+    for (Vector6& step : direction.step) step *= share;
+    direction.drive *= share;
 }
 
 }  // namespace
@@ -285,9 +287,11 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     if (workspace.rows) direction.remaining_norm += workspace.rows->unmet_norm();
     direction.drive = direction.remaining_norm > 0 ? drive : 1;
     solve_for_step(d, workspace, direction);
-    shorten(problem, direction);
     add_row_forces(model, workspace, d);
-    measure(d, model, dofs, at.points, direction);
+    if (const double share = measure(problem, d, dofs, at.points, direction); share != 1) {
+        shorten(direction, share);
+        measure(problem, d, dofs, at.points, direction);
+    }
     if (workspace.rows) {
         direction.slope -= workspace.rows->work_of_unmet(direction.drive);
         direction.rounding += workspace.rows->work_of_rounding();
@@ -297,17 +301,13 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
     return direction;
 }
 
-std::vector<ChartPoint> moved(const std::vector<ChartPoint>& points, const Direction& direction, double fraction,
-                              const std::vector<Vector6>& targets, const FreeDofs& dofs) {
-    std::vector<ChartPoint> out(points.size());
-    base::parallel_for(static_cast<int>(points.size()), bodies_a_pass, [&](int i) {
-        Vector6 y = coordinates(points[i]) + fraction * direction.step[i];
-        if (fraction == 1 && direction.drive == 1)
-            for (int k = 0; k < 6; ++k)
-                if (dofs.index[i][k] < 0) y[k] = targets[i][k];
-        out[i] = {y.head<3>(), y.tail<3>()};
-    });
-    return out;
+ChartPoint moved(int i, const std::vector<ChartPoint>& points, const Direction& direction, double fraction,
+                 const std::vector<Vector6>& targets, const FreeDofs& dofs) {
+    Vector6 y = coordinates(points[i]) + fraction * direction.step[i];
+    if (fraction == 1 && direction.drive == 1)
+        for (int k = 0; k < 6; ++k)
+            if (dofs.index[i][k] < 0) y[k] = targets[i][k];
+    return {y.head<3>(), y.tail<3>()};
 }
 
 double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {

@@ -52,9 +52,9 @@ struct HessianChoice {
 std::optional<Direction> newton_direction(const energy::StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
                                           const HessianChoice& hessian, double drive, NewtonWorkspace& workspace);
 
-/// points + fraction * step; a whole step that takes all that remains puts the prescribed coordinates on their targets, bit for bit.
-std::vector<kinematics::ChartPoint> moved(const std::vector<kinematics::ChartPoint>& points, const Direction& direction, double fraction,
-                                          const std::vector<Vector6>& targets, const FreeDofs& dofs);
+/// points[body] + fraction * step; a whole step that takes all that remains puts the prescribed coordinates on their targets, bit for bit.
+kinematics::ChartPoint moved(int body, const std::vector<kinematics::ChartPoint>& points, const Direction& direction, double fraction,
+                             const std::vector<Vector6>& targets, const FreeDofs& dofs);
 
 /// NewtonResult::residual at this point.
 double residual_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);

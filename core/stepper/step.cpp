@@ -90,8 +90,8 @@ struct DrivenStep {
 };
 
 // Through the nodes of the prescribed path, the last of which is the step's end.
-DrivenStep drive(const model::Model& model, const StepState& state, const energy::StepProblem& problem,
-                 const std::vector<PrescribedNode>& way, solver::NewtonWorkspace& workspace, const solver::NewtonOptions& options) {
+DrivenStep drive(const model::Model& model, const StepState& state, energy::StepProblem& problem, const std::vector<PrescribedNode>& way,
+                 solver::NewtonWorkspace& workspace, const solver::NewtonOptions& options) {
     DrivenStep out;
     for (std::size_t k = 0; k < way.size(); ++k) {
         const bool last = k + 1 == way.size();
@@ -100,7 +100,12 @@ DrivenStep drive(const model::Model& model, const StepState& state, const energy
         stretch.to_rounding = options.to_rounding && last;
         stretch.keep_rounds = options.keep_rounds && last;
         const int iterations = out.solved.iterations, rounds = out.solved.friction_rounds;
-        out.solved = solver::minimise(last ? problem : towards(problem, way[k].fraction), way[k].targets, workspace, stretch);
+        if (last) {
+            out.solved = solver::minimise(problem, way[k].targets, workspace, stretch);
+        } else {
+            energy::StepProblem part = towards(problem, way[k].fraction);
+            out.solved = solver::minimise(part, way[k].targets, workspace, stretch);
+        }
         out.solved.iterations += iterations;
         out.solved.friction_rounds += rounds;
         if (out.solved.status != solver::NewtonStatus::converged) return out;
@@ -226,11 +231,14 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
                      solved.shift,
                      0,
                      0};
-    result.state = state;
     if (result.status == SimulationStatus::ok && is_quasi_static(model)) judge_holding(problem, solved, result);
-    if (result.status != SimulationStatus::ok) return result;
+    const auto failed = [&] {
+        result.state = state;
+        return std::move(result);
+    };
+    if (result.status != SimulationStatus::ok) return failed();
     result.path = std::move(driven.path);
-    if (!model.mechanism.rows.empty() && !judge_joints(problem, solved, result)) return result;
+    if (!model.mechanism.rows.empty() && !judge_joints(problem, solved, result)) return failed();
     result.state.time = state.time + model.timestep;
     result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     result.state.history = energy::advanced(model, state.history, problem, solved.poses);

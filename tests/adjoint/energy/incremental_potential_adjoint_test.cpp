@@ -3,16 +3,18 @@
 
 #include <catch2/catch.hpp>
 #include <string>
+#include <vector>
 
 #include "fettle/core/energy/incremental_potential.hpp"
 
 namespace fettle::adjoint::energy::incremental_potential_adjoint_test {
 
 TEST_CASE("each term has its adjoint, in the same order", "[adjoint][energy]") {
-    const auto forward = fettle::core::energy::terms();
-    const auto backward = fettle::adjoint::energy::term_adjoints();
-    REQUIRE(forward.size() == backward.size());
-    for (std::size_t k = 0; k < forward.size(); ++k) CHECK(std::string(forward[k]->name) == backward[k]->name);
+    std::vector<std::string> forward, backward;
+    for (const core::energy::BodyTerm* term : core::energy::body_terms()) forward.emplace_back(term->name);
+    for (const core::energy::CouplingTerm* term : core::energy::coupling_terms()) forward.emplace_back(term->name);
+    for (const TermAdjoint* term : term_adjoints()) backward.emplace_back(term->name);
+    CHECK(forward == backward);
 }
 
 }  // namespace fettle::adjoint::energy::incremental_potential_adjoint_test

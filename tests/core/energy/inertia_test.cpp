@@ -105,28 +105,37 @@ TEST_CASE("each term's gradient is that of its value, and held bodies have none 
     };
     const VectorX at = VectorX::LinSpaced(6, -0.2, 0.3);
     const auto poses = poses_of(problem, points_at(at));
-    for (const Term* term : terms()) {
-        INFO(term->name);
-        const auto value = [&](const VectorX& d) {
-            TermValues values{{0.0, 0.0}, {}};
-            const auto points = points_at(d);
-            const auto at_points = poses_of(problem, points);
-            term->add_value({problem, points, at_points, {}}, values);
-            CHECK(values.bodies[1] == 0);
-            double sum = values.bodies[0];
-            for (const double coupling : values.couplings) sum += coupling;
-            return sum;
-        };
-        TermDerivatives d{std::vector<kinematics::PoseGradient>(2), std::vector<kinematics::PoseGradient>(2),
-                          std::vector<Matrix6>(2, Matrix6::Zero()), {},
-                          std::vector<Vector3>(2, Vector3::Zero()), {0.0, 0.0}};
-        d.coupling_hessian.diagonal.assign(2, Matrix6::Zero());
-        term->add_derivatives({problem, poses, {}, contact::HessianKind::exact}, d);
-        Vector6 gradient = tangent_gradient(d.own[0]) + tangent_gradient(d.coupling[0]);
-        gradient.tail<3>() = kinematics::left_jacobian(at.tail<3>()).transpose() * gradient.tail<3>() + d.chart_gradient[0];
+    const auto check = [&](const char* name, const auto& value, Vector6 gradient, const Vector3& chart_gradient) {
+        INFO(name);
+        gradient.tail<3>() = kinematics::left_jacobian(at.tail<3>()).transpose() * gradient.tail<3>() + chart_gradient;
         CHECK(check_gradient(value, at, gradient).relative_error < 1e-7);
-        CHECK(d.own[1].force == Vector3::Zero());
-        CHECK(d.own_magnitude[1] == 0);
+    };
+    const DerivativesAt here{problem, poses, {}, contact::HessianKind::exact};
+    for (const BodyTerm* term : body_terms()) {
+        const auto value_of = [&](const VectorX& d, std::size_t body) {
+            const auto points = points_at(d);
+            double value = 0;
+            term->add_value({problem, points, poses_of(problem, points), {}}, body, value);
+            return value;
+        };
+        std::array<BodyDerivatives, 2> d;
+        for (const std::size_t body : {0, 1}) term->add_derivatives(here, body, d[body]);
+        check(
+            term->name, [&](const VectorX& x) { return value_of(x, 0); }, tangent_gradient(d[0].gradient), d[0].chart_gradient);
+        CHECK(value_of(at, 1) == 0);
+        CHECK(d[1].gradient.force == Vector3::Zero());
+        CHECK(d[1].magnitude == 0);
+    }
+    for (const CouplingTerm* term : coupling_terms()) {
+        const auto value = [&](const VectorX& d) {
+            const auto points = points_at(d);
+            return term->value({problem, points, poses_of(problem, points), {}});
+        };
+        CouplingDerivatives d;
+        d.gradient.resize(2);
+        d.hessian.diagonal.assign(2, Matrix6::Zero());
+        term->add_derivatives(here, d);
+        check(term->name, value, tangent_gradient(d.gradient[0]), Vector3::Zero());
     }
 }
 

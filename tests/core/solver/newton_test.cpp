@@ -58,7 +58,8 @@ std::vector<Vector6> targets_of(const model::Model& model) {
 NewtonResult solve(const model::Model& model, NewtonOptions options = {}) {
     if (options.velocity_tolerance == 0) options.velocity_tolerance = model.velocity_tolerance;
     NewtonWorkspace workspace(model);
-    return minimise(energy::step_problem(model, energy::start_history(model), model.kappa), targets_of(model), workspace, options);
+    energy::StepProblem problem = energy::step_problem(model, energy::start_history(model), model.kappa);
+    return minimise(problem, targets_of(model), workspace, options);
 }
 
 }  // namespace
