@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
@@ -11,21 +12,6 @@ namespace fettle::core::contact {
 namespace {
 
 using kinematics::Pose;
-
-bool is_finite(const Pose& pose) { return pose.rotation.allFinite() && pose.position.allFinite(); }
-
-double gap_squared(const Vector3& low_a, const Vector3& high_a, const Vector3& low_b, const Vector3& high_b) {
-    return (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(0.0).squaredNorm();
-}
-
-// Squared distance of the two primitives' boxes. Of finite vertices.
-template <PairType type>
-double box_distance_squared(const PairVertices& x) {
-    if constexpr (type == PairType::point_triangle)
-        return gap_squared(x[0], x[0], x[1].cwiseMin(x[2]).cwiseMin(x[3]), x[1].cwiseMax(x[2]).cwiseMax(x[3]));
-    else
-        return gap_squared(x[0].cwiseMin(x[1]), x[0].cwiseMax(x[1]), x[2].cwiseMin(x[3]), x[2].cwiseMax(x[3]));
-}
 
 // Null where nothing of the body is flat enough to be left out beside the activation distance.
 const geometry::FlatFeatures* flat_features_of(const model::Model& model, const model::Body& body) {
@@ -42,9 +28,12 @@ bool is_beyond(double distance_squared, double limit_squared) {
 class NearSearch {
 public:
     NearSearch(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, const WorldVertices& vertices)
-        : model_(model), list_(list), vertices_(vertices), activation_(model.dmin + model.dhat) {
+        : model_(model),
+          list_(list),
+          a_{model.bodies[list.a], vertices.of(list.a)},
+          b_{model.bodies[list.b], vertices.of(list.b)},
+          activation_(model.dmin + model.dhat) {
         reach_ = activation_ + motion_since(model, list, poses);
-        finite_ = is_finite(poses[list.a]) && is_finite(poses[list.b]);
     }
 
     /// @return the least squared distance
@@ -52,66 +41,77 @@ public:
         near.clear();
         for (const auto& [v, t, distance] : list_.vertex_triangle) {
             if (distance > reach_) break;
-            add_vertex(list_.a, v, list_.b, t, near.on_second);
+            add_vertex(a_, v, b_, t, near.on_second);
         }
         for (const auto& [t, v, distance] : list_.triangle_vertex) {
             if (distance > reach_) break;
-            add_vertex(list_.b, v, list_.a, t, near.on_first);
+            add_vertex(b_, v, a_, t, near.on_first);
         }
         add_edges(near.edges);
         return least_;
     }
 
 private:
-    // Is what is at `x` near? Then it is appended, and the rest is the caller's.
-    template <PairType type>
-    ContactPair* add(const PairVertices& x, std::vector<ContactPair>& out) {
-        constexpr double margin = 1 + 1e-9;  // of the boxes' squared distance, for rounding
-        if (finite_ && box_distance_squared<type>(x) > margin * activation_ * activation_) return nullptr;
-        const geometry::ClosestPoints closest = closest_points(type, x);
-        if (is_beyond(closest.distance_squared, activation_ * activation_)) return nullptr;
-        least_ = least_of(least_, closest.distance_squared);
+    struct Side {
+        const model::Body& body;
+        WorldVertices::OfBody vertex;
+    };
+
+    // Most candidates within reach are near: they are worked out in the place where they stay, as copying takes as long as the arithmetic.
+    static ContactPair& begin(PairType type, std::vector<ContactPair>& out) {
         ContactPair& pair = out.emplace_back();
         pair.type = type;
-        pair.x = x;
-        pair.closest = closest;
-        return &pair;
+        return pair;
     }
 
-    void add_vertex(int vertex_body, int v, int face_body, int t, std::vector<ContactPair>& out) {
-        const model::Body& vertex_of = model_.bodies[vertex_body];
-        const geometry::Triangle& corners = model_.bodies[face_body].hierarchy->faces()[t];
-        ContactPair* pair = add<PairType::point_triangle>({vertices_(vertex_body, v), vertices_(face_body, corners[0]),
-                                                           vertices_(face_body, corners[1]), vertices_(face_body, corners[2])},
-                                                          out);
-        if (pair == nullptr) return;
-        pair->face = t;
-        pair->vertex = {v, corners[0], corners[1], corners[2]};
-        if (model_.area_weighted) pair->weight = 0.5 * vertex_of.vertex_area[v];
+    // Of the last one, whose vertices are there. Is it near? Else it is removed.
+    bool work_out(std::vector<ContactPair>& out) {
+        ContactPair& pair = out.back();
+        new (&pair.closest) geometry::ClosestPoints(closest_points(pair.type, pair.x));
+        const double distance_squared = pair.closest.distance_squared;
+        if (is_beyond(distance_squared, activation_ * activation_)) {
+            out.pop_back();
+            return false;
+        }
+        least_ = least_of(least_, distance_squared);
+        return true;
+    }
+
+    void add_vertex(const Side& point, int v, const Side& face, int t, std::vector<ContactPair>& out) {
+        const geometry::Triangle& corners = face.body.hierarchy->faces()[t];
+        ContactPair& pair = begin(PairType::point_triangle, out);
+        pair.x[0] = point.vertex(v);
+        for (std::size_t k = 0; k < 3; ++k) pair.x[k + 1] = face.vertex(corners[k]);
+        if (!work_out(out)) return;
+        pair.face = t;
+        pair.vertex = {v, corners[0], corners[1], corners[2]};
+        if (model_.area_weighted) pair.weight = 0.5 * point.body.vertex_area[v];
     }
 
     // Edges within plane faces are no contacts of their own: an edge that nears a plane face nears it with an end, or nears its border.
     void add_edges(std::vector<ContactPair>& out) {
-        const model::Body &a = model_.bodies[list_.a], &b = model_.bodies[list_.b];
+        const model::Body &a = a_.body, &b = b_.body;
         const geometry::FlatFeatures *flat_a = flat_features_of(model_, a), *flat_b = flat_features_of(model_, b);
         for (const auto& [ea, eb, distance] : list_.edge_edge) {
             if (distance > reach_) break;
             if ((flat_a && flat_a->is_flat_edge(ea)) || (flat_b && flat_b->is_flat_edge(eb))) continue;
             const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
-            ContactPair* pair = add<PairType::edge_edge>(
-                {vertices_(list_.a, va[0]), vertices_(list_.a, va[1]), vertices_(list_.b, vb[0]), vertices_(list_.b, vb[1])}, out);
-            if (pair == nullptr) continue;
-            pair->vertex = {va[0], va[1], vb[0], vb[1]};
-            pair->mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
-            if (model_.area_weighted) pair->weight = 0.5 * std::min(a.edge_area[ea], b.edge_area[eb]);
+            ContactPair& pair = begin(PairType::edge_edge, out);
+            for (std::size_t k = 0; k < 2; ++k) {
+                pair.x[k] = a_.vertex(va[k]);
+                pair.x[k + 2] = b_.vertex(vb[k]);
+            }
+            if (!work_out(out)) continue;
+            pair.vertex = {va[0], va[1], vb[0], vb[1]};
+            pair.mollifier_eps = mollifier_scale * a.edge_length_squared[ea] * b.edge_length_squared[eb];
+            if (model_.area_weighted) pair.weight = 0.5 * std::min(a.edge_area[ea], b.edge_area[eb]);
         }
     }
 
     const model::Model& model_;
     const BodyPairCandidates& list_;
-    const WorldVertices& vertices_;
+    Side a_, b_;
     double activation_, reach_ = 0;
-    bool finite_ = false;
     double least_ = std::numeric_limits<double>::infinity();
 };
 

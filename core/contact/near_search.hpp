@@ -16,10 +16,22 @@ class WorldVertices {
 public:
     WorldVertices(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
-    Vector3 operator()(int body, int v) const {
-        const int begin = begin_[static_cast<std::size_t>(body)];
-        if (begin >= 0) return vertices_[static_cast<std::size_t>(begin + v)];
-        return world_position(poses_[static_cast<std::size_t>(body)], model_.bodies[static_cast<std::size_t>(body)].mesh.vertices.col(v));
+    /// Those of one body.
+    class OfBody {
+    public:
+        Vector3 operator()(int v) const { return placed_ != nullptr ? placed_[v] : world_position(pose_, mesh_.vertices.col(v)); }
+
+    private:
+        friend class WorldVertices;
+        OfBody(const Vector3* placed, const kinematics::Pose& pose, const geometry::Mesh& mesh)
+            : placed_(placed), pose_(pose), mesh_(mesh) {}
+        const Vector3* placed_;  // null: not there
+        const kinematics::Pose& pose_;
+        const geometry::Mesh& mesh_;
+    };
+    OfBody of(int body) const {
+        const auto i = static_cast<std::size_t>(body);
+        return {begin_[i] < 0 ? nullptr : vertices_.data() + begin_[i], poses_[i], model_.bodies[i].mesh};
     }
 
 private:
