@@ -30,29 +30,31 @@ Feature closest_feature(const ContactPair& pair) {
     return feature;
 }
 
-ContactPair on_feature(const ContactPair& pair, const Feature& feature) {
-    ContactPair out = pair;
-    if (feature[2] >= 0) return out;
-    out.face = -1;
+void put_on_feature(const Feature& feature, ContactPair& pair) {
+    if (feature[2] >= 0) return;
+    geometry::ClosestPoints& c = pair.closest;
+    const auto vertex = pair.vertex;
+    const PairVertices x = pair.x;
+    const auto weight = c.weight;
+    const auto free_weight = c.free_weight;
+    pair.face = -1;
     const std::array<int, 3> corners{feature[0], feature[1] < 0 ? feature[0] : feature[1], feature[1] < 0 ? feature[0] : feature[1]};
-    auto& c = out.closest;
     for (int k = 1; k < 4; ++k) {
         c.weight[k] = 0;
         for (auto& free : c.free_weight) free[k] = 0;
-        out.vertex[k] = corners[k - 1];
+        pair.vertex[k] = corners[k - 1];
     }
     for (int k = 1; k < 4; ++k) {
-        const int to = pair.vertex[k] == feature[0] ? 1 : pair.vertex[k] == feature[1] ? 2 : 0;
+        const int to = vertex[k] == feature[0] ? 1 : vertex[k] == feature[1] ? 2 : 0;
         if (to == 0) continue;
-        out.x[to] = pair.x[k];
-        c.weight[to] += pair.closest.weight[k];
-        for (std::size_t a = 0; a < 2; ++a) c.free_weight[a][to] += pair.closest.free_weight[a][k];
+        pair.x[to] = x[k];
+        c.weight[to] += weight[k];
+        for (std::size_t a = 0; a < 2; ++a) c.free_weight[a][to] += free_weight[a][k];
     }
-    if (feature[1] < 0) out.x[2] = out.x[1];
-    out.x[3] = out.x[2];
+    if (feature[1] < 0) pair.x[2] = pair.x[1];
+    pair.x[3] = pair.x[2];
     const bool was_elsewhere = c.free_count != (feature[1] < 0 ? 0 : 1);
-    if (was_elsewhere) c = closest_points(out.type, out.x);
-    return out;
+    if (was_elsewhere) c = closest_points(pair.type, pair.x);
 }
 
 int closest_end(const ContactPair& pair) {
@@ -61,22 +63,26 @@ int closest_end(const ContactPair& pair) {
     return end >= 0 && edge_cross_squared(pair.x) < pair.mollifier_eps ? -1 : end;
 }
 
-ContactPair on_end(const ContactPair& pair, int end) {
+void put_on_end(int end, ContactPair& pair) {
     const double sign = end < 2 ? 1 : -1;  // the vertex's body comes first
     const std::array<int, 3> from{end, opposite(end), opposite(end) + 1};
-    ContactPair out = pair;
-    out.type = PairType::point_triangle;
-    auto& c = out.closest;
+    const Feature feature = feature_opposite(pair, end);
+    const auto vertex = pair.vertex;
+    const PairVertices x = pair.x;
+    geometry::ClosestPoints& c = pair.closest;
+    const auto weight = c.weight;
+    const auto free_weight = c.free_weight;
+    pair.type = PairType::point_triangle;
     for (int k = 0; k < 4; ++k) {
         const int i = from[std::min(k, 2)];
-        out.vertex[k] = pair.vertex[i];
-        out.x[k] = pair.x[i];
-        c.weight[k] = k == 0 ? 1 : k == 3 ? 0 : sign * pair.closest.weight[i];
-        for (std::size_t a = 0; a < 2; ++a) c.free_weight[a][k] = k == 0 || k == 3 ? 0 : sign * pair.closest.free_weight[a][i];
+        pair.vertex[k] = vertex[i];
+        pair.x[k] = x[i];
+        c.weight[k] = k == 0 ? 1 : k == 3 ? 0 : sign * weight[i];
+        for (std::size_t a = 0; a < 2; ++a) c.free_weight[a][k] = k == 0 || k == 3 ? 0 : sign * free_weight[a][i];
     }
     c.difference *= sign;
-    out.mollifier_eps = 0;
-    return on_feature(out, feature_opposite(pair, end));
+    pair.mollifier_eps = 0;
+    put_on_feature(feature, pair);
 }
 
 Feature feature_opposite(const ContactPair& pair, int end) {
@@ -87,12 +93,10 @@ Feature feature_opposite(const ContactPair& pair, int end) {
     return {std::min(low, high), std::max(low, high), -1};
 }
 
-ContactPair swapped(const ContactPair& pair) {
-    ContactPair out = pair;
-    out.x = {pair.x[1], pair.x[0], pair.x[0], pair.x[0]};
-    out.vertex = {pair.vertex[1], pair.vertex[0], pair.vertex[0], pair.vertex[0]};
-    out.closest.difference = -pair.closest.difference;
-    return out;
+void swap_bodies(ContactPair& pair) {
+    pair.x = {pair.x[1], pair.x[0], pair.x[0], pair.x[0]};
+    pair.vertex = {pair.vertex[1], pair.vertex[0], pair.vertex[0], pair.vertex[0]};
+    pair.closest.difference = -pair.closest.difference;
 }
 
 }  // namespace fettle::core::contact

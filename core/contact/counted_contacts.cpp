@@ -125,18 +125,20 @@ private:
 
     // All that the counting goes by, but where absent elements are.
     void find_key(const NearPairs& near) {
-        key_.clear();
+        key_.resize(2 + 5 * (near.on_second.size() + near.on_first.size()) + 7 * near.edges.size());
+        auto at = key_.begin();
+        const auto put = [&at](std::initializer_list<int> numbers) { at = std::copy(numbers.begin(), numbers.end(), at); };
         for (const std::vector<ContactPair>* pairs : {&near.on_second, &near.on_first}) {
-            key_.push_back(static_cast<int>(pairs->size()));
+            put({static_cast<int>(pairs->size())});
             for (const ContactPair& pair : *pairs) {
                 const Feature feature = closest_feature(pair);
-                key_.insert(key_.end(), {pair.vertex[0], pair.face, feature[0], feature[1], feature[2]});
+                put({pair.vertex[0], pair.face, feature[0], feature[1], feature[2]});
             }
         }
         for (const ContactPair& pair : near.edges) {
             const int end = closest_end(pair);
             const Feature feature = end < 0 ? Feature{-1, -1, -1} : feature_opposite(pair, end);
-            key_.insert(key_.end(), {pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3], end, feature[0], feature[1]});
+            put({pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3], end, feature[0], feature[1]});
         }
     }
 
@@ -309,18 +311,15 @@ private:
     static void emit_contact(const Contact& contact, const NearPairs& near, std::vector<ContactPair>& forward,
                              std::vector<ContactPair>& backward) {
         std::vector<ContactPair>& out = contact.kind == Kind::of_second ? backward : forward;
-        out.push_back(pair_of(contact, near));
-        out.back().weight = contact.weight;
-    }
-
-    static ContactPair pair_of(const Contact& contact, const NearPairs& near) {
-        const auto index = static_cast<std::size_t>(contact.pair);
-        if (contact.kind == Kind::of_edges) return near.edges[index];
-        if (contact.end >= 0) return on_end(near.edges[index], contact.end);  // two vertices begin with that of the first body
         const bool of_first = contact.kind == Kind::of_first && !contact.swap;
-        const ContactPair& pair = of_first ? near.on_second[index] : near.on_first[index];
-        const ContactPair out = on_feature(pair, closest_feature(pair));
-        return contact.swap ? swapped(out) : out;
+        const bool is_of_edges = contact.kind == Kind::of_edges || contact.end >= 0;
+        const std::vector<ContactPair>& from = is_of_edges ? near.edges : of_first ? near.on_second : near.on_first;
+        ContactPair& pair = out.emplace_back(from[static_cast<std::size_t>(contact.pair)]);
+        pair.weight = contact.weight;
+        if (contact.kind == Kind::of_edges) return;
+        if (contact.end >= 0) return put_on_end(contact.end, pair);  // two vertices begin with that of the first body
+        put_on_feature(closest_feature(pair), pair);
+        if (contact.swap) swap_bodies(pair);
     }
 
     static WeightPart part_of(const Entry& entry, Kind kind, const NearPairs& near) {
