@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/rounding.hpp"
+#include "fettle/core/base/wide_instructions.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -68,10 +68,8 @@ void set_span(SpanGroup& group, int j, const Rest& rest, const Rest& step, doubl
     group.step_shift[j] = scale * step.shift * rounded_up;
 }
 
-// Four nodes at a time, which fit the registers; blocks without a wanted node are left out. Instructions for four doubles are used where
-// the processor has them; bits are the same, for each operation rounds by itself. (Through references: how such values are passed depends
-// on the instructions that a function is compiled for.)
-using Four = double __attribute__((vector_size(32)));
+// Four nodes at a time, which fit the registers; blocks without a wanted node are left out.
+using base::Four;
 using FourBits = long long __attribute__((vector_size(32)));
 constexpr int block_size = 4;
 struct FourVectors {
@@ -219,24 +217,18 @@ template <class AtNodes>
     }
 }
 
-#ifdef __x86_64__
 template <class AtNodes>
-[[gnu::target("avx2")]] void find_bounds_wide(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
+FETTLE_WIDE void find_bounds_wide(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
     find_bounds(at, rounding, at_nodes, out);
 }
-#endif
 
 template <class AtNodes>
 SpanBounds bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes) {
     SpanBounds out;
-#ifdef __x86_64__
-    static const bool is_wide = __builtin_cpu_supports("avx2") && std::getenv("FETTLE_BASELINE_INSTRUCTIONS") == nullptr;
-    if (is_wide) {
+    if (base::has_wide_instructions())
         find_bounds_wide(at, rounding, at_nodes, out);
-        return out;
-    }
-#endif
-    find_bounds(at, rounding, at_nodes, out);
+    else
+        find_bounds(at, rounding, at_nodes, out);
     return out;
 }
 

@@ -42,7 +42,7 @@ double relative_motion(const Pose& a1, const Pose& b1, const Pose& a2, const Pos
 }
 
 // Distances are taken at rounded vertices.
-double rounding(const Pose& a, const Pose& b, double radius_a, double radius_b) {
+double rounding_of(const Pose& a, const Pose& b, double radius_a, double radius_b) {
     return search_rounding * (a.position.norm() + b.position.norm() + radius_a + radius_b);
 }
 
@@ -280,8 +280,8 @@ double motion_since(const model::Model& model, const BodyPairCandidates& pair, c
     if (pair.fresh) return 0;
     const Pose &a = poses[pair.a], &b = poses[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
-    return relative_motion(pair.at[0], pair.at[1], a, b, radius_a, radius_b) + rounding(a, b, radius_a, radius_b) +
-           rounding(pair.at[0], pair.at[1], radius_a, radius_b);
+    return relative_motion(pair.at[0], pair.at[1], a, b, radius_a, radius_b) + rounding_of(a, b, radius_a, radius_b) +
+           rounding_of(pair.at[0], pair.at[1], radius_a, radius_b);
 }
 
 double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<PathSegment>& segments) {
@@ -295,8 +295,8 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
     const double since_at =
         relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + relative_motion(a, b, radius_a, radius_b);
-    return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding(start_a, start_b, radius_a, radius_b) +
-           rounding(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
+    return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding_of(start_a, start_b, radius_a, radius_b) +
+           rounding_of(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
 }
 
 }  // namespace fettle::core::contact

@@ -2,9 +2,10 @@
 #include "fettle/core/contact/contact_pair.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cstring>
 
 #include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/base/wide_instructions.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -51,11 +52,25 @@ void forward_solve(const Matrix2& l, int count, std::array<V, 2>& a) {
     if (count > 1) a[1] = (a[1] - l(1, 0) * a[0]) / l(1, 1);
 }
 
-// The lower triangle, column by column, of sizes that the compiler knows.
-template <std::size_t... J>
-void add_columns(PairMatrix& h, double factor, const PairVector& v, std::index_sequence<J...>) {
-    ((h.col(J).template tail<9 - static_cast<int>(J)>() += (factor * v[J]) * v.template tail<9 - static_cast<int>(J)>()), ...);
+// Column by column, four rows at a time but for the last; of rows above the diagonal only what comes along.
+[[gnu::always_inline]] inline void add_columns(double factor, const PairVector& v, PairMatrix& h) {
+    const auto add = [](double scale, const double* from, double* to) __attribute__((always_inline)) {
+        base::Four x, y;
+        std::memcpy(&x, from, sizeof x);
+        std::memcpy(&y, to, sizeof y);
+        y += scale * x;
+        std::memcpy(to, &y, sizeof y);
+    };
+    for (int j = 0; j < 9; ++j) {
+        double* column = h.data() + 9 * j;
+        const double scale = factor * v[j];
+        if (j < 4) add(scale, v.data(), column);
+        if (j < 8) add(scale, v.data() + 4, column + 4);
+        column[8] += scale * v[8];
+    }
 }
+
+FETTLE_WIDE void add_columns_wide(double factor, const PairVector& v, PairMatrix& h) { add_columns(factor, v, h); }
 
 // Pull-back of the pattern w (x) m (m at the closest point of the first body, -m at that of the second).
 PairVector pull_back(const Vector3& m, const Vector3& arm_first, const Vector3& arm_second) {
@@ -274,8 +289,10 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
 }  // namespace
 
 void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) {
-    const PairVector x = v;  // cannot be part of the Hessian: stays in registers
-    add_columns(hessian, factor, x, std::make_index_sequence<9>{});
+    if (base::has_wide_instructions())
+        add_columns_wide(factor, v, hessian);
+    else
+        add_columns(factor, v, hessian);
 }
 
 PairMatrix positive_part(const PairMatrix& lower) {

@@ -65,7 +65,7 @@ double normal_force(const ContactPair& pair, const BarrierParameters& parameters
 using PairVector = Eigen::Matrix<double, 9, 1>;
 using PairMatrix = Eigen::Matrix<double, 9, 9>;
 
-/// hessian += factor v v^T, its lower triangle.
+/// hessian += factor v v^T in its lower triangle; what is above it is lost.
 void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v);
 
 /// The nearest positive semi-definite matrix; reads the lower triangle.
