@@ -168,7 +168,7 @@ struct Task {
 
 // Large meshes in parts where there are few pairs: enough for two threads or more.
 std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, const Search& along) {
-    constexpr std::size_t large = 512, most_parts = 16, wanted = 48;  // `large`: nodes of both bodies
+    constexpr std::size_t large = 512, most_parts = 16, wanted = 64;  // `large`: nodes of both bodies
     const std::size_t parts = std::min(most_parts, wanted / std::max<std::size_t>(searched.size(), 1));
     std::vector<Task> tasks;
     tasks.reserve(searched.size());
@@ -204,7 +204,9 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
     std::vector<std::size_t> first(searched.size() + 1, tasks.size());
     for (std::size_t k = tasks.size(); k-- > 0;) first[tasks[k].pair] = k;
     for (std::size_t p = searched.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
-    base::parallel_for(static_cast<int>(searched.size()), pairs_a_query, [&](int p) {
+    std::size_t found = 0;
+    for (const Task& task : tasks) found += task.found.size();
+    base::parallel_for(static_cast<int>(searched.size()), pairs_at_once(searched.size(), found), [&](int p) {
         BodyPairCandidates& pair = *searched[p];
         pair.allowance = along.allowance;
         pair.along = {along.segments[pair.a], along.segments[pair.b]};
@@ -224,6 +226,12 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
 }
 
 }  // namespace
+
+int Candidates::pairs_at_once() const {
+    std::size_t primitives = 0;
+    for (const BodyPairCandidates& pair : pairs) primitives += pair.size();
+    return contact::pairs_at_once(pairs.size(), primitives);
+}
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
     const double activation = model.dmin + model.dhat;

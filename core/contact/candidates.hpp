@@ -33,6 +33,9 @@ struct NearBodies {
 };
 
 struct Candidates {
+    /// pairs_at_once() of them.
+    int pairs_at_once() const;
+
     std::vector<BodyPairCandidates> pairs;  ///< sorted by (a, b). Pairs of bodies that are near but have no candidates are listed too
     NearBodies near;
     std::vector<std::pair<int, int>> bodies;  ///< of `pairs`

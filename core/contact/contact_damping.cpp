@@ -9,8 +9,6 @@
 namespace fettle::core::contact {
 namespace {
 
-constexpr int damped_pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
-
 int body_of(const BodyPairContacts& list, const ContactPair& pair, int i) { return i < first_count(pair.type) ? list.first : list.second; }
 
 Eigen::Vector4d material_point(const model::Model& model, const BodyPairContacts& list, const ContactPair& pair, int i) {
@@ -72,15 +70,16 @@ double contact_damping_potential(const DampedContacts& damped) {
     const ContactSet& set = damped.contacts;
     const ContactDamping& damping = damped.damping;
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), damped_pairs_a_piece, [&](int k) {
-        const BodyPairContacts& list = set.pairs[k];
-        for (const ContactPair& contact : list.contacts) {
-            const bool apart = is_apart(contact, damping.closeness);
-            const DampedPair pair = apart ? damped_pair(model, damping, list, contact) : DampedPair{};
-            values[k] += apart ? 0.5 * pair.stiffness * pair.closeness * (pair.closeness - 2 * pair.closeness_t0)
-                               : std::numeric_limits<double>::infinity();
-        }
-    });
+    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
+                       [&](int k) {
+                           const BodyPairContacts& list = set.pairs[k];
+                           for (const ContactPair& contact : list.contacts) {
+                               const bool apart = is_apart(contact, damping.closeness);
+                               const DampedPair pair = apart ? damped_pair(model, damping, list, contact) : DampedPair{};
+                               values[k] += apart ? 0.5 * pair.stiffness * pair.closeness * (pair.closeness - 2 * pair.closeness_t0)
+                                                  : std::numeric_limits<double>::infinity();
+                           }
+                       });
     double sum = 0;
     for (const double value : values) sum += value;
     return sum;
@@ -97,7 +96,7 @@ void add_contact_damping_derivatives(const DampedContacts& damped, const std::ve
             add_damped_pair(damped_pair(model, damping, list, pair), damping.closeness, kind, poses[list.first].position,
                             poses[list.second].position, sum);
     };
-    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
+    add_pair_sums(bodies_of(set.pairs), static_cast<std::size_t>(set.count), make, kind, gradients, hessian);
 }
 
 }  // namespace fettle::core::contact

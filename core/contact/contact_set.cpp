@@ -71,8 +71,6 @@ double potential_of(const BodyPairContacts& list, const BarrierParameters& param
     return sum;
 }
 
-constexpr int pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
-
 }  // namespace
 
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses, ContactPlans* plans) {
@@ -80,7 +78,7 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
     if (plans != nullptr) take_over(candidates, *plans);
     std::vector<ListContacts> found(candidates.pairs.size());
     const WorldVertices vertices(model, candidates, poses);
-    base::parallel_for(count, pairs_a_piece, [&](int k) {
+    base::parallel_for(count, candidates.pairs_at_once(), [&](int k) {
         found[k] = contacts_of({model, candidates.pairs[k], poses, vertices}, plans == nullptr ? nullptr : &plans->pairs[k].plan);
     });
     ContactSet set;
@@ -99,7 +97,7 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
 
 double barrier_potential(const ContactSet& set, const BarrierParameters& parameters) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_a_piece,
+    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
                        [&](int k) { values[k] = potential_of(set.pairs[k], parameters); });
     double sum = 0;
     for (const double value : values) sum += value;
@@ -113,17 +111,18 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<Pose>& pos
         for (const ContactPair& pair : list.contacts)
             add_pair_derivatives(pair, parameters, kind, poses[list.first].position, poses[list.second].position, sum);
     };
-    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
+    add_pair_sums(bodies_of(set.pairs), static_cast<std::size_t>(set.count), make, kind, gradients, hessian);
 }
 
-void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::function<void(int k, BodyPairSum& sum)>& make,
-                   HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
+void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t contacts,
+                   const std::function<void(int k, BodyPairSum& sum)>& make, HessianKind kind,
+                   std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian) {
     struct Made {
         kinematics::PoseGradient first, second;
         Matrix6 of_first, of_second, cross;  // cross: of the lower body's rows
     };
     const auto made = std::make_unique_for_overwrite<Made[]>(bodies.size());
-    base::parallel_for(static_cast<int>(bodies.size()), pairs_a_piece, [&](int k) {
+    base::parallel_for(static_cast<int>(bodies.size()), pairs_at_once(bodies.size(), contacts), [&](int k) {
         BodyPairSum sum;
         make(k, sum);
         made[k].first = sum.first;

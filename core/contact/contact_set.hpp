@@ -59,9 +59,10 @@ void add_barrier_derivatives(const ContactSet& set, const std::vector<kinematics
                              HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
 /// Makes sums for pairs of bodies, make(k, sum) for each, on all threads, and adds them, in their order, to the per-body ones.
-/// hessian.off_diagonal stays sorted. @param bodies  their numbers
-void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, const std::function<void(int k, BodyPairSum& sum)>& make,
-                   HessianKind kind, std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
+/// hessian.off_diagonal stays sorted. @param bodies  their numbers  @param contacts  of all pairs, about
+void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t contacts,
+                   const std::function<void(int k, BodyPairSum& sum)>& make, HessianKind kind,
+                   std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);
 
 /// The bodies of such pairs, for add_pair_sums.
 template <class Pairs>

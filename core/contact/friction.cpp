@@ -11,8 +11,6 @@ namespace {
 
 using kinematics::Pose;
 
-constexpr int frictional_pairs_a_piece = 16;  // pairs of bodies that a thread takes at a time
-
 // A contact at given poses: how far it has slid, and where its material points are relative to the bodies' positions.
 struct Slide {
     Vector3 arm_first, arm_second;
@@ -48,12 +46,18 @@ FrictionContact lag_contact(const ContactPair& pair, const Pose& first, const Po
     return c;
 }
 
+std::size_t contacts_of(const FrictionSet& set) {
+    std::size_t count = 0;
+    for (const BodyPairFriction& pair : set.pairs) count += pair.contacts.size();
+    return count;
+}
+
 }  // namespace
 
 FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, const std::vector<Pose>& poses,
                          const BarrierParameters& parameters, const std::vector<Matrix34>& slip_reference, double slip_time) {
     std::vector<BodyPairFriction> lagged(contacts.pairs.size());
-    base::parallel_for(static_cast<int>(lagged.size()), frictional_pairs_a_piece, [&](int k) {
+    base::parallel_for(static_cast<int>(lagged.size()), pairs_at_once(lagged.size(), static_cast<std::size_t>(contacts.count)), [&](int k) {
         const BodyPairContacts& list = contacts.pairs[k];
         BodyPairFriction& pair = lagged[k];
         pair.first = list.first;
@@ -75,7 +79,7 @@ FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, 
 
 double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(values.size()), frictional_pairs_a_piece, [&](int k) {
+    base::parallel_for(static_cast<int>(values.size()), pairs_at_once(values.size(), contacts_of(set)), [&](int k) {
         const BodyPairFriction& pair = set.pairs[k];
         for (const FrictionContact& c : pair.contacts)
             values[k] += c.load * friction_mollifier(slide_of(c, poses[pair.first], poses[pair.second]).distance, set.slip_bound).value;
@@ -104,7 +108,7 @@ void add_friction_derivatives(const FrictionSet& set, const std::vector<Pose>& p
             add_rigid_stiffness(sum.hessian, c.load * f.first_by_y, across, s.arm_first, s.arm_second);
         }
     };
-    add_pair_sums(bodies_of(set.pairs), make, kind, gradients, hessian);
+    add_pair_sums(bodies_of(set.pairs), contacts_of(set), make, kind, gradients, hessian);
 }
 
 Vector3 friction_force(const FrictionSet& set, const BodyPairFriction& pair, const FrictionContact& c, const std::vector<Pose>& poses) {

@@ -2,7 +2,9 @@
 /// Pairs of primitives of two bodies: by their vertices in space, and by index into the bodies' meshes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
@@ -27,6 +29,13 @@ struct PrimitivePairs {
     std::vector<PrimitivePair> triangle_vertex;  ///< face of a, vertex of b
     std::vector<PrimitivePair> edge_edge;        ///< edge of a, edge of b
     bool empty() const { return vertex_triangle.empty() && triangle_vertex.empty() && edge_edge.empty(); }
+    std::size_t size() const { return vertex_triangle.size() + triangle_vertex.size() + edge_edge.size(); }
 };
+
+/// Pairs of bodies that a thread takes at a time, 1 to 16: so many that there is something to do for all their pairs of primitives.
+inline int pairs_at_once(std::size_t pairs, std::size_t primitives) {
+    constexpr std::size_t enough = 128, most = 16;
+    return static_cast<int>(std::clamp<std::size_t>(enough * pairs / std::max<std::size_t>(primitives, 1), 1, most));
+}
 
 }  // namespace fettle::core::contact

@@ -22,8 +22,7 @@ struct Limits {
     double kept_most;      // and never has to keep more than this [m]
 };
 
-constexpr int pairs_a_search = 8;   // pairs of bodies that a thread takes at a time
-constexpr int bodies_at_once = 64;  // that it takes
+constexpr int bodies_at_once = 64;  // that a thread takes
 
 // Charged to world positions at least, relative to their size: more than their rounding, but where a body's position and its points'
 // cancel near the world's origin.
@@ -57,7 +56,7 @@ public:
 
     SafeStep longest(const Candidates& candidates) {
         return base::ordered_reduce(
-            static_cast<int>(candidates.pairs.size()), pairs_a_search, SafeStep{},
+            static_cast<int>(candidates.pairs.size()), candidates.pairs_at_once(), SafeStep{},
             [&](int begin, int end) {
                 SafeStep shortest;
                 for (int k = begin; k < end; ++k) visit(candidates.pairs[k], shortest);
@@ -68,7 +67,7 @@ public:
 
     // Is the least fraction 1?
     bool is_free(const Candidates& candidates) {
-        base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_search, [&](int k) {
+        base::parallel_for(static_cast<int>(candidates.pairs.size()), candidates.pairs_at_once(), [&](int k) {
             SafeStep shortest;
             if (least_ == 1) visit(candidates.pairs[k], shortest);
         });
