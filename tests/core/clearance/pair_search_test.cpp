@@ -101,6 +101,57 @@ TEST_CASE("Bounds of many random moving solids hold against denser sampling", "[
     }
 }
 
+TEST_CASE("A proof of enough ends where it is one, or with the least distance, whatever the order", "[clearance]") {
+    std::mt19937 random(11);
+    int proven = 0, measured = 0, cut_short = 0;
+    for (int i = 0; i < 40; ++i) {
+        const MovingPair pair = random_pair(random, 1, 1, Vector3::Zero());
+        const std::vector<PairSegment> segments(i % 2 == 0 ? 1 : 20, pair.segment());  // more than one are searched together first
+        SearchOptions options;
+        const SearchResult least = search_pair(pair.a.search(), pair.b.search(), segments, options);
+        if (least.upper <= 0.01) continue;
+        for (const double share : {0.3, 0.99, 1.01, 3.0}) {
+            options.enough = share * least.upper;
+            const SearchResult found = search_pair(pair.a.search(), pair.b.search(), segments, options);
+            CAPTURE(i, share, least.lower, least.upper, found.lower, found.upper);
+            CHECK(found.complete);
+            CHECK(found.lower <= least.upper);
+            CHECK(found.upper >= least.lower);
+            if (share < 1) {
+                ++proven;
+                CHECK(found.lower >= options.enough);
+            } else {
+                ++measured;
+                CHECK(found.upper - found.lower <= options.tolerance + 8 * pair.segment().slack);
+            }
+            SearchOptions poor = options;
+            for (poor.max_evaluations = 1; poor.max_evaluations < std::min(found.evaluations, 60L); ++poor.max_evaluations) {
+                const SearchResult part = search_pair(pair.a.search(), pair.b.search(), segments, poor);
+                cut_short += part.complete ? 0 : 1;
+                CHECK((part.lower <= least.upper && part.upper >= least.lower));
+            }
+        }
+    }
+    CHECK((proven >= 20 && measured >= 20 && cut_short >= 1000));
+}
+
+TEST_CASE("A proof of enough that is cut short tells no more than holds for what is left", "[clearance]") {
+    MovingPair pair{box({1, 1, 1}), box({1, 1, 1}), {}, {}};  // from 4 m apart to 0.5 m
+    pair.path_b.position_t0 << 6, 0.1, 0.2;
+    pair.path_b.position_step << -3.5, 0, 0;
+    for (const int copies : {1, 20}) {
+        const std::vector<PairSegment> segments(static_cast<std::size_t>(copies), pair.segment());
+        SearchOptions options;
+        options.enough = 3;
+        for (options.max_evaluations = 1; options.max_evaluations < 40; ++options.max_evaluations) {
+            const SearchResult part = search_pair(pair.a.search(), pair.b.search(), segments, options);
+            CAPTURE(copies, options.max_evaluations, part.lower, part.upper);
+            CHECK(part.lower <= 0.5 + 1e-9);
+            CHECK(part.upper >= 0.5 - 1e-9);
+        }
+    }
+}
+
 TEST_CASE("A bound without the rest beside the parabola is found out", "[clearance]") {
     // A lever's tip swings past a wall, nearest away from the places that the parabola goes through.
     std::mt19937 random(7);
