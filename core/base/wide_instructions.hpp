@@ -2,9 +2,11 @@
 /// Instructions for four doubles at a time, used where the processor has them. Each operation rounds by itself, so that bits are the same
 /// with and without (nothing is compiled to fused multiply-adds).
 ///
-///     [[gnu::always_inline]] inline void work(const Four& x, Four& out);               // on Four, in and out by reference: how
-///     FETTLE_WIDE void work_wide(const double* x, double* out) { ... work(...); ... }  // such values are passed depends on the
-///     instructions has_wide_instructions() ? work_wide(x, out) : work_plain(x, out);
+///     [[gnu::always_inline]] inline void work(const double* x, double* out);             // on Four inside
+///     FETTLE_WIDE void work_wide(const double* x, double* out) { work(x, out); }
+///     if (base::has_wide_instructions()) work_wide(x, out); else work(x, out);
+///
+/// What takes or gives a Four does so by reference: how such values are passed depends on the instructions that a function is compiled for.
 #pragma once
 
 namespace fettle::core::base {
