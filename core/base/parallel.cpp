@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -41,6 +42,27 @@ private:
 
 }  // namespace
 
+namespace {
+
+// This thread is in a loop, or lingers for one.
+class Inside {
+public:
+    Inside() { is_inside() = true; }
+    ~Inside() { is_inside() = was_; }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
+
+    static bool& is_inside() {
+        static thread_local bool inside = false;
+        return inside;
+    }
+
+private:
+    bool was_ = is_inside();
+};
+
+}  // namespace
+
 #ifdef FETTLE_THREAD_SANITIZER
 
 namespace {
@@ -51,14 +73,18 @@ std::vector<int>& limits() {  // what tbb::global_control keeps for the other ba
     return values;
 }
 
-void run_pieces(int pieces, const std::function<void(int)>& run) {
-    std::atomic<int> next = 0;
-    const auto work = [&] {
-        for (int piece = next++; piece < pieces; piece = next++) run(piece);
-    };
+void start_thread(void (*run)()) { std::thread(run).detach(); }
+
+// On threads of their own.
+void run_apart(int threads, const std::function<void(int thread)>& work) {
     std::vector<std::thread> helpers;
-    for (int i = 1; i < std::min(thread_count(), pieces); ++i) helpers.emplace_back(work);
-    work();
+    for (int i = 1; i < threads; ++i)
+        helpers.emplace_back([&work, i] {
+            const Inside inside;
+            work(i);
+        });
+    const Inside inside;
+    work(0);
     for (std::thread& helper : helpers) helper.join();
 }
 
@@ -83,6 +109,38 @@ int thread_count() {
 }
 
 #else
+
+namespace {
+
+void start_thread(void (*run)()) { tbb::this_task_arena::enqueue(run); }
+
+// Isolated: a thread that waits for an inner loop must not pick up a piece of an outer one, whose scratch memory it is using.
+void run_apart(int threads, const std::function<void(int thread)>& work) {
+    const auto as_thread = [&] {
+        const Inside inside;
+        work(std::max(0, tbb::this_task_arena::current_thread_index()) % threads);
+    };
+    tbb::this_task_arena::isolate([&] {
+        tbb::task_group helpers;
+        for (int i = 1; i < threads; ++i) helpers.run(as_thread);
+        as_thread();
+        helpers.wait();
+    });
+}
+
+}  // namespace
+
+struct ThreadLimit::Handle {
+    tbb::global_control control;
+    explicit Handle(int threads) : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
+};
+
+int thread_count() {
+    return std::min(static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
+                    tbb::this_task_arena::max_concurrency());
+}
+
+#endif
 
 namespace {
 
@@ -117,47 +175,146 @@ private:
 
 // Each thread has a block of neighbouring pieces, the same one in loop after loop: what it has written there is in its caches. Those that
 // have done with theirs help the others, from the far end.
-void run_pieces(int pieces, const std::function<void(int)>& run) {
-    constexpr int few = 8;
-    const int threads = std::min(thread_count(), pieces);
-    std::array<Block, few> on_stack;
-    std::vector<Block> on_heap(threads > few ? static_cast<std::size_t>(threads) : 0);
-    const std::span<Block> blocks(threads > few ? on_heap.data() : on_stack.data(), static_cast<std::size_t>(threads));
-    for (int i = 0; i < threads; ++i) {
+class Loop {
+public:
+    Loop(int pieces, int threads, const std::function<void(int)>& run)
+        : run_(run),
+          on_heap_(threads > few ? static_cast<std::size_t>(threads) : 0),
+          blocks_(threads > few ? on_heap_.data() : on_stack_.data(), static_cast<std::size_t>(threads)) {
         const auto begin_of = [&](int block) { return static_cast<std::uint32_t>(std::int64_t{block} * pieces / threads); };
-        blocks[static_cast<std::size_t>(i)].set(begin_of(i), begin_of(i + 1));
+        for (int i = 0; i < threads; ++i) blocks_[static_cast<std::size_t>(i)].set(begin_of(i), begin_of(i + 1));
     }
-    const auto work = [&] {
-        const int own = std::max(0, tbb::this_task_arena::current_thread_index()) % threads;
-        for (int piece; (piece = blocks[static_cast<std::size_t>(own)].take_first()) >= 0;) run(piece);
-        for (int i = 1; i < threads; ++i) {
-            Block& other = blocks[static_cast<std::size_t>((own + i) % threads)];
-            for (int piece; (piece = other.take_last()) >= 0;) run(piece);
+    Loop(const Loop&) = delete;
+    Loop& operator=(const Loop&) = delete;
+
+    int threads() const { return static_cast<int>(blocks_.size()); }
+
+    void work(int thread) {
+        const auto own = static_cast<std::size_t>(thread);
+        for (int piece; (piece = blocks_[own].take_first()) >= 0;) run_(piece);
+        for (std::size_t i = 1; i < blocks_.size(); ++i) {
+            Block& other = blocks_[(own + i) % blocks_.size()];
+            for (int piece; (piece = other.take_last()) >= 0;) run_(piece);
         }
-    };
-    if (threads == 1) return work();
-    // Isolated: a thread that waits for an inner loop must not pick up a piece of an outer one, whose scratch memory it is using.
-    tbb::this_task_arena::isolate([&] {
-        tbb::task_group helpers;
-        for (int i = 1; i < threads; ++i) helpers.run(work);
-        work();
-        helpers.wait();
-    });
+    }
+
+private:
+    static constexpr int few = 8;
+
+    const std::function<void(int)>& run_;
+    std::array<Block, few> on_stack_;
+    std::vector<Block> on_heap_;
+    std::span<Block> blocks_;
+};
+
+// Waits for what comes soon, without sleep: where each thread has a processor of its own without giving that up, either.
+class Patience {
+public:
+    explicit Patience(int threads) : crowded_(threads > machine_threads()) {}
+
+    /// Waits a moment. @return whether it is worth waiting on
+    bool lasts() {
+        if (crowded_) std::this_thread::yield();
+        for (int i = 0; i < 4; ++i) pause();
+        return std::chrono::steady_clock::now() - begun_ < std::chrono::microseconds(60);
+    }
+
+private:
+    static int machine_threads() {
+        static const auto count = static_cast<int>(std::thread::hardware_concurrency());
+        return count;
+    }
+    static void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+        __builtin_ia32_pause();
+#endif
+    }
+
+    bool crowded_;
+    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
+
+// Threads that have helped with a loop linger for the next one: in a step of many small loops it comes before a thread could go to sleep
+// and wake. One loop at a time has them, an outermost one; how many there are, and whether they come in time, changes no result.
+class Lingerers {
+public:
+    /// @return false: another loop has them
+    bool run(Loop& loop) {
+        if (Inside::is_inside() || has_loop_.exchange(true, std::memory_order_acquire)) return false;
+        const int helpers = loop.threads() - 1;
+        for (int i = present_.load(std::memory_order_relaxed); i < helpers; ++i) start();
+        loop_ = &loop;
+        const std::uint64_t none_busy = state_.load(std::memory_order_relaxed) & ~(number - 1);
+        state_.store(none_busy + number + static_cast<std::uint64_t>(helpers) * seat, std::memory_order_release);
+        {
+            const Inside inside;
+            loop.work(0);
+        }
+        state_.fetch_and(~(busy - seat), std::memory_order_relaxed);  // nobody else may sit down
+        for (Patience patience(loop.threads()); (state_.load(std::memory_order_acquire) & (number - busy)) != 0;)
+            if (!patience.lasts()) std::this_thread::yield();
+        has_loop_.store(false, std::memory_order_release);
+        return true;
+    }
+
+    void start() {
+        present_.fetch_add(1, std::memory_order_relaxed);
+        start_thread([] { instance().linger(); });
+    }
+
+    static Lingerers& instance() {
+        static Lingerers team;
+        return team;
+    }
+
+private:
+    // Of state_: the loop's number, how many threads are busy with it, how many more may be.
+    static constexpr std::uint64_t seat = 1, busy = 1 << 16, number = std::uint64_t{1} << 32;
+
+    void linger() {
+        if (!Inside::is_inside()) {  // else this thread waits for an inner loop
+            const Inside inside;
+            std::uint64_t last = 0;  // loop
+            do last = helped_after(last);
+            while (last != 0);
+        }
+        present_.fetch_sub(1, std::memory_order_relaxed);
+    }
+
+    // Waits for a loop after `last`, and helps with it. @return its number; 0: none has come
+    std::uint64_t helped_after(std::uint64_t last) {
+        Patience patience(present_.load(std::memory_order_relaxed) + 1);
+        do {
+            std::uint64_t now = state_.load(std::memory_order_acquire);
+            const std::uint64_t seats = now & (busy - seat);
+            if (now / number == last || seats == 0) continue;
+            if (!state_.compare_exchange_strong(now, now - seat + busy, std::memory_order_acq_rel)) continue;
+            loop_->work(loop_->threads() - static_cast<int>(seats));
+            state_.fetch_sub(busy, std::memory_order_release);
+            return now / number;
+        } while (patience.lasts());
+        return 0;
+    }
+
+    alignas(64) std::atomic<std::uint64_t> state_ = 0;
+    alignas(64) std::atomic<bool> has_loop_ = false;
+    std::atomic<int> present_ = 0;
+    Loop* loop_ = nullptr;
+};
+
+void run_pieces(int pieces, const std::function<void(int)>& run) {
+    const int threads = std::min(thread_count(), pieces);
+    Loop loop(pieces, threads, run);
+    if (threads == 1) return loop.work(0);
+    if (Lingerers::instance().run(loop)) return;
+    run_apart(threads, [&](int thread) { loop.work(thread); });
 }
 
 }  // namespace
 
-struct ThreadLimit::Handle {
-    tbb::global_control control;
-    explicit Handle(int threads) : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
-};
-
-int thread_count() {
-    return std::min(static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
-                    tbb::this_task_arena::max_concurrency());
+void wake_threads() {
+    for (int i = 1; i < thread_count(); ++i) Lingerers::instance().start();
 }
-
-#endif
 
 ThreadLimit::ThreadLimit(int threads) {
     FETTLE_ASSERT(threads >= 1, "a limit of no threads");

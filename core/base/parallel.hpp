@@ -32,6 +32,9 @@ private:
 /// Threads that a loop may use now: the machine's, or the limit.
 int thread_count();
 
+/// Has the threads made, while the caller goes on: otherwise the first loop waits for them.
+void wake_threads();
+
 /// Calls body(begin, end) for the pieces [0, grain), [grain, 2 grain), ... of [0, count), in any order, on any thread, each once.
 /// If pieces throw, the exception of the lowest is thrown on, after all that were running have ended; higher ones may not have run.
 /// Contract: count >= 0, grain >= 1.

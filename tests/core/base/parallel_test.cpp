@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/base/parallel.hpp"
 
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 namespace fettle::core::base::parallel_test {
 
@@ -59,6 +62,28 @@ TEST_CASE("every index is visited once where threads help each other, loop after
             REQUIRE(std::all_of(visits.begin(), visits.end(), [](const auto& v) { return v == 1; }));
         }
     }
+}
+
+TEST_CASE("every index is visited once in loops that several threads run at a time, nested, and after pauses", "[base]") {
+    constexpr int callers = 4, runs = 200;
+    std::array<int, callers> wrong{};
+    const auto call = [&](int caller) {
+        for (int run = 0; run < runs; ++run) {
+            const int count = 1 + (run * 7 + caller) % 61, inner = run % 3 == 0 ? 5 : 1;
+            std::vector<std::atomic<int>> visits(count * inner);
+            parallel_for(count, 1, [&](int i) { parallel_for(inner, 1, [&](int k) { ++visits[i * inner + k]; }); });
+            wrong[caller] += !std::all_of(visits.begin(), visits.end(), [](const auto& v) { return v == 1; });
+            if (run % 50 == caller) std::this_thread::sleep_for(std::chrono::milliseconds(3));  // threads that wait for loops give up
+        }
+    };
+    for (const int threads : {2, 5}) {
+        const ThreadLimit limit(threads);
+        std::vector<std::thread> others;
+        for (int caller = 1; caller < callers; ++caller) others.emplace_back(call, caller);
+        call(0);
+        for (std::thread& other : others) other.join();
+    }
+    CHECK(wrong == std::array<int, callers>{});
 }
 
 TEST_CASE("a sum has the same bits for any number of threads", "[base]") {
