@@ -56,10 +56,7 @@ public:
     }
 
     NewtonResult run() {
-        const std::vector<PathSegment> here = segments_to(at_.points);
-        cover(here);
-        settle(at_.poses, workspace_.candidates);
-        if (!take_known_contacts()) find_contacts(at_);
+        if (!take_known_contacts()) find_first_contacts();
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
             if (frictional_) lag_friction_of_round();
@@ -94,6 +91,12 @@ private:
     void find_contacts(Iterate& at) {
         const auto span = workspace_.clock.charge(SolvePhase::contacts);
         at.contacts = contact::find_contacts(model_, workspace_.candidates, at.poses, &workspace_.contact_plans);
+    }
+
+    void find_first_contacts() {
+        cover(segments_to(at_.points));
+        settle(at_.poses, workspace_.candidates);
+        find_contacts(at_);
     }
 
     // Those of the step before, where it ended.
@@ -249,9 +252,12 @@ private:
             return std::max(step[group[pair.first]], step[group[pair.second]]) > enough;
         };
         if (std::any_of(at_.contacts.pairs.begin(), at_.contacts.pairs.end(), is_hopeless)) return false;
-        const Remainder remainder = remainder_at(problem_, at_, workspace_);
+        std::vector<int> far;  // bodies whose step was not short
         for (std::size_t i = 0; i < group.size(); ++i)
-            if (!(step[group[i]] <= enough) && !(remainder.motion[i] <= enough)) return false;
+            if (!(step[group[i]] <= enough)) far.push_back(static_cast<int>(i));
+        const Remainder remainder = remainder_at(problem_, at_, far, workspace_);
+        const auto is_short = [&](double motion) { return motion <= enough; };
+        if (!std::all_of(remainder.motion.begin(), remainder.motion.end(), is_short)) return false;
         result_.residual = remainder.residual;
         return true;
     }

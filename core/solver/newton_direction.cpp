@@ -338,13 +338,14 @@ Vector6 inertial_step(const StepProblem& problem, const Iterate& at, const Chart
 
 double motion_of(const model::Body& body, const Vector6& step) { return step.head<3>().norm() + step.tail<3>().norm() * body.radius; }
 
-Remainder remainder_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
+Remainder remainder_at(const StepProblem& problem, const Iterate& at, const std::vector<int>& bodies, NewtonWorkspace& workspace) {
     const model::Model& model = *problem.model;
     const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
-    Remainder out{std::vector<double>(d.gradient.size(), 0.0), residual_of(d, model, workspace.dofs)};
-    base::parallel_for(static_cast<int>(d.gradient.size()), bodies_at_once, [&](int i) {
-        if (energy::has_free_dof(model.bodies[i]))
-            out.motion[i] = motion_of(model.bodies[i], inertial_step(problem, at, d, workspace.dofs, i));
+    Remainder out{std::vector<double>(bodies.size(), 0.0), residual_of(d, model, workspace.dofs)};
+    base::parallel_for(static_cast<int>(bodies.size()), bodies_at_once, [&](int k) {
+        const int body = bodies[k];
+        if (energy::has_free_dof(model.bodies[body]))
+            out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs, body));
     });
     return out;
 }
