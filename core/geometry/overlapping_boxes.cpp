@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "fettle/core/base/parallel.hpp"
 
@@ -107,6 +108,23 @@ private:
     std::vector<Node> nodes_;
 };
 
+// By the first box, counted, then by the second: there are few of the same first. @param boxes  their number
+std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs, std::size_t boxes) {
+    std::vector<std::size_t> begin(boxes + 1, 0);  // of the pairs of each first box, once they have been counted and placed
+    for (const auto& [a, b] : pairs) ++begin[static_cast<std::size_t>(a)];
+    std::size_t before = 0;
+    for (std::size_t& count : begin) before += std::exchange(count, before);
+    std::vector<std::pair<int, int>> out(pairs.size());
+    for (const auto& pair : pairs) out[begin[static_cast<std::size_t>(pair.first)]++] = pair;
+    auto first = out.begin();
+    for (std::size_t box = 0; box < boxes; ++box) {  // begin[box] is where its pairs end now
+        const auto last = out.begin() + static_cast<std::ptrdiff_t>(begin[box]);
+        std::sort(first, last);
+        first = last;
+    }
+    return out;
+}
+
 }  // namespace
 
 void visit_overlapping_pairs(const std::vector<Box>& boxes, const std::function<bool(int, int)>& visit) {
@@ -150,8 +168,7 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes
             so_far.insert(so_far.end(), piece.begin(), piece.end());
             return std::move(so_far);
         });
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
+    return sorted(pairs, boxes.size());
 }
 
 }  // namespace fettle::core::geometry
