@@ -31,6 +31,10 @@ const json& value_of(const void* value) { return *static_cast<const json*>(value
 
 /// A `/` or `~` inside a key is written as RFC 6901 wants it.
 void append_escaped(std::string_view key, std::string& to) {
+    if (std::none_of(key.begin(), key.end(), [](char c) { return c == '~' || c == '/'; })) {
+        to += key;
+        return;
+    }
     for (const char c : key) {
         if (c == '~')
             to += "~0";

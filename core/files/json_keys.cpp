@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/files/json_keys.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <string>
@@ -8,13 +9,31 @@
 namespace fettle::core::files {
 namespace {
 
-// Takes a file's characters one by one.
+bool is_quote_or_bracket(char c) { return c == '"' || c == '{' || c == '}' || c == '[' || c == ']'; }
+bool ends_or_escapes(char c) { return c == '"' || c == '\\'; }
+
+// Takes a file's text, piece by piece.
 class KeyFinder {
 public:
     explicit KeyFinder(std::string_view key) : key_(key) {}
 
     bool found() const { return found_; }
     /// False: there is nothing more to look for.
+    bool take(std::string_view text) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (depth_ > 1 && !escaped_) {  // little matters below the top
+                const auto rest = text.begin() + static_cast<std::ptrdiff_t>(i);
+                const auto next =
+                    in_string_ ? std::find_if(rest, text.end(), ends_or_escapes) : std::find_if(rest, text.end(), is_quote_or_bracket);
+                if (next == text.end()) return true;
+                i = static_cast<std::size_t>(next - text.begin());
+            }
+            if (!take(text[i])) return false;
+        }
+        return true;
+    }
+
+private:
     bool take(char c) {
         if (in_string_) {
             take_in_string(c);
@@ -33,7 +52,6 @@ public:
         return !in_string_ && (c == ' ' || c == '\t' || c == '\n' || c == '\r' || static_cast<unsigned char>(c) >= 0x80);
     }
 
-private:
     void take_in_string(char c) {
         if (!escaped_ && c == '"') {
             in_string_ = false;
@@ -57,8 +75,7 @@ bool has_top_level_key(const std::filesystem::path& path, std::string_view key) 
     std::array<char, 65536> block;
     while (file) {
         file.read(block.data(), static_cast<std::streamsize>(block.size()));
-        for (std::streamsize i = 0; i < file.gcount(); ++i)
-            if (!finder.take(block[static_cast<std::size_t>(i)])) return finder.found();
+        if (!finder.take({block.data(), static_cast<std::size_t>(file.gcount())})) return finder.found();
     }
     return false;
 }

@@ -245,13 +245,14 @@ std::vector<FixtureBody> FixtureBodies::read(const files::JsonNode& node, double
     body.density_given = density.exists() || body.type == BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
     MeshSource source{found.mesh, found.factors};
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
+    std::vector<FixtureBody> bodies;
     if (!split && !found.file.empty() && body.type != BodyType::kinematic_body) {  // whose script is about its mesh's centre
         const MeshMass mass = mass_of(found, 0, [&] { return made(source); });
         source.turned = decide_mass(node, mass, *found.mesh, body);
         read_motion(node, fixed, timestep, body);
-        return {{std::move(body), source}};
+        bodies.push_back({std::move(body), source});
+        return bodies;
     }
-    std::vector<FixtureBody> bodies;
     std::size_t part = 0;
     for (geometry::Mesh& mesh : split ? geometry::split_shells(made(source)) : std::vector<geometry::Mesh>{made(source)}) {
         const MeshMass mass = mass_of(found, part++, [&] { return mesh; });

@@ -14,7 +14,7 @@ using core::clearance::PairClearance;
 using core::clearance::PairStatus;
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+Json vector_json(const Vector3& v) { return Json(Json::array_t(v.begin(), v.end())); }
 
 Json pair_json(const PairClearance& pair, const std::vector<std::string>& names) {
     Json json;

@@ -40,6 +40,7 @@ struct SimulateArguments {
 // Of the file's frame: its origin is at -c in the body's frame.
 Json bodies_at_end(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     Json list = Json::array();
+    list.get_ref<Json::array_t&>().reserve(model.bodies.size());
     for (size_t i = 0; i < model.bodies.size(); ++i) {
         const core::kinematics::Pose& pose = trajectory.poses.back()[i];
         Json& body = list.emplace_back(Json::object());  // a list of pairs would be copied, twice
