@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -112,6 +113,7 @@ FileKind file_kind(const std::string& path) {
 
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
     if (is_foreign(path)) return foreign_error(path);
+    core::base::wake_threads();
     const bool design = core::files::has_top_level_key(path, "fettle_design");
     Result<LoadedModel> loaded = design ? load_design(path, common) : load_scene(path, common, check_start);
     if (!loaded) return loaded.errors();

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +15,6 @@
 
 #ifdef __GLIBC__
 #include <malloc.h>
-#include <sys/mman.h>
 #endif
 
 namespace {
@@ -118,7 +115,6 @@ int run(int argc, char** argv) {
     try {
         std::optional<core::base::ThreadLimit> limit;
         if (common.threads > 0) limit.emplace(common.threads);
-        core::base::wake_threads();
         catch_interrupts();
         for (const Command& command : commands) {
             if (command.line.is_chosen()) return command.run(console);
@@ -132,18 +128,13 @@ int run(int argc, char** argv) {
 }
 
 // A step's matrices are made and dropped hundreds of times a second: memory that went back to the system each time would be a tenth of a
-// long simulation. The first of it comes in large pages where the system has them: to be given it in small ones, and to give it back, takes
-// a twentieth of a short one.
+// long simulation.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    constexpr int megabyte = 1 << 20, large_page = 2 * megabyte, first = 30 * megabyte;
+    constexpr int megabyte = 1 << 20;
     mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
     mallopt(M_TRIM_THRESHOLD, 512 * megabyte);
     mallopt(M_TOP_PAD, 16 * megabyte);
-    const std::unique_ptr<void, decltype(&std::free)> block(std::malloc(first), std::free);
-    void* begin = block.get();
-    std::size_t room = first;
-    if (std::align(large_page, room - large_page, begin, room) != nullptr) madvise(begin, room / large_page * large_page, MADV_HUGEPAGE);
 #endif
 }
 
