@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/nearest_word.hpp"
@@ -249,6 +250,25 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
     for (const auto& [key, value] : value_of(value_).items()) out.emplace_back(key, child(&value, key));
     return out;
 }
+
+void JsonNode::read_each(const std::vector<JsonNode>& nodes, const std::function<void(std::size_t, const JsonNode&)>& read) {
+    constexpr int at_once = 16;  // that a thread takes
+    if (nodes.empty()) return;
+    Context& all = *nodes.front().context_;
+    std::vector<Context> reports(nodes.size() / at_once + 1);
+    base::parallel_pieces(static_cast<int>(nodes.size()), at_once, [&](int begin, int end) {
+        Context& own = reports[static_cast<std::size_t>(begin / at_once)];
+        own.path = all.path;
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            read(i, JsonNode(&own, nodes[i].value_, nodes[i].pointer_));
+    });
+    for (const Context& own : reports) {
+        all.errors.insert(all.errors.end(), own.errors.begin(), own.errors.end());
+        all.warnings.insert(all.warnings.end(), own.warnings.begin(), own.warnings.end());
+    }
+}
+
+std::size_t JsonNode::error_count() const { return context_->errors.size(); }
 
 std::vector<std::string> JsonNode::other_keys(const std::vector<std::string_view>& known) const {
     std::vector<std::string> out;

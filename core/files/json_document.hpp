@@ -11,6 +11,8 @@
 ///     if (!document->errors().empty()) return document->errors();
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -64,6 +66,10 @@ public:
     JsonNode unless_null() &&;
     std::vector<JsonNode> elements() const;                         ///< of an array; wrong_type otherwise; empty if absent
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
+    /// read(i, nodes[i]) for each of some nodes of one document, on all threads. What they report comes in their order.
+    static void read_each(const std::vector<JsonNode>& nodes, const std::function<void(std::size_t i, const JsonNode& node)>& read);
+    /// Errors found so far; within read_each() those of this node and some others.
+    std::size_t error_count() const;
 
     /// unknown_key for every member that is not listed, with the nearest one that is (or all of them if none is near). Keys that start with
     /// `#` are comments.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <utility>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/files/index_rows.hpp"
@@ -152,29 +154,56 @@ std::optional<Vector3> fixture_vector(const files::JsonNode& node) {
     return Vector3((*found)[0], (*found)[1], (*found)[2]);
 }
 
-const geometry::Mesh* FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) {
-    const auto known = files_.find(name);
-    if (known != files_.end()) return &known->second;
-    const auto file = mesh_files::find_mesh_file(name, document_.path(), options_.mesh_dirs, node.where());
+FixtureBodies::MeshFile FixtureBodies::read_mesh_file(const std::string& name, const std::string& where) const {
+    MeshFile out;
+    out.where = where;
+    const auto file = mesh_files::find_mesh_file(name, document_.path(), options_.mesh_dirs, where);
     if (!file) {
-        node.fail(file.errors().front().code, file.errors().front().message);
-        return nullptr;
+        out.errors = {file.errors().front()};
+        out.errors.front().where.clear();
+        return out;
     }
     mesh_files::MeshReadOptions options;
     options.unit = 1;
     options.weld = true;
     auto found = mesh_files::read_mesh(*file, options);
     if (!found) {
-        for (const auto& error : found.errors()) node.fail(error.code, (error.where.empty() ? "" : error.where + ": ") + error.message);
-        return nullptr;
+        out.errors = found.errors();
+        return out;
     }
     geometry::MeshRequirements requirements;
     requirements.closed = false;
-    for (const auto& fault : geometry::validate_mesh(*found, requirements, 1)) node.warn(fault.where + ": " + fault.message);
-    return &(files_[name] = *std::move(found));
+    for (const auto& fault : geometry::validate_mesh(*found, requirements, 1)) out.warnings.push_back(fault.where + ": " + fault.message);
+    out.mesh = *std::move(found);
+    return out;
 }
 
-const geometry::Mesh* FixtureBodies::inline_mesh(const files::JsonNode& node) {
+void FixtureBodies::read_mesh_files(const std::vector<files::JsonNode>& nodes) {
+    std::vector<std::pair<const std::string*, MeshFile*>> wanted;
+    std::vector<std::string> places;
+    for (const files::JsonNode& node : nodes) {
+        if (!node.is_object()) continue;
+        const files::JsonNode file = node["mesh"], enabled = node["enabled"];
+        const bool used = !enabled.is_bool() || enabled.boolean().value();
+        if (!used || !file.is_string()) continue;
+        const auto [entry, fresh] = files_.try_emplace(file.string().value());
+        if (!fresh) continue;
+        wanted.emplace_back(&entry->first, &entry->second);
+        places.push_back(file.where());
+    }
+    base::parallel_for(static_cast<int>(wanted.size()), 1, [&](int i) { *wanted[i].second = read_mesh_file(*wanted[i].first, places[i]); });
+}
+
+const geometry::Mesh* FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) const {
+    const MeshFile& file = files_.at(name);
+    for (const auto& error : file.errors) node.fail(error.code, (error.where.empty() ? "" : error.where + ": ") + error.message);
+    if (!file.errors.empty()) return nullptr;
+    if (!file.warnings.empty() && file.where == node.where())
+        for (const std::string& warning : file.warnings) node.warn(warning);
+    return &file.mesh;
+}
+
+std::shared_ptr<const geometry::Mesh> FixtureBodies::inline_mesh(const files::JsonNode& node) const {
     geometry::Mesh mesh;
     mesh.name = "inline mesh";
     const files::JsonNode vertices = node["vertices"].unless_null();
@@ -190,35 +219,34 @@ const geometry::Mesh* FixtureBodies::inline_mesh(const files::JsonNode& node) {
         good = good && vertex.has_value();
         mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertex.value_or(Vector3::Zero());
     }
-    const std::size_t faults = document_.errors().size();
+    const std::size_t faults = node.error_count();
     const int count = static_cast<int>(rows.size());
     mesh.triangles = files::index_rows<3>(node["faces"].unless_null(), count);
     const auto edges = files::index_rows<2>(node["edges"].unless_null(), count);
-    if (!good || document_.errors().size() > faults) return nullptr;
+    if (!good || node.error_count() > faults) return nullptr;
     build_connectivity(mesh, edges);
-    inline_ = weld_exactly(mesh);
-    return &inline_;
-}
-
-const geometry::Mesh* FixtureBodies::mesh(const files::JsonNode& node) {
-    const files::JsonNode file = node["mesh"].unless_null();
-    const auto name = file.string();
-    if (file.exists() && !name) return nullptr;
-    return name && !name->empty() ? mesh_file(file, *name) : inline_mesh(node);
+    return std::make_shared<const geometry::Mesh>(weld_exactly(mesh));
 }
 
 /// Everything but mass and motion, which a component of a split body has for itself.
-FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
+FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) const {
     Placed out;
     Body& body = out.body;
     body.where = node.where();
     body.mesh_policy = MeshPolicy::lenient;
-    out.mesh = mesh(node);
+    const files::JsonNode file = node["mesh"].unless_null();
+    const auto name = file.string();
+    if (file.exists() && !name) return {};
+    if (name && !name->empty()) {
+        out.file = *name;
+        out.mesh = mesh_file(file, *name);
+    } else {
+        out.own = inline_mesh(node);
+        out.mesh = out.own.get();
+    }
     if (out.mesh == nullptr || out.mesh->vertices.cols() == 0) return {};
     out.factors = scale_factors(node, *out.mesh);
-    const files::JsonNode file = node["mesh"];
-    out.file = file.is_string() ? file.string().value() : "";
-    body.name = file.is_string() ? std::filesystem::path(file.string().value()).stem().string() : "";
+    body.name = std::filesystem::path(out.file).stem().string();
     if (body.name.empty()) body.name = "body";
     std::replace_if(
         body.name.begin(), body.name.end(), [](char c) { return c == ':' || c == ','; }, '_');
@@ -232,7 +260,19 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) {
     return out;
 }
 
-std::vector<FixtureBody> FixtureBodies::read(const files::JsonNode& node, double timestep) {
+std::vector<FixtureBody> FixtureBodies::read(const files::JsonNode& list, double timestep) {
+    const std::vector<files::JsonNode> nodes = list.elements();
+    read_mesh_files(nodes);
+    std::vector<std::vector<FixtureBody>> read(nodes.size());
+    files::JsonNode::read_each(nodes, [&](std::size_t i, const files::JsonNode& node) { read[i] = read_body(node, timestep); });
+    std::vector<FixtureBody> bodies;
+    bodies.reserve(nodes.size());
+    for (std::vector<FixtureBody>& of_node : read)
+        bodies.insert(bodies.end(), std::make_move_iterator(of_node.begin()), std::make_move_iterator(of_node.end()));
+    return bodies;
+}
+
+std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, double timestep) {
     node.warn_of_other_keys(fixture_body_keys);
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
     Placed found = placed(node);
@@ -273,6 +313,7 @@ void FixtureBodies::fill(std::vector<Body>& bodies, const std::vector<MeshSource
 
 MeshMass FixtureBodies::mass_of(const Placed& from, std::size_t part, const std::function<geometry::Mesh()>& mesh) {
     if (from.file.empty()) return look_at_mass(mesh());
+    const std::lock_guard lock(masses_mutex_);
     const auto [entry, fresh] = masses_.try_emplace({from.file, {from.factors[0], from.factors[1], from.factors[2]}, part});
     if (fresh) entry->second = look_at_mass(mesh());
     return entry->second;

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -39,32 +41,44 @@ public:
     /// Both outlive this object.
     FixtureBodies(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
-    /// One body, or one per facet-connected component (`split_components`); none if it is switched off (`enabled`) or nothing useful can be
-    /// read. Faults go to the document. Call fill() before this object goes. @param timestep  [s], of the scene.
-    std::vector<FixtureBody> read(const files::JsonNode& node, double timestep);
+    /// For each element of `list`, in order, one body, or one per facet-connected component (`split_components`); none if it is switched
+    /// off (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
+    /// @param timestep  [s], of the scene.
+    std::vector<FixtureBody> read(const files::JsonNode& list, double timestep);
 
     /// Gives bodies[i] the mesh of sources[i]: copies of many large meshes take longer than all the rest, and all threads.
     static void fill(std::vector<Body>& bodies, const std::vector<MeshSource>& sources);
 
 private:
+    /// Scenes repeat one mesh many times: it is read once.
+    struct MeshFile {
+        geometry::Mesh mesh;
+        base::Errors errors;                ///< it has none
+        std::vector<std::string> warnings;  ///< of the mesh, told where it is named first
+        std::string where;                  ///< that place
+    };
     struct Placed {
-        Body body;                             ///< without a mesh
-        const geometry::Mesh* mesh = nullptr;  ///< as in the file; nullptr: none that is of use
-        std::string file;                      ///< of its mesh; empty: the scene's own
+        Body body;                                  ///< without a mesh
+        const geometry::Mesh* mesh = nullptr;       ///< as in the file; nullptr: none that is of use
+        std::shared_ptr<const geometry::Mesh> own;  ///< that mesh, if it is the scene's own
+        std::string file;                           ///< of its mesh; empty: the scene's own
         Vector3 factors = Vector3::Ones();
     };
 
-    Placed placed(const files::JsonNode& node);
-    const geometry::Mesh* mesh(const files::JsonNode& node);
-    const geometry::Mesh* mesh_file(const files::JsonNode& node, const std::string& name);
-    const geometry::Mesh* inline_mesh(const files::JsonNode& node);
+    void read_mesh_files(const std::vector<files::JsonNode>& nodes);
+    MeshFile read_mesh_file(const std::string& name, const std::string& where) const;
+
+    // The rest runs on several threads at a time.
+    std::vector<FixtureBody> read_body(const files::JsonNode& node, double timestep);
+    Placed placed(const files::JsonNode& node) const;
+    const geometry::Mesh* mesh_file(const files::JsonNode& node, const std::string& name) const;
+    std::shared_ptr<const geometry::Mesh> inline_mesh(const files::JsonNode& node) const;
+    MeshMass mass_of(const Placed& from, std::size_t part, const std::function<geometry::Mesh()>& mesh);
 
     files::JsonDocument& document_;
     const ReadOptions& options_;
-    MeshMass mass_of(const Placed& from, std::size_t part, const std::function<geometry::Mesh()>& mesh);
-
-    std::map<std::string, geometry::Mesh> files_;  ///< already read: scenes repeat one mesh many times
-    geometry::Mesh inline_;                        ///< of the body at hand
+    std::map<std::string, MeshFile> files_;
+    std::mutex masses_mutex_;
     /// By file, scale factors and component: what has been looked at.
     std::map<std::tuple<std::string, std::array<double, 3>, std::size_t>, MeshMass> masses_;
 };

@@ -60,13 +60,11 @@ public:
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
         std::vector<MeshSource> meshes;  // of the bodies
-        const std::vector<files::JsonNode> nodes = problem["rigid_bodies"].unless_null().elements();
-        scene_.bodies.reserve(nodes.size());
-        for (const files::JsonNode& node : nodes) {
-            for (FixtureBody& read : bodies_.read(node, scene_.timestep)) {
-                scene_.bodies.push_back(std::move(read.body));
-                meshes.push_back(read.source);
-            }
+        std::vector<FixtureBody> bodies = bodies_.read(problem["rigid_bodies"].unless_null(), scene_.timestep);
+        scene_.bodies.reserve(bodies.size());
+        for (FixtureBody& body : bodies) {
+            scene_.bodies.push_back(std::move(body.body));
+            meshes.push_back(body.source);
         }
         FixtureBodies::fill(scene_.bodies, meshes);
         merge_groups();
