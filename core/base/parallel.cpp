@@ -207,16 +207,18 @@ private:
     std::span<Block> blocks_;
 };
 
-// Waits for what comes soon, without sleep: where each thread has a processor of its own without giving that up, either.
+// Waits for what comes soon without sleep, and without giving up the processor, for a moment, where each thread has one of its own.
 class Patience {
 public:
     explicit Patience(int threads) : crowded_(threads > machine_threads()) {}
 
-    /// Waits a moment. @return whether it is worth waiting on
+    /// Waits a little. @return whether it is worth waiting on: a thread that sleeps takes up to a millisecond to wake in a virtual machine
     bool lasts() {
-        if (crowded_) std::this_thread::yield();
+        constexpr std::chrono::microseconds moment{60}, long_time{2000};
+        const auto waited = std::chrono::steady_clock::now() - begun_;
+        if (crowded_ || waited > moment) std::this_thread::yield();
         for (int i = 0; i < 4; ++i) pause();
-        return std::chrono::steady_clock::now() - begun_ < std::chrono::microseconds(60);
+        return waited < long_time;
     }
 
 private:
@@ -251,8 +253,7 @@ public:
             loop.work(0);
         }
         state_.fetch_and(~(busy - seat), std::memory_order_relaxed);  // nobody else may sit down
-        for (Patience patience(loop.threads()); (state_.load(std::memory_order_acquire) & (number - busy)) != 0;)
-            if (!patience.lasts()) std::this_thread::yield();
+        for (Patience patience(loop.threads()); (state_.load(std::memory_order_acquire) & (number - busy)) != 0;) patience.lasts();
         has_loop_.store(false, std::memory_order_release);
         return true;
     }

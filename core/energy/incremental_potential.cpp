@@ -22,7 +22,7 @@ using kinematics::Pose;
 
 constexpr int bodies_a_piece = 16;   // that a thread takes at a time
 constexpr int bodies_to_clear = 64;  // the same, of sums to begin
-constexpr int values_a_piece = 128;  // the same, of values alone
+constexpr int values_a_piece = 32;   // the same, of values alone
 
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);

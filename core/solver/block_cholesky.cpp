@@ -164,7 +164,7 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
 
 // A column needs those that have a row in it.
 void BlockCholesky::find_levels() {
-    constexpr double factor_products = 150, solve_products = 400;  // of blocks, and of blocks with vectors, that a thread takes at a time
+    constexpr double factor_products = 60, solve_products = 150;  // of blocks, and of blocks with vectors, that a thread takes at a time
     levels_.clear();
     std::vector<std::size_t> level(columns_.size(), 0);
     struct Work {
