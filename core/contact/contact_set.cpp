@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -27,20 +28,31 @@ kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, in
     return *blocks.insert(at, {a, b, Matrix6::Zero()});
 }
 
-// Contacts of one pair of bodies; vertices on the higher body come as a list of their own.
-struct ListContacts {
-    BodyPairContacts forward, backward;
+// Contacts of a run of pairs of bodies.
+struct Found {
+    ContactSet set;
     double least = std::numeric_limits<double>::infinity();  // squared distance
 };
 
-ListContacts contacts_of(const NearAt& at, CountingPlan* plan) {
+// Adds those of one pair of bodies; vertices on the higher body come as a list of their own.
+void add_contacts(const NearAt& at, CountingPlan* plan, Found& found) {
     const BodyPairCandidates& list = at.list;
-    ListContacts out{{list.a, list.b, {}}, {list.b, list.a, {}}};
-    if (list.empty()) return out;
+    if (list.empty()) return;
     static thread_local NearPairs near;
-    out.least = find_near(at, near);
-    count_contacts(counted_sides(at.model, list, at.poses), near, out.forward.contacts, out.backward.contacts, {nullptr, nullptr, plan});
-    return out;
+    const double least = find_near(at, near);
+    BodyPairContacts forward{list.a, list.b, {}}, backward{list.b, list.a, {}};
+    count_contacts(counted_sides(at.model, list, at.poses), near, forward.contacts, backward.contacts, {nullptr, nullptr, plan});
+    found.least = least_of(found.least, least);
+    if (std::isfinite(least)) found.set.distances.push_back({list.a, list.b, std::sqrt(least)});
+    for (BodyPairContacts* contacts : {&forward, &backward}) {
+        found.set.count += static_cast<int>(contacts->contacts.size());
+        if (!contacts->contacts.empty()) found.set.pairs.push_back(std::move(*contacts));
+    }
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
 // A plan for each pair of the candidates: those that are known, and empty ones.
@@ -76,23 +88,23 @@ double potential_of(const BodyPairContacts& list, const BarrierParameters& param
 ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses, ContactPlans* plans) {
     const int count = static_cast<int>(candidates.pairs.size());
     if (plans != nullptr) take_over(candidates, *plans);
-    std::vector<ListContacts> found(candidates.pairs.size());
     const WorldVertices vertices(model, candidates, poses);
-    base::parallel_for(count, candidates.pairs_at_once(), [&](int k) {
-        found[k] = contacts_of({model, candidates.pairs[k], poses, vertices}, plans == nullptr ? nullptr : &plans->pairs[k].plan);
-    });
-    ContactSet set;
-    double least = std::numeric_limits<double>::infinity();
-    for (ListContacts& list : found) {
-        least = least_of(least, list.least);
-        if (std::isfinite(list.least)) set.distances.push_back({list.forward.first, list.forward.second, std::sqrt(list.least)});
-        for (BodyPairContacts* contacts : {&list.forward, &list.backward}) {
-            set.count += static_cast<int>(contacts->contacts.size());
-            if (!contacts->contacts.empty()) set.pairs.push_back(std::move(*contacts));
-        }
-    }
-    set.minimum_distance = std::sqrt(least);
-    return set;
+    const auto find = [&](int begin, int end) {
+        Found found;
+        for (int k = begin; k < end; ++k)
+            add_contacts({model, candidates.pairs[k], poses, vertices}, plans == nullptr ? nullptr : &plans->pairs[k].plan, found);
+        return found;
+    };
+    const auto join = [](Found&& so_far, Found&& found) {
+        append(so_far.set.pairs, found.set.pairs);
+        append(so_far.set.distances, found.set.distances);
+        so_far.set.count += found.set.count;
+        so_far.least = least_of(so_far.least, found.least);
+        return std::move(so_far);
+    };
+    Found all = base::ordered_reduce(count, candidates.pairs_at_once(), Found{}, find, join);
+    all.set.minimum_distance = std::sqrt(all.least);
+    return std::move(all.set);
 }
 
 double barrier_potential(const ContactSet& set, const BarrierParameters& parameters) {
