@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/files/json_document.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "fettle/core/files/nearest_word.hpp"
@@ -147,6 +148,39 @@ TEST_CASE("What is said of several elements of a list is said once", "[scene]") 
     CHECK(document.warnings() == std::vector<std::string>{path + "#/other: odd", path + "#/list/[0, 1, 3-5]/a: unknown key `a` is ignored",
                                                           path + "#/list/2/b: unknown key `b` is ignored",
                                                           path + "#/other/0/a: unknown key `a` is ignored"});
+}
+
+TEST_CASE("What is read on all threads reports in the order of the list", "[scene]") {
+    constexpr std::size_t count = 200;
+    std::string text = R"({"first": "x", "list": [)";
+    for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? "," : "") + std::string(i % 3 == 0 ? R"({"a": "x", "b": 1})" : R"({"a": 2})");
+    text += R"(], "last": "x"})";
+    const auto report = [&](bool on_all_threads) {
+        JsonDocument document = parsed(text);
+        std::vector<double> sums(count);
+        const auto read = [&](std::size_t i, const JsonNode& node) {
+            const std::size_t before = node.error_count();
+            node.warn_of_other_keys({"a"});
+            sums[i] = node["a"].number().value_or(-1);
+            if (node.error_count() > before) sums[i] -= 10;
+        };
+        document.root()["first"].number();
+        const std::vector<JsonNode> nodes = document.root()["list"].elements();
+        if (on_all_threads) {
+            JsonNode::read_each(nodes, read);
+        } else {
+            for (std::size_t i = 0; i < count; ++i) read(i, nodes[i]);
+        }
+        document.root()["last"].number();
+        std::vector<std::string> told = document.warnings();
+        for (const base::Error& error : document.errors()) told.push_back(error.where + ": " + error.message);
+        return std::pair(told, sums);
+    };
+    const auto [told, sums] = report(true);
+    CHECK(told.size() == 1 + 2 + (count + 2) / 3);
+    CHECK(std::count(sums.begin(), sums.end(), -11) == static_cast<int>((count + 2) / 3));
+    CHECK(std::pair(told, sums) == report(false));
+    JsonNode::read_each({}, [](std::size_t, const JsonNode&) { FAIL("there is nothing to read"); });
 }
 
 }  // namespace
