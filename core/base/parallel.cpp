@@ -11,6 +11,10 @@
 #include <span>
 #include <thread>
 
+#ifdef __linux__
+#include <sched.h>
+#endif
+
 #ifndef FETTLE_THREAD_SANITIZER
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -207,6 +211,21 @@ private:
     std::span<Block> blocks_;
 };
 
+// A thread that has just been made, or woken, may share its maker's processor until the system balances its load: for milliseconds.
+#ifdef __linux__
+int processor() { return sched_getcpu(); }
+void leave_processor(int shared) {
+    cpu_set_t all;
+    if (sched_getcpu() != shared || sched_getaffinity(0, sizeof all, &all) != 0 || CPU_COUNT(&all) < 2) return;
+    cpu_set_t others = all;
+    CPU_CLR(shared, &others);
+    if (sched_setaffinity(0, sizeof others, &others) == 0) sched_setaffinity(0, sizeof all, &all);
+}
+#else
+int processor() { return 0; }
+void leave_processor(int) {}
+#endif
+
 // Waits for what comes soon without sleep, and without giving up the processor, for a moment, where each thread has one of its own.
 class Patience {
 public:
@@ -260,7 +279,9 @@ public:
 
     void start() {
         present_.fetch_add(1, std::memory_order_relaxed);
+        maker_processor_.store(processor(), std::memory_order_relaxed);
         start_thread([] { instance().linger(); });
+        std::this_thread::yield();  // it may share this processor
     }
 
     static Lingerers& instance() {
@@ -275,6 +296,7 @@ private:
     void linger() {
         if (!Inside::is_inside()) {  // else this thread waits for an inner loop
             const Inside inside;
+            leave_processor(maker_processor_.load(std::memory_order_relaxed));
             std::uint64_t last = 0;  // loop
             do last = helped_after(last);
             while (last != 0);
@@ -300,6 +322,7 @@ private:
     alignas(64) std::atomic<std::uint64_t> state_ = 0;
     alignas(64) std::atomic<bool> has_loop_ = false;
     std::atomic<int> present_ = 0;
+    std::atomic<int> maker_processor_ = 0;  // where start() was called last
     Loop* loop_ = nullptr;
 };
 
