@@ -259,6 +259,15 @@ private:
 // and wake. One loop at a time has them, an outermost one; how many there are, and whether they come in time, changes no result.
 class Lingerers {
 public:
+    /// An inner loop wants threads, while this lives: those that linger go, and are free for it.
+    class Wanted {
+    public:
+        Wanted() { instance().wanted_.fetch_add(1, std::memory_order_relaxed); }
+        ~Wanted() { instance().wanted_.fetch_sub(1, std::memory_order_relaxed); }
+        Wanted(const Wanted&) = delete;
+        Wanted& operator=(const Wanted&) = delete;
+    };
+
     /// @return false: another loop has them
     bool run(Loop& loop) {
         if (Inside::is_inside() || has_loop_.exchange(true, std::memory_order_acquire)) return false;
@@ -315,13 +324,13 @@ private:
             loop_->work(loop_->threads() - static_cast<int>(seats));
             state_.fetch_sub(busy, std::memory_order_release);
             return now / number;
-        } while (patience.lasts());
+        } while (wanted_.load(std::memory_order_relaxed) == 0 && patience.lasts());
         return 0;
     }
 
     alignas(64) std::atomic<std::uint64_t> state_ = 0;
     alignas(64) std::atomic<bool> has_loop_ = false;
-    std::atomic<int> present_ = 0;
+    std::atomic<int> present_ = 0, wanted_ = 0;
     std::atomic<int> maker_processor_ = 0;  // where start() was called last
     Loop* loop_ = nullptr;
 };
@@ -331,6 +340,7 @@ void run_pieces(int pieces, const std::function<void(int)>& run) {
     Loop loop(pieces, threads, run);
     if (threads == 1) return loop.work(0);
     if (Lingerers::instance().run(loop)) return;
+    const Lingerers::Wanted wanted;
     run_apart(threads, [&](int thread) { loop.work(thread); });
 }
 
