@@ -98,7 +98,7 @@ public:
         row.scene = job.name;
         row.status = "ok";
         if (!command_.program_only) row = checked_run(job);
-        row.program = program_run(job, 1);
+        row.program = program_run(job, 1, command_.run.repeat);
         const bool over_memory = row.peak_memory_bytes > row.memory_limit_bytes();
         if (row.status != "ok" || row.program.status != "ok" || !row.is_sound() || over_memory) ++failures_;
         std::printf("%s\n", to_json(row, comparisons(row)).c_str());
@@ -106,16 +106,20 @@ public:
         return row;
     }
 
+    // In turn: what else the machine does, it does to all. The quickest of each counts.
     void compare_threads(const Job& job) {
         std::array<ProgramRun, 3> runs;
-        std::string text = "{\"threads_compared\": \"" + job.name + "\"";
         bool same = true;
-        for (int i = 0; i < 3; ++i) {
-            const int threads = 1 << i;
-            runs[i] = program_run(job, threads);
-            same = same && runs[i].status == runs[0].status && runs[i].bits == runs[0].bits;
-            text += ", " + member("wall_seconds_" + std::to_string(threads), runs[i].wall_seconds);
+        for (int round = 0; round < command_.run.repeat; ++round) {
+            for (std::size_t i = 0; i < runs.size(); ++i) {
+                ProgramRun run = program_run(job, 1 << i, 1);
+                const bool quickest = round == 0 || run.wall_seconds < runs[i].wall_seconds;
+                if (quickest) runs[i] = std::move(run);
+                same = same && runs[i].status == runs[0].status && runs[i].bits == runs[0].bits;
+            }
         }
+        std::string text = "{\"threads_compared\": \"" + job.name + "\"";
+        for (std::size_t i = 0; i < runs.size(); ++i) text += ", " + member("wall_seconds_" + std::to_string(1 << i), runs[i].wall_seconds);
         if (!same || runs[0].status != "ok") ++failures_;
         std::printf("%s, \"status\": \"%s\", \"same_results\": %s, %s, %s}\n", text.c_str(), runs[0].status.c_str(),
                     same ? "true" : "false", member("speedup_2", runs[0].wall_seconds / runs[1].wall_seconds).c_str(),
@@ -145,12 +149,12 @@ private:
         return run_apart(job.name, *text, elsewhere ? (fixtures() / "chain/chain-net/generated.json").string() : job.path, options);
     }
 
-    ProgramRun program_run(const Job& job, int threads) const {
+    ProgramRun program_run(const Job& job, int threads, int repeat) const {
         ProgramOptions options = command_.program;
         options.steps = job.steps;
         options.threads = threads;
         options.seconds = threads * command_.run.seconds;
-        options.repeat = command_.run.repeat;
+        options.repeat = repeat;
         return run_program(job.path, options);
     }
 
