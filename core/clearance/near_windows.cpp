@@ -4,69 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/rounding.hpp"
+#include "fettle/core/clearance/swept_boxes.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
 constexpr int most_boxes = 1 << 18;
 constexpr int most_time_spans = 4096;
-
-struct BodyBox {
-    Vector3 center, half;
-    double size = 0;    // from the center to a corner
-    double radius = 0;  // of the mesh, about the body's reference point
-};
-
-BodyBox box_of(const geometry::Mesh& mesh) {
-    BodyBox box{Vector3::Zero(), Vector3::Zero()};
-    if (mesh.vertices.cols() == 0) return box;
-    const Vector3 low = mesh.vertices.rowwise().minCoeff(), high = mesh.vertices.rowwise().maxCoeff();
-    box.center = 0.5 * (low + high);
-    box.half = (0.5 * (high - low) + 4 * unit_roundoff * (low.cwiseAbs() + high.cwiseAbs())) * rounded_up;
-    box.size = box.half.norm();
-    box.radius = std::sqrt(mesh.vertices.colwise().squaredNorm().maxCoeff()) * rounded_up;
-    return box;
-}
-
-struct Swept {
-    Eigen::Array3d low = Eigen::Array3d::Constant(infinity), high = Eigen::Array3d::Constant(-infinity);
-
-    void take(const Vector3& center, const Vector3& half) {
-        low = low.min((center - half).array());
-        high = high.max((center + half).array());
-    }
-};
-
-// Of a small turn the box as it lies at the turn's beginning, grown; else those at both ends of the segment, grown: see the header.
-void take_segment(const kinematics::PathSegment& path, const BodyBox& box, Swept& swept) {
-    constexpr double small_turn = 0.02;  // of the box's size
-    const double w = path.rotation_vector_step.norm(), theta = path.rotation_vector_t0.norm() + w;
-    // The base may be a rotation up to rounding only: |base X| <= sqrt(1 + |B^T B - I|) |X|.
-    const double radius = box.radius * std::sqrt(1 + (path.base.transpose() * path.base - Matrix3::Identity()).norm());
-    const double position = path.position_t0.norm() + path.position_step.norm();
-    const double rounding = 2 * unit_roundoff * ((256 + 48 * theta) * radius + 64 * position);
-    const auto padded = [&](const Vector3& half, double rest) -> Vector3 {
-        return half.array() + ((rest + rounding) * rounded_up + std::numeric_limits<double>::min());
-    };
-    if (theta * radius <= small_turn * box.size) {
-        const Vector3 half_step = 0.5 * path.position_step;
-        swept.take(path.base * box.center + path.position_t0 + half_step,
-                   padded(path.base.cwiseAbs() * box.half + half_step.cwiseAbs(), theta * radius));
-        return;
-    }
-    const double rest = std::min(w * w / 8, 2.0) * radius;
-    for (const double s : {0.0, 1.0}) {
-        const kinematics::Pose pose = kinematics::pose_at(path, s);
-        swept.take(pose.rotation * box.center + pose.position, padded(pose.rotation.cwiseAbs() * box.half, rest));
-        if (w == 0 && path.position_step == Vector3::Zero()) return;
-    }
-}
 
 // Spans of time: segments [first(k), first(k + 1)).
 struct TimeSpans {
@@ -89,7 +40,7 @@ public:
     }
 
     NearWindows run() {
-        std::vector<std::vector<std::pair<int, int>>> near(static_cast<std::size_t>(spans_.count));
+        std::vector<geometry::BoxSweep::Pairs> near(static_cast<std::size_t>(spans_.count));
         parallel_for(spans_.count, 1, [&](int k) { near[k] = near_in(k); });
         std::vector<NearSpan> rows;
         for (int k = 0; k < spans_.count; ++k) {
@@ -110,12 +61,7 @@ private:
         std::vector<double> way(static_cast<std::size_t>(bodies_), 0);
         parallel_for((bodies_ + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
             const int first = block * bodies_at_once, last = std::min(bodies_, first + bodies_at_once);
-            for (const PathPlace& place : places_) {
-                for (int body = first; body < last; ++body) {
-                    const kinematics::PathSegment path = segment_at(trajectory_, place, body);
-                    way[body] += path.position_step.norm() + path.rotation_vector_step.norm() * boxes_[body].radius;
-                }
-            }
+            measure_ways({trajectory_, places_, first, last}, boxes_, way.data() + first);
         });
         double most = 0;
         for (std::size_t body = 0; body < way.size(); ++body)
@@ -137,43 +83,21 @@ private:
         return sorted;
     }
 
-    Swept swept(int body, int span) const {
-        Swept box;
-        for (int i = spans_.first(span); i < spans_.first(span + 1); ++i)
-            take_segment(segment_at(trajectory_, places_[static_cast<std::size_t>(i)], body), boxes_[static_cast<std::size_t>(body)], box);
-        return box;
-    }
-
-    // Sorted along the axis on which the boxes lie farthest apart, each is compared with those that begin before it ends.
-    std::vector<std::pair<int, int>> near_in(int span) const {
-        std::vector<Swept> boxes(static_cast<std::size_t>(bodies_));
-        std::vector<int> order;
-        Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
-        for (int i = 0; i < bodies_; ++i) {
-            if (usable_[static_cast<std::size_t>(i)] == 0) continue;
-            boxes[static_cast<std::size_t>(i)] = swept(i, span);
-            order.push_back(i);
-            const Eigen::Array3d middle = 0.5 * (boxes[static_cast<std::size_t>(i)].low + boxes[static_cast<std::size_t>(i)].high);
-            sum += middle;
-            squares += middle.square();
-        }
-        int axis = 0;
-        if (!order.empty()) (squares - sum.square() / static_cast<double>(order.size())).maxCoeff(&axis);
-        const auto box = [&](int i) -> const Swept& { return boxes[static_cast<std::size_t>(i)]; };
-        std::sort(order.begin(), order.end(),
-                  [&](int i, int j) { return box(i).low[axis] != box(j).low[axis] ? box(i).low[axis] < box(j).low[axis] : i < j; });
-        std::vector<std::pair<int, int>> pairs;
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const Swept& x = box(order[i]);
-            for (std::size_t j = i + 1; j < order.size(); ++j) {
-                const Swept& y = box(order[j]);
-                // Apart only where the difference, rounding and all, says so: what is no number stays.
-                if (y.low[axis] - x.high[axis] >= reach_) break;
-                if (((y.low - x.high).max(x.low - y.high) >= reach_).any()) continue;
-                const int a = std::min(order[i], order[j]), b = std::max(order[i], order[j]);
-                if (wanted_(a, b)) pairs.emplace_back(a, b);
-            }
-        }
+    geometry::BoxSweep::Pairs near_in(int span) const {
+        const int first = spans_.first(span), last = spans_.first(span + 1);
+        std::vector<geometry::Box> boxes(static_cast<std::size_t>(bodies_));
+        sweep(
+            {trajectory_, std::span(places_).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)), 0, bodies_},
+            boxes_, boxes.data());
+        std::vector<int> usable;
+        usable.reserve(boxes.size());
+        for (int i = 0; i < bodies_; ++i)
+            if (usable_[static_cast<std::size_t>(i)] != 0) usable.push_back(i);
+        const auto count = static_cast<int>(usable.size());
+        geometry::BoxSweep::Pairs pairs;
+        geometry::BoxSweep(boxes, std::move(usable)).find(0, count, reach_, pairs);
+        pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& pair) { return !wanted_(pair.first, pair.second); }),
+                    pairs.end());
         return pairs;
     }
 

@@ -2,13 +2,7 @@
 /// Which bodies come near each other, and when: proven by boxes that hold whole bodies for a while, before any of their elements is looked
 /// at. What is left to search is in proportion to the pairs that come near, not to all pairs.
 ///
-/// A span of time is a few consecutive segments of the path. In a segment a point is at x(s) = R(s) X + q(s), q linear, and
-///   |x(s) - ((1 - s) x(0) + s x(1))| <= |w|^2 |base X| / 8,   w = rotation_vector_step   (interpolation; |R''| <= |w|^2)
-/// and at most 2 |base X|. So the boxes at both ends of all its segments, grown by that with the body's largest |X|, hold the body
-/// throughout: center R c + q, half extents |R| h, of the box (c, h) of the mesh in the body's frame.
-/// Of a segment that turns little the box at its middle is as good, and cheaper: |x(s) - (base X + q(1/2))| <= |theta| |base X| with the
-/// largest |theta| <= |theta_0| + |w|, and half of q's step along each axis.
-/// Rounding: 64u of the size of positions and (64 + 48|theta|)u of the radius, as segment_bound.hpp has it, twice.
+/// A span of time is a few consecutive segments of the path; the boxes: swept_boxes.hpp.
 #pragma once
 
 #include <functional>

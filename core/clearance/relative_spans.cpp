@@ -9,64 +9,11 @@
 #include <limits>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/wide_instructions.hpp"
 
 namespace fettle::core::clearance {
 namespace {
-
-// What a body point X is off by at most: shift + |X| turn.
-struct Rest {
-    double turn = 0, shift = 0;
-};
-
-// `i`: 0, 1, 2 for s = 0, 1/2, 1.
-RelativePose relative_pose(const PairSegment& segment, std::size_t i) {
-    const Matrix3 back = segment.b->poses[i].rotation.transpose();
-    return {back * segment.a->poses[i].rotation, back * (segment.a->poses[i].position - segment.b->poses[i].position)};
-}
-
-Rest difference(const RelativePose& x, const RelativePose& y) { return {(x.rotation - y.rotation).norm(), (x.offset - y.offset).norm()}; }
-
-// Upper bound of |q_a - q_b| over the segment.
-double reach_of_offset(const PairSegment& segment) {
-    const auto apart = [&](std::size_t i) { return (segment.a->poses[i].position - segment.b->poses[i].position).norm(); };
-    return std::max(apart(0), apart(2)) * rounded_up;
-}
-
-// Of one segment, beside its chord. `reach`: see above.
-Rest rest_of_segment(const PairSegment& segment, const RelativePose& start, const RelativePose& end, double reach) {
-    const RelativePose middle = relative_pose(segment, 1);
-    const double wa = segment.a->speed, wb = segment.b->speed, w = wa + wb;
-    const double travel = (segment.a->path.position_step - segment.b->path.position_step).norm();
-    const double third_turn = w * w * w * segment.a->base_norm;
-    const double third_shift = wb * wb * (wb * reach + 3 * travel);
-    return {0.5 * (2 * middle.rotation - start.rotation - end.rotation).norm() + segment.b->base_norm * third_turn / 124,
-            0.5 * (2 * middle.offset - start.offset - end.offset).norm() + segment.b->base_norm * third_shift / 124};
-}
-
-double pose_rounding(const PairSegment& segment, double radius_a, double radius_b, double reach) {
-    const double norms = segment.a->base_norm * segment.b->base_norm;
-    const double positions = segment.a->extent + segment.b->extent;
-    const double size = 2 * radius_a + 2 * radius_b + reach;
-    return 8 * norms * ((segment.a->rounding + segment.b->rounding + 64 * unit_roundoff) * size + 8 * unit_roundoff * positions);
-}
-
-void set_node(SpanGroup& group, int j, const RelativePose& pose, SegmentEnd place) {
-    for (int row = 0; row < 3; ++row) {
-        for (int k = 0; k < 3; ++k) group.rotation[static_cast<std::size_t>(3 * row + k)][j] = pose.rotation(row, k);
-        group.offset[static_cast<std::size_t>(row)][j] = pose.offset[row];
-    }
-    group.node[static_cast<std::size_t>(j)] = place;
-}
-
-void set_span(SpanGroup& group, int j, const Rest& rest, const Rest& step, double scale) {
-    group.rest_turn[j] = scale * rest.turn * rounded_up;
-    group.rest_shift[j] = scale * rest.shift * rounded_up;
-    group.step_turn[j] = scale * step.turn * rounded_up;
-    group.step_shift[j] = scale * step.shift * rounded_up;
-}
 
 // Four nodes at a time, which fit the registers; blocks without a wanted node are left out.
 using base::Four;
@@ -237,49 +184,52 @@ NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece&
     return {group, plane, a, wanted, at.rotation * a.center + at.offset};
 }
 
-// The chain of nodes of all segments, from which groups of every level are made.
-struct Chain {
-    std::vector<RelativePose> nodes;  // segment i leads from i to i + 1
-    std::vector<Rest> rests;          // of the segments
-    double rounding = 0;              // of the poses of any of them
-
-    Chain(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
-        const std::size_t count = segments.size();
-        nodes.reserve(count + 1);
-        rests.reserve(count);
-        for (const PairSegment& segment : segments) nodes.push_back(relative_pose(segment, 0));
-        nodes.push_back(relative_pose(segments.back(), 2));
-        for (std::size_t i = 0; i < count; ++i) {
-            const PairSegment& segment = segments[i];
-            const double reach = reach_of_offset(segment);
-            const RelativePose end = i + 1 < count ? end_of(segment, segments[i + 1], nodes[i + 1]) : nodes[count];
-            const Rest rest = rest_of_segment(segment, nodes[i], end, reach), jump = difference(end, nodes[i + 1]);
-            rests.push_back({rest.turn + jump.turn, rest.shift + jump.shift});
-            rounding = std::max(rounding, pose_rounding(segment, radius_a, radius_b, reach));
+// How far points go from each node to the next one.
+[[gnu::always_inline]] inline void find_steps(const std::array<std::array<double, most_spans + 2>, RelativeChain::entries>& nodes,
+                                              SpanGroup& group) {
+    for (int i = 0; i * block_size <= most_spans; ++i) {
+        Four turn = {0, 0, 0, 0}, shift = {0, 0, 0, 0}, here, next;
+        for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
+            std::memcpy(&here, nodes[k].data() + i * block_size, sizeof here);
+            std::memcpy(&next, nodes[k].data() + i * block_size + 1, sizeof next);
+            (k < 9 ? turn : shift) += (next - here) * (next - here);
+        }
+        for (int j = 0; j < block_size; ++j) {
+            group.step_turn[i * block_size + j] = std::sqrt(turn[j]);
+            group.step_shift[i * block_size + j] = std::sqrt(shift[j]);
         }
     }
+}
 
-    // Most paths go on with the very rotations with which they end: those of `begun`, the next node.
-    static RelativePose end_of(const PairSegment& segment, const PairSegment& next, const RelativePose& begun) {
-        const Matrix3 &frame = segment.b->poses[2].rotation, &other = segment.a->poses[2].rotation;
-        if (frame != next.b->poses[0].rotation || other != next.a->poses[0].rotation) return relative_pose(segment, 2);
-        return {begun.rotation, frame.transpose() * (segment.a->poses[2].position - segment.b->poses[2].position)};
-    }
-
-    // Segments first .. last - 1, beside the chord of all of them.
-    Rest rest_of_span(std::size_t first, std::size_t last) const {
-        Rest own = rests[first], off;
-        const RelativePose &start = nodes[first], &end = nodes[last];
-        for (std::size_t i = first + 1; i < last; ++i) {
-            own = {std::max(own.turn, rests[i].turn), std::max(own.shift, rests[i].shift)};
-            const double s = static_cast<double>(i - first) / static_cast<double>(last - first);
-            const RelativePose chord{(1 - s) * start.rotation + s * end.rotation, (1 - s) * start.offset + s * end.offset};
-            const Rest here = difference(chord, nodes[i]);
-            off = {std::max(off.turn, here.turn), std::max(off.shift, here.shift)};
+// With the spans' rests and steps times `scale`.
+[[gnu::always_inline]] inline void fill(const RelativeChain& chain, double scale, SpanGroup& group) {
+    std::array<std::array<double, most_spans + 2>, RelativeChain::entries> nodes;
+    for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
+        const double* values = chain.entry(static_cast<int>(k));
+        if (group.length == 1) {
+            std::memcpy(nodes[k].data(), values + group.first_segment, sizeof(Lanes));
+        } else {
+            for (int j = 0; j <= most_spans; ++j) nodes[k][static_cast<std::size_t>(j)] = values[group.place_of(j)];
         }
-        return {own.turn + off.turn, own.shift + off.shift};
+        nodes[k].back() = nodes[k][most_spans];
+        std::memcpy((k < 9 ? group.rotation[k] : group.offset[k - 9]).data(), nodes[k].data(), sizeof(Lanes));
     }
-};
+    find_steps(nodes, group);
+    if (group.length == 1) {
+        std::memcpy(group.rest_turn.data(), chain.rest_turns() + group.first_segment, sizeof(Lanes));
+        std::memcpy(group.rest_shift.data(), chain.rest_shifts() + group.first_segment, sizeof(Lanes));
+    } else {
+        for (int j = 0; j < most_spans; ++j) {
+            const Rest rest = j < group.count ? chain.rest_of_span(group.place_of(j), group.place_of(j + 1)) : Rest{};
+            group.rest_turn[j] = rest.turn;
+            group.rest_shift[j] = rest.shift;
+        }
+    }
+    group.rest_turn[most_spans] = group.rest_shift[most_spans] = group.step_turn[most_spans] = group.step_shift[most_spans] = 0;
+    for (Lanes* lengths : {&group.rest_turn, &group.rest_shift, &group.step_turn, &group.step_shift}) *lengths *= scale * rounded_up;
+}
+
+FETTLE_WIDE void fill_wide(const RelativeChain& chain, double scale, SpanGroup& group) { fill(chain, scale, group); }
 
 }  // namespace
 
@@ -296,32 +246,32 @@ Separation separation(const RelativePose& at, const Piece& a, const Piece& b) {
     return box_separation(at.rotation * a.center + at.offset - b.center, at.rotation * a.axes, a.half_extent, b.axes, b.half_extent);
 }
 
-RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, double radius_a, double radius_b, double deviation_scale) {
-    FETTLE_ASSERT(!segments.empty(), "spans of no time");
-    const Chain chain(segments, radius_a, radius_b);
-    const auto total = static_cast<int>(segments.size());
-    double norm = 1;
-    for (const PairSegment& segment : segments) norm = std::max(norm, segment.b->base_norm);
-    slack_ = (chain.rounding + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
+RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b,
+                             double deviation_scale) {
+    const RelativeChain chain(segments, frame, radius_a, radius_b);
+    const double norm = chain.base_norm();
+    slack_ = (chain.rounding() + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
     shrink_ = (1 - 8 * unit_roundoff) / norm;
+    const int total = chain.segments();
+    const auto groups_of = [](int spans) { return (spans + most_spans - 1) / most_spans; };
+    int all = 1;
+    for (int groups = groups_of(total); groups > 1; groups = groups_of(groups)) all += groups;
+    groups_.reserve(static_cast<std::size_t>(all));
     int begin = 0, spans = total, length = 1;  // spans of the level begin at this index, and last so many segments
     for (int level = 0;; ++level) {
-        const int groups = (spans + most_spans - 1) / most_spans;
+        const int groups = groups_of(spans);
         for (int g = 0; g < groups; ++g) {
-            SpanGroup group;
+            SpanGroup& group = groups_.emplace_back();
             group.level = level;
             group.count = std::min(most_spans, spans - g * most_spans);
             group.first = begin + g * most_spans;
-            for (Lanes* lanes : {&group.rest_turn, &group.rest_shift, &group.step_turn, &group.step_shift}) lanes->setZero();
-            for (int j = 0; j <= most_spans; ++j) {
-                const int i = std::min((g * most_spans + j) * length, total), last = std::min(i + length, total);
-                const int node = j <= group.count ? i : std::min((g * most_spans + group.count) * length, total);
-                set_node(group, j, chain.nodes[static_cast<std::size_t>(node)], {std::min(node, total - 1), node == total});
-                if (j >= group.count) continue;
-                const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(last);
-                set_span(group, j, chain.rest_of_span(from, to), difference(chain.nodes[from], chain.nodes[to]), deviation_scale);
-            }
-            groups_.push_back(group);
+            group.first_segment = g * most_spans * length;
+            group.length = length;
+            group.segments = total;
+            if (base::has_wide_instructions())
+                fill_wide(chain, deviation_scale, group);
+            else
+                fill(chain, deviation_scale, group);
         }
         if (groups == 1) break;
         begin = static_cast<int>(groups_.size()) - groups;
@@ -340,7 +290,7 @@ SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane
     return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfElements{element_a, element_b});
 }
 
-bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
+Frame better_frame(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {
     // Rotations leave their chords alike in both frames; offsets do not.
     const auto rest_of_offset = [](const PairSegment& segment, const BodySegment& frame) {
         const auto offset = [&](std::size_t i) {
@@ -365,13 +315,7 @@ bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a
         as_frame_a += radius_b * turn;
         as_frame_b += radius_a * turn;
     }
-    return as_frame_a < as_frame_b;
-}
-
-std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments) {
-    std::vector<PairSegment> result = segments;
-    for (PairSegment& segment : result) std::swap(segment.a, segment.b);
-    return result;
+    return {as_frame_a < as_frame_b};
 }
 
 }  // namespace fettle::core::clearance

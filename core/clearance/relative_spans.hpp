@@ -22,11 +22,13 @@
 /// the positions; products, functionals and supports by 64u of radii and Q. In all eight times: poses enter a bound with weight 7.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "fettle/core/clearance/piece_bound.hpp"
+#include "fettle/core/clearance/relative_chain.hpp"
 #include "fettle/core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
@@ -35,12 +37,6 @@ inline constexpr int most_spans = 15;
 using Lanes = Eigen::Array<double, most_spans + 1, 1>;  ///< one value per node of a group
 inline constexpr std::uint32_t all_nodes = (2U << most_spans) - 1;
 
-/// Of body a in b's frame.
-struct RelativePose {
-    Matrix3 rotation;
-    Vector3 offset;
-};
-
 /// The end of a path segment at which a node lies: s = 0 or 1.
 struct SegmentEnd {
     int segment = 0;
@@ -48,15 +44,23 @@ struct SegmentEnd {
 };
 
 struct SpanGroup {
-    int level = 0;                                ///< 0: spans are segments; else they are groups of the level below
-    int first = 0, count = 0;                     ///< spans first .. first + count - 1: indices of segments, or of groups
-    std::array<Lanes, 9> rotation;                ///< R_j by rows; nodes beyond `count` repeat the last
-    std::array<Lanes, 3> offset;                  ///< p_j
-    Lanes rest_turn, rest_shift;                  ///< by span: how far points leave their chords; the last is 0
-    Lanes step_turn, step_shift;                  ///< by span: how far they go; the last is 0
-    std::array<SegmentEnd, most_spans + 1> node;  ///< where the nodes lie
+    int level = 0;                  ///< 0: spans are segments; else they are groups of the level below
+    int first = 0, count = 0;       ///< spans first .. first + count - 1: indices of segments, or of groups
+    int first_segment = 0;          ///< where node 0 lies
+    int length = 1;                 ///< segments of a span; the last may have fewer
+    int segments = 0;               ///< of the whole path
+    std::array<Lanes, 9> rotation;  ///< R_j by rows; nodes beyond `count` repeat the last
+    std::array<Lanes, 3> offset;    ///< p_j
+    Lanes rest_turn, rest_shift;    ///< by span: how far points leave their chords; the last is 0
+    Lanes step_turn, step_shift;    ///< by span: how far they go; the last is 0
+
+    SpanGroup() {}  // NOLINT: numbers are written once
 
     RelativePose at(int j) const;
+    /// Counted in segments.
+    int place_of(int j) const { return std::min(first_segment + std::min(j, count) * length, segments); }
+    /// Where node j lies.
+    SegmentEnd end_at(int j) const { return {std::min(place_of(j), segments - 1), place_of(j) == segments}; }
 };
 
 /// As separation() of two placed boxes, the direction in b's frame.
@@ -79,7 +83,7 @@ struct SpanBounds {
 class RelativeSpans {
 public:
     /// `deviation_scale`: of the rests, 1 but in tests that show that a bound without them is found out.
-    RelativeSpans(const std::vector<PairSegment>& segments, double radius_a, double radius_b, double deviation_scale = 1);
+    RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b, double deviation_scale = 1);
 
     const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }
     /// The group that holds all segments.
@@ -96,11 +100,8 @@ private:
     double slack_ = 0, shrink_ = 1;
 };
 
-/// Do points of b leave the chords of their segments by less as seen from a than points of a as seen from b? Then bounds are better with a
-/// as the frame, of exchanged(segments). Told by some of the segments: either frame gives true bounds.
-bool is_better_frame_a(const std::vector<PairSegment>& segments, double radius_a, double radius_b);
-
-/// The same pair with the bodies in the other order.
-std::vector<PairSegment> exchanged(const std::vector<PairSegment>& segments);
+/// In which frame do points of the other body leave the chords of their segments by less? There bounds are better. Told by some of the
+/// segments: either frame gives true bounds.
+Frame better_frame(const std::vector<PairSegment>& segments, double radius_a, double radius_b);
 
 }  // namespace fettle::core::clearance

@@ -23,9 +23,8 @@ const Corners& corners(const PieceTree& tree, const Piece& piece) { return tree.
 SpanSearch::SpanSearch(SearchFront& front, SegmentSearch& segments)
     : front_(front),
       segments_(segments),
-      exchanged_(is_better_frame_a(front.segments, front.a.radius(), front.b.radius())),
-      spans_(exchanged_ ? exchanged(front.segments) : front.segments, (exchanged_ ? front.b : front.a).radius(),
-             (exchanged_ ? front.a : front.b).radius(), front.options.deviation_scale) {}
+      frame_(better_frame(front.segments, front.a.radius(), front.b.radius())),
+      spans_(front.segments, frame_, moving_tree().radius(), fixed_tree().radius(), front.options.deviation_scale) {}
 
 void SpanSearch::try_root() { try_pieces(whole_group(spans_.root(), 0, 0, -infinity)); }
 
@@ -52,13 +51,13 @@ double SpanSearch::span_cutoff(const SpanGroup& group) const {
 void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart) {
     ++front_.result.evaluations;
     const Piece &x = moving(entry), &y = fixed(entry);
-    const PieceTree &tree_x = exchanged_ ? front_.b : front_.a, &tree_y = exchanged_ ? front_.a : front_.b;
     const SpanGroup& group = spans_.group(entry.group);
     const double reach = apart + x.size + y.size;
     const TurningPlane plane{entry.nearest, n, apart / (reach * reach)};
     const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
-    const SpanBounds found = are_elements(entry) ? spans_.of_elements(group, plane, x, corners(tree_x, x), corners(tree_y, y), open)
-                                                 : spans_.of_boxes(group, plane, x, y, open);
+    const SpanBounds found = are_elements(entry)
+                                 ? spans_.of_elements(group, plane, x, corners(moving_tree(), x), corners(fixed_tree(), y), open)
+                                 : spans_.of_boxes(group, plane, x, y, open);
     entry.lower = {entry.lower.spans.max(found.spans), entry.lower.nodes.max(found.nodes)};
     double least = infinity;
     for_bits(open, [&](int j) {
@@ -138,13 +137,13 @@ double SpanSearch::halve_span(const Entry& entry, int span) {
 
 // Bounds along the direction of the closest points at a node, which is an upper bound, too.
 void SpanSearch::measure_at(Entry& entry, int node) {
-    const SegmentEnd& place = spans_.group(entry.group).node[static_cast<std::size_t>(node)];
-    const PairSegment& segment = front_.segments[static_cast<std::size_t>(place.segment)];
-    const Matrix3& frame = (exchanged_ ? segment.a : segment.b)->poses[place.at_end ? 2 : 0].rotation;
+    const SegmentEnd place = spans_.group(entry.group).end_at(node);
+    const BodySegment& fixed = frame_.fixed(front_.segments[static_cast<std::size_t>(place.segment)]);
+    const Matrix3& frame = fixed.poses[place.at_end ? 2 : 0].rotation;
     const Separation found = segments_.measure_at(place, entry.a, entry.b);
     entry.nearest = node;
     entry.open_nodes &= ~(1U << node);
-    tighten(entry, unit_direction(frame.transpose() * (exchanged_ ? -found.direction : found.direction)), found.apart);
+    tighten(entry, unit_direction(frame.transpose() * (frame_.exchanged ? -found.direction : found.direction)), found.apart);
     close(entry);
 }
 

@@ -36,8 +36,10 @@ private:
     bool are_elements(const Entry& entry) const { return piece_a(entry.a).is_element() && piece_b(entry.b).is_element(); }
     Entry whole_group(int group, int a, int b, double lower) const;
     double span_cutoff(const SpanGroup& group) const;
-    const Piece& moving(const Entry& entry) const { return exchanged_ ? piece_b(entry.b) : piece_a(entry.a); }
-    const Piece& fixed(const Entry& entry) const { return exchanged_ ? piece_a(entry.a) : piece_b(entry.b); }
+    const PieceTree& moving_tree() const { return frame_.exchanged ? front_.b : front_.a; }
+    const PieceTree& fixed_tree() const { return frame_.exchanged ? front_.a : front_.b; }
+    const Piece& moving(const Entry& entry) const { return frame_.exchanged ? piece_b(entry.b) : piece_a(entry.a); }
+    const Piece& fixed(const Entry& entry) const { return frame_.exchanged ? piece_a(entry.a) : piece_b(entry.b); }
     void tighten(Entry& entry, const Vector3& n, double apart);
     double close(Entry& entry);
     void try_pieces(Entry entry);
@@ -48,7 +50,7 @@ private:
 
     SearchFront& front_;
     SegmentSearch& segments_;
-    bool exchanged_;  // body a is the frame of the spans, instead of b
+    Frame frame_;  // of the spans
     RelativeSpans spans_;
     EntryPool<Entry> entries_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
@@ -134,33 +135,15 @@ void visit_overlapping_pairs(const std::vector<Box>& boxes, const std::function<
 
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes, const std::function<bool(int, int)>& wanted) {
     constexpr int boxes_at_once = 64;  // that a thread takes
-    using Pairs = std::vector<std::pair<int, int>>;
-    if (boxes.empty()) return {};
-    Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
-    for (const Box& box : boxes) {
-        const Eigen::Array3d middle = box.low.array() / 2 + box.high.array() / 2;
-        sum += middle;
-        squares += middle.square();
-    }
-    int axis = 0;
-    (squares - sum.square() / static_cast<double>(boxes.size())).maxCoeff(&axis);
-    struct Begin {
-        double low;
-        int box;
-    };
-    std::vector<Begin> begins(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) begins[i] = {boxes[i].low[axis], static_cast<int>(i)};
-    std::sort(begins.begin(), begins.end(), [](const Begin& x, const Begin& y) { return x.low != y.low ? x.low < y.low : x.box < y.box; });
+    using Pairs = BoxSweep::Pairs;
+    std::vector<int> all(boxes.size());
+    std::iota(all.begin(), all.end(), 0);
+    const BoxSweep sweep(boxes, std::move(all));
     const auto found_from = [&](int begin, int end) {
         Pairs found;
-        for (int i = begin; i < end; ++i) {
-            const int first = begins[i].box;
-            const Box& box = boxes[first];
-            for (std::size_t j = static_cast<std::size_t>(i) + 1; j < begins.size() && begins[j].low <= box.high[axis]; ++j) {
-                const int a = std::min(first, begins[j].box), b = std::max(first, begins[j].box);
-                if (box.overlaps(boxes[begins[j].box]) && wanted(a, b)) found.emplace_back(a, b);
-            }
-        }
+        sweep.find(begin, end, std::numeric_limits<double>::denorm_min(), found);  // any gap at all is one
+        found.erase(std::remove_if(found.begin(), found.end(), [&](const auto& pair) { return !wanted(pair.first, pair.second); }),
+                    found.end());
         return found;
     };
     Pairs pairs =

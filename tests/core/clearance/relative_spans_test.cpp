@@ -90,7 +90,7 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
     std::vector<double> least;
     for (std::size_t i = 0; i < segments.size(); ++i)
         least.push_back(static_cast<double>(sampled_minimum({solid_a, solid_b, motion.a[i], motion.b[i]}, 12, 3)));
-    const RelativeSpans spans(segments, solid_a.radius(), solid_b.radius(), deviation_scale);
+    const RelativeSpans spans(segments, {}, solid_a.radius(), solid_b.radius(), deviation_scale);
     Verdict verdict;
     verdict.seen.resize(segments.size());
     std::vector<int> pending{spans.root()};
@@ -147,7 +147,7 @@ TEST_CASE("A path that jumps between its segments is bounded all the same", "[cl
     core::kinematics::PathSegment swinging, still;
     swinging.rotation_vector_step = Vector3(0, 0, -swing);
     const std::vector<PairSegment> segments(4, pair_segment(swinging, still, 1, 3));
-    const RelativeSpans spans(segments, 1, 3);
+    const RelativeSpans spans(segments, {}, 1, 3);
     const SpanGroup& group = spans.group(spans.root());
     REQUIRE(group.count == 4);
     for (const int node : {0, 2}) {
@@ -179,7 +179,7 @@ TEST_CASE("Bodies that move together are at rest for each other", "[clearance]")
     motion.b = motion.a;
     std::vector<PairSegment> segments;
     for (std::size_t i = 0; i < motion.a.size(); ++i) segments.push_back(pair_segment(motion.a[i], motion.b[i], 5, 5));
-    const RelativeSpans spans(segments, 5, 5);
+    const RelativeSpans spans(segments, {}, 5, 5);
     Corners a = random_triangle(random, 1), b = random_triangle(random, 1);
     a.x.row(2).array() += 3;
     const SpanGroup& all = spans.group(spans.root());
