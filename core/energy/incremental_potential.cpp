@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <array>
+#include <utility>
 
 #include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/parallel.hpp"
@@ -40,18 +41,26 @@ void pull_back(const Matrix3& j_rows, const Matrix3& j_columns, Matrix6& h) {
     h.bottomRows<3>() = rows;
 }
 
-// Of the terms that couple bodies. `d` is memory to use again: what it held is lost.
-void sum_couplings(const DerivativesAt& at, CouplingDerivatives& d) {
-    const std::size_t n = at.poses.size();
-    d.gradient.resize(n);
-    d.hessian.diagonal.resize(n);
-    d.hessian.off_diagonal.clear();
-    base::parallel_for(static_cast<int>(n), bodies_to_clear, [&](int i) {
-        d.gradient[i] = {};
-        d.hessian.diagonal[i].setZero();
-    });
-    for (const CouplingTerm* term : coupling_terms()) term->add_derivatives(at, d);
-}
+// Of the terms that couple bodies. Memory that stays from call to call: who has taken a body's sums leaves them clear, while they are at
+// hand.
+struct CouplingSums {
+    CouplingDerivatives d;
+    bool are_clear = false;
+
+    // All of `bodies`.
+    void begin(std::size_t bodies) {
+        const bool usable = std::exchange(are_clear, false) && d.gradient.size() == bodies;
+        d.hessian.off_diagonal.clear();
+        if (usable) return;
+        d.gradient.resize(bodies);
+        d.hessian.diagonal.resize(bodies);
+        base::parallel_for(static_cast<int>(bodies), bodies_to_clear, [&](int i) { clear(static_cast<std::size_t>(i)); });
+    }
+    void clear(std::size_t body) {
+        d.gradient[body] = {};
+        d.hessian.diagonal[body].setZero();
+    }
+};
 
 }  // namespace
 
@@ -80,10 +89,12 @@ double incremental_potential(const StepProblem& problem, const std::vector<Chart
 
 ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector<ChartPoint>& points, const std::vector<Pose>& poses,
                                    const contact::ContactSet& contacts, contact::HessianKind kind) {
-    static thread_local CouplingDerivatives memory;  // stays from call to call
-    CouplingDerivatives& d = memory;
+    static thread_local CouplingSums memory;
+    CouplingSums& sums = memory;
+    CouplingDerivatives& d = sums.d;
     const DerivativesAt at{problem, poses, contacts, kind};
-    sum_couplings(at, d);
+    sums.begin(poses.size());
+    for (const CouplingTerm* term : coupling_terms()) term->add_derivatives(at, d);
     ChartDerivatives out;
     const std::size_t n = poses.size();
     out.gradient.resize(n);
@@ -97,6 +108,8 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         jacobian[i] = kinematics::left_jacobian(theta);
         out.force_magnitude[i] = d.gradient[i].force.norm() + own.magnitude;
         const kinematics::PoseGradient gradient{d.gradient[i].force + own.gradient.force, d.gradient[i].arm + own.gradient.arm};
+        const Matrix6 coupled = d.hessian.diagonal[i];
+        sums.clear(static_cast<std::size_t>(i));
         out.gradient[i] = tangent_gradient(gradient);
         const Vector3 turning = jacobian[i].transpose() * out.gradient[i].tail<3>();
         out.gradient[i].tail<3>() = turning + own.chart_gradient;
@@ -106,15 +119,16 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         if (kind == contact::HessianKind::projected) {
             pull_back(jacobian[i], jacobian[i], own.hessian);
             own.hessian.bottomRightCorner<3, 3>() += curvature;
-            sum = d.hessian.diagonal[i];
+            sum = coupled;
             pull_back(jacobian[i], jacobian[i], sum);
             sum += positive_part(own.hessian);
         } else {
-            sum = own.hessian + d.hessian.diagonal[i];
+            sum = own.hessian + coupled;
             pull_back(jacobian[i], jacobian[i], sum);
             sum.bottomRightCorner<3, 3>() += curvature;
         }
     });
+    sums.are_clear = true;
     if (kind == contact::HessianKind::none) return out;
     out.hessian.off_diagonal = std::move(d.hessian.off_diagonal);
     base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {

@@ -260,16 +260,12 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) const {
     return out;
 }
 
-std::vector<FixtureBody> FixtureBodies::read(const files::JsonNode& list, double timestep) {
+std::vector<std::vector<FixtureBody>> FixtureBodies::read(const files::JsonNode& list, double timestep) {
     const std::vector<files::JsonNode> nodes = list.elements();
     read_mesh_files(nodes);
     std::vector<std::vector<FixtureBody>> read(nodes.size());
     files::JsonNode::read_each(nodes, [&](std::size_t i, const files::JsonNode& node) { read[i] = read_body(node, timestep); });
-    std::vector<FixtureBody> bodies;
-    bodies.reserve(nodes.size());
-    for (std::vector<FixtureBody>& of_node : read)
-        bodies.insert(bodies.end(), std::make_move_iterator(of_node.begin()), std::make_move_iterator(of_node.end()));
-    return bodies;
+    return read;
 }
 
 std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, double timestep) {

@@ -41,10 +41,10 @@ public:
     /// Both outlive this object.
     FixtureBodies(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
-    /// For each element of `list`, in order, one body, or one per facet-connected component (`split_components`); none if it is switched
-    /// off (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
+    /// For each element of `list` one body, or one per facet-connected component (`split_components`); none if it is switched off
+    /// (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
     /// @param timestep  [s], of the scene.
-    std::vector<FixtureBody> read(const files::JsonNode& list, double timestep);
+    std::vector<std::vector<FixtureBody>> read(const files::JsonNode& list, double timestep);
 
     /// Gives bodies[i] the mesh of sources[i]: copies of many large meshes take longer than all the rest, and all threads.
     static void fill(std::vector<Body>& bodies, const std::vector<MeshSource>& sources);

@@ -60,11 +60,15 @@ public:
         read_friction(problem["coefficient_friction"].unless_null(), root["friction_constraints"].unless_null());
         read_barrier(root["distance_barrier_constraint"].unless_null());
         std::vector<MeshSource> meshes;  // of the bodies
-        std::vector<FixtureBody> bodies = bodies_.read(problem["rigid_bodies"].unless_null(), scene_.timestep);
-        scene_.bodies.reserve(bodies.size());
-        for (FixtureBody& body : bodies) {
-            scene_.bodies.push_back(std::move(body.body));
-            meshes.push_back(body.source);
+        std::vector<std::vector<FixtureBody>> read = bodies_.read(problem["rigid_bodies"].unless_null(), scene_.timestep);
+        std::size_t count = 0;
+        for (const std::vector<FixtureBody>& bodies : read) count += bodies.size();
+        scene_.bodies.reserve(count);
+        for (std::vector<FixtureBody>& bodies : read) {
+            for (FixtureBody& body : bodies) {
+                scene_.bodies.push_back(std::move(body.body));
+                meshes.push_back(body.source);
+            }
         }
         FixtureBodies::fill(scene_.bodies, meshes);
         merge_groups();

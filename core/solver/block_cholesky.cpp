@@ -261,21 +261,30 @@ void BlockCholesky::solve_column(std::vector<Vector6>& x) const {
 }
 
 MatrixX BlockCholesky::solve(const MatrixX& rhs, const FreeDofs& dofs) const {
-    const std::size_t n = columns_.size();
-    std::vector<Vector6> x(n);
+    static thread_local std::vector<Vector6> memory;  // stays from call to call
+    std::vector<Vector6>& x = memory;
+    x.resize(columns_.size());
     MatrixX out(rhs.rows(), rhs.cols());
+    const auto of_node = [&](std::size_t k) -> const std::array<int, 6>& { return dofs.index[at(body_of_[k])]; };
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
-        for (std::size_t k = 0; k < n; ++k)
-            for (int i = 0; i < 6; ++i) {
-                const int index = dofs.index[at(body_of_[k])][at(i)];
-                x[k][i] = index >= 0 ? rhs(index, c) : 0;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const std::array<int, 6>& index = of_node(k);
+            if (are_all_free(index)) {
+                x[k] = rhs.col(c).segment<6>(index[0]);
+                continue;
             }
+            for (int i = 0; i < 6; ++i) x[k][i] = index[at(i)] >= 0 ? rhs(index[at(i)], c) : 0;
+        }
         solve_column(x);
-        for (std::size_t k = 0; k < n; ++k)
-            for (int i = 0; i < 6; ++i) {
-                const int index = dofs.index[at(body_of_[k])][at(i)];
-                if (index >= 0) out(index, c) = x[k][i];
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const std::array<int, 6>& index = of_node(k);
+            if (are_all_free(index)) {
+                out.col(c).segment<6>(index[0]) = x[k];
+                continue;
             }
+            for (int i = 0; i < 6; ++i)
+                if (index[at(i)] >= 0) out(index[at(i)], c) = x[k][i];
+        }
     }
     return out;
 }

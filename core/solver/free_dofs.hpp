@@ -18,6 +18,8 @@ struct FreeDofs {
     int count = 0;
 };
 FreeDofs free_dofs(const model::Model& model);
+/// Of a body's DOFs: are all six free? Then they follow one another.
+inline bool are_all_free(const std::array<int, 6>& index) { return index[0] >= 0 && index[5] == index[0] + 5; }
 
 /// Entries of the free DOFs of a per-body vector, and back (prescribed entries are left alone).
 VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values);

@@ -3,9 +3,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "fettle/core/base/parallel.hpp"
 
 namespace fettle::design::cli {
 
@@ -13,8 +17,49 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Text from files can hold bytes that are no UTF-8: they must not break the one JSON object.
-std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+constexpr int indent = 2;
+
+// Text from files can hold bytes that are no UTF-8: they must not break the one JSON object. `depth`: of what it stands in.
+std::string dumped_within(const Json& json, int depth) {
+    const std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+    if (depth == 0) return text;
+    std::string out;
+    out.reserve(text.size() + text.size() / 2);
+    for (const char c : text) {  // a line's end in a string is escaped
+        out += c;
+        if (c == '\n') out.append(static_cast<std::size_t>(depth * indent), ' ');
+    }
+    return out;
+}
+
+// A long list, on all threads.
+std::string dumped_list(const Json& list, int depth) {
+    constexpr int elements_at_once = 32;
+    const std::string line = "\n" + std::string(static_cast<std::size_t>((depth + 1) * indent), ' ');
+    std::string out = core::base::ordered_reduce(
+        static_cast<int>(list.size()), elements_at_once, std::string("["),
+        [&](int begin, int end) {
+            std::string part;
+            for (int i = begin; i < end; ++i)
+                part += (i > 0 ? "," : "") + line + dumped_within(list[static_cast<std::size_t>(i)], depth + 1);
+            return part;
+        },
+        [](std::string&& so_far, std::string&& part) { return std::move(so_far) + part; });
+    return out.append(line, 0, line.size() - indent) + "]";
+}
+
+// As Json::dump() does it.
+std::string dumped(const Json& json) {
+    constexpr std::size_t long_list = 100;
+    const auto is_long = [](const Json& member) { return member.is_array() && member.size() >= long_list; };
+    if (!json.is_object() || std::none_of(json.begin(), json.end(), is_long)) return dumped_within(json, 0);
+    std::string out = "{";
+    for (const auto& [key, member] : json.items()) {
+        out += (out.size() > 1 ? ",\n  " : "\n  ") + dumped_within(key, 0) + ": ";
+        out += is_long(member) ? dumped_list(member, 1) : dumped_within(member, 1);
+    }
+    return out + "\n}";
+}
 
 bool no_color() {
     const char* value = std::getenv("NO_COLOR");

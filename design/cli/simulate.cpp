@@ -3,7 +3,9 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/continuation.hpp"
@@ -39,17 +41,18 @@ struct SimulateArguments {
 
 // Of the file's frame: its origin is at -c in the body's frame.
 Json bodies_at_end(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    Json list = Json::array();
-    list.get_ref<Json::array_t&>().reserve(model.bodies.size());
-    for (size_t i = 0; i < model.bodies.size(); ++i) {
+    constexpr int bodies_at_once = 32;
+    Json::array_t list(model.bodies.size());
+    core::base::parallel_for(static_cast<int>(list.size()), bodies_at_once, [&](int k) {
+        const auto i = static_cast<size_t>(k);
         const core::kinematics::Pose& pose = trajectory.poses.back()[i];
-        Json& body = list.emplace_back(Json::object());  // a list of pairs would be copied, twice
+        Json& body = list[i] = Json::object();  // a list of pairs would be copied, twice
         body["name"] = model.bodies[i].name;
         body["position"] = answers::vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point));
         Json& rotation = body["rotation"] = Json::array();
         for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
-    }
-    return list;
+    });
+    return Json(std::move(list));
 }
 
 // Forces at the end, and how well the joints are met over the whole run.

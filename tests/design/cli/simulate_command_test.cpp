@@ -46,6 +46,20 @@ struct SceneFolder : fettle::tests::support::TemporaryFolder {
 
 }  // namespace
 
+TEST_CASE("simulate: the answer of many bodies is written as that of few") {
+    const SceneFolder folder;
+    std::string more;
+    for (int i = 0; i < 150; ++i) {
+        more += R"(, {"name": "\"many\n\u00e9 )" + std::to_string(i) + R"(", "type": "static", "mesh": "cube.obj", "position": [)" +
+                std::to_string(10 + 3 * i) + ", 0, 0.1]}";
+    }
+    const Answer answer = run("simulate " + folder.scene(more) + " --steps 1 --json");
+    const auto json = nlohmann::ordered_json::parse(answer.out);
+    REQUIRE(json["bodies"].size() == 152);
+    CHECK(json["bodies"][151]["name"] == "\"many\n\u00e9 149");
+    CHECK(answer.out == json.dump(2) + "\n");
+}
+
 TEST_CASE("simulate: steps cover the end time, and the times of all it did are told") {
     const SceneFolder folder;
     const Answer answer = run("simulate " + folder.scene() + " --json");
