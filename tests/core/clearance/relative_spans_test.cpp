@@ -162,6 +162,33 @@ TEST_CASE("A path that jumps between its segments is bounded all the same", "[cl
     }
 }
 
+TEST_CASE("An arc bulges beyond its chord, whichever body turns") {
+    // In the frame of b a bar's end goes round an arc; across its middle, outside, something is `gap` away from it.
+    constexpr double arm = 2, swing = 0.2, gap = 0.01;
+    const auto corners_at = [](double radius, double angle) {
+        Corners corners;
+        const Vector3 at = radius * Vector3(std::cos(angle), std::sin(angle), 0);
+        corners.x << at, at, at;
+        return corners;
+    };
+    core::kinematics::PathSegment turning, still;
+    for (const bool a_turns : {true, false}) {
+        // a's own turn about b's origin; or b's the other way, a held beside it.
+        turning.rotation_vector_step = Vector3(0, 0, a_turns ? swing : -swing);
+        still.position_t0 = a_turns ? Vector3::Zero() : Vector3(arm, 0, 0);
+        const Corners end = a_turns ? corners_at(arm, 0) : corners_at(0, 0), outside = corners_at(arm + gap, swing / 2);
+        const double radius_a = a_turns ? arm : 1e-9, radius_b = arm + gap;
+        const PairSegment segment =
+            a_turns ? pair_segment(turning, still, radius_a, radius_b) : pair_segment(still, turning, radius_a, radius_b);
+        const RelativeSpans spans({segment}, {}, radius_a, radius_b);
+        const TurningPlane n{0, unit_direction(-outside.x.col(0)), 0};
+        const double bound = spans.of_elements(spans.group(0), n, piece_of(end), end, outside).spans[0];
+        CAPTURE(a_turns, bound);
+        CHECK(bound <= gap);
+        CHECK(bound > 0.5 * gap);  // the norm of a turn is taken by its entries
+    }
+}
+
 TEST_CASE("Bounds over many segments without their rests are found out", "[clearance]") {
     std::mt19937 random(4);
     int wrong = 0, spans = 0;
