@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
@@ -53,10 +54,11 @@ void subtract_product(Matrix6& a, const Matrix6& b, const Matrix6& c) {
 // Order of elimination of the nodes.
 std::vector<int> minimum_degree(const std::vector<std::vector<int>>& neighbours) {
     const int n = static_cast<int>(neighbours.size());
-    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<Eigen::Triplet<double>> entries;  // of the lower triangle
     for (int i = 0; i < n; ++i) {
         entries.emplace_back(i, i, 1);
-        for (const int j : neighbours[at(i)]) entries.emplace_back(i, j, 1);
+        for (const int j : neighbours[at(i)])
+            if (j < i) entries.emplace_back(i, j, 1);
     }
     Eigen::SparseMatrix<double> graph(n, n);
     graph.setFromTriplets(entries.begin(), entries.end());
@@ -112,23 +114,28 @@ void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeD
     }
     for (std::size_t k = 0; k < body_of_.size(); ++k) node_of_[at(body_of_[k])] = static_cast<int>(k);
     std::vector<std::vector<int>> ordered(bodies.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (const int j : neighbours[i]) ordered[at(place[i])].push_back(place[at(j)]);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        ordered[k] = std::move(neighbours[at(order[k])]);
+        for (int& j : ordered[k]) j = place[at(j)];
+    }
     find_columns(ordered);
 }
 
 // The rows of a column: those of the matrix, and those of the columns whose first row it is.
 void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours) {
     const std::size_t n = neighbours.size();
-    columns_.assign(n, {});
-    rows_.assign(n, {});
-    std::vector<std::vector<int>> children(n);
+    for (std::vector<std::vector<Entry>>* lists : {&columns_, &rows_}) {
+        lists->resize(n);
+        for (std::vector<Entry>& list : *lists) list.clear();  // and keep its memory
+    }
+    std::vector<int> last_child(n, -1), sibling(n, -1);  // of each column's children the last one; before each child another one
+    std::vector<int> rows;
     int blocks = 0;
     for (std::size_t j = 0; j < n; ++j) {
-        std::vector<int> rows;
+        rows.clear();
         for (const int i : neighbours[j])
             if (i > static_cast<int>(j)) rows.push_back(i);
-        for (const int child : children[j])
+        for (int child = last_child[j]; child >= 0; child = sibling[at(child)])
             for (const Entry& entry : columns_[at(child)])
                 if (entry.row > static_cast<int>(j)) rows.push_back(entry.row);
         std::sort(rows.begin(), rows.end());
@@ -137,7 +144,7 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
             rows_[at(i)].push_back({static_cast<int>(j), static_cast<int>(columns_[j].size())});
             columns_[j].push_back({i, blocks++});
         }
-        if (!rows.empty()) children[at(rows.front())].push_back(static_cast<int>(j));
+        if (!rows.empty()) sibling[j] = std::exchange(last_child[at(rows.front())], static_cast<int>(j));
     }
     diagonal_.resize(n);
     blocks_.resize(at(blocks));
