@@ -25,8 +25,15 @@ inline constexpr int lanes = 4;
     for (int j = 0; j < lanes; ++j) out[j] = std::abs(x[j]);
 }
 
-[[gnu::always_inline]] inline void take_larger(const Four& x, Four& largest) { largest = largest < x ? x : largest; }
-[[gnu::always_inline]] inline void take_smaller(const Four& x, Four& smallest) { smallest = x < smallest ? x : smallest; }
+/// Of Four or of double. What is no number is taken, and stays.
+template <class Value>
+[[gnu::always_inline]] inline void take_larger(const Value& x, Value& largest) {
+    largest = ((x > largest) | (x != x)) ? x : largest;
+}
+template <class Value>
+[[gnu::always_inline]] inline void take_smaller(const Value& x, Value& smallest) {
+    smallest = ((x < smallest) | (x != x)) ? x : smallest;
+}
 
 /// out[i][j] = rows[j][i].
 [[gnu::always_inline]] inline void transpose(const std::array<Four, lanes>& rows, std::array<Four, lanes>& out) {

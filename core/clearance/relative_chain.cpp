@@ -152,7 +152,7 @@ private:
         store(0.5 * rest.turn + norm_b * third_turn / 124 + jump.turn, chain.row(entries) + first);
         store(0.5 * rest.shift + norm_b * third_shift / 124 + jump.shift, chain.row(entries + 1) + first);
         const Four size = 2 * radius_sum + reach;
-        take_larger(
+        take_larger<Four>(
             8 * (norm_a * norm_b) * ((rounding_a + rounding_b + 64 * unit_roundoff) * size + 8 * unit_roundoff * (extent_a + extent_b)),
             rounding);
         take_larger(norm_b, base_norm);
@@ -176,18 +176,20 @@ namespace {
             },
             here);
         const auto is_inside = index < static_cast<double>(last);
-        take_larger(is_inside ? here.turn : zero, off.turn);
-        take_larger(is_inside ? here.shift : zero, off.shift);
+        take_larger<Four>(is_inside ? here.turn : zero, off.turn);
+        take_larger<Four>(is_inside ? here.shift : zero, off.shift);
         load(chain.rest_turns() + i, here.turn);
         load(chain.rest_shifts() + i, here.shift);
-        take_larger(is_inside ? here.turn : zero, own.turn);
-        take_larger(is_inside ? here.shift : zero, own.shift);
+        take_larger<Four>(is_inside ? here.turn : zero, own.turn);
+        take_larger<Four>(is_inside ? here.shift : zero, own.shift);
     }
     out = {};
     Rest beside;
     for (int j = 0; j < lanes; ++j) {
-        out = {std::max(out.turn, own.turn[j]), std::max(out.shift, own.shift[j])};
-        beside = {std::max(beside.turn, off.turn[j]), std::max(beside.shift, off.shift[j])};
+        take_larger<double>(own.turn[j], out.turn);
+        take_larger<double>(own.shift[j], out.shift);
+        take_larger<double>(off.turn[j], beside.turn);
+        take_larger<double>(off.shift[j], beside.shift);
     }
     out = {out.turn + beside.turn, out.shift + beside.shift};
 }
@@ -201,7 +203,6 @@ RelativeChain::RelativeChain(const std::vector<PairSegment>& segments, Frame fra
       length_(segments.size() + 1 + padding),
       values_(std::make_unique_for_overwrite<double[]>((entries + 2) * length_)) {
     FETTLE_ASSERT(!segments.empty(), "a chain of no segments");
-
     Block block{*this, segments, frame, radius_a + radius_b};
     if (base::has_wide_instructions())
         block.find_all_wide();
@@ -210,8 +211,8 @@ RelativeChain::RelativeChain(const std::vector<PairSegment>& segments, Frame fra
     std::fill(row(entries) + segments_, row(entries) + length_, 0);
     std::fill(row(entries + 1) + segments_, row(entries + 1) + length_, 0);
     for (int j = 0; j < lanes; ++j) {
-        rounding_ = std::max(rounding_, block.rounding[j]);
-        base_norm_ = std::max(base_norm_, block.base_norm[j]);
+        take_larger<double>(block.rounding[j], rounding_);
+        take_larger<double>(block.base_norm[j], base_norm_);
     }
 }
 

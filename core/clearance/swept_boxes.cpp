@@ -149,8 +149,8 @@ struct Boxes {
             find_middles(path, box, middle, room);
             const auto holds = room >= 0;
             for (std::size_t k = 0; k < 3; ++k) {
-                base::take_smaller(holds ? middle.center[k] - middle.half[k] : none, low[k]);
-                base::take_larger(holds ? middle.center[k] + middle.half[k] : -none, high[k]);
+                base::take_smaller<Four>(holds ? middle.center[k] - middle.half[k] : none, low[k]);
+                base::take_larger<Four>(holds ? middle.center[k] + middle.half[k] : -none, high[k]);
             }
             if ((holds[0] & holds[1] & holds[2] & holds[3]) != 0) continue;
         }
@@ -161,8 +161,8 @@ struct Boxes {
     }
     for (int j = 0; j < count; ++j) {
         for (Eigen::Index k = 0; k < 3; ++k) {
-            out[j].low[k] = std::min(out[j].low[k], low[static_cast<std::size_t>(k)][j]);
-            out[j].high[k] = std::max(out[j].high[k], high[static_cast<std::size_t>(k)][j]);
+            base::take_smaller<double>(low[static_cast<std::size_t>(k)][j], out[j].low[k]);
+            base::take_larger<double>(high[static_cast<std::size_t>(k)][j], out[j].high[k]);
         }
     }
 }

@@ -2,10 +2,9 @@
 #include "fettle/core/contact/contact_pair.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "fettle/core/base/factorisations.hpp"
-#include "fettle/core/base/wide_instructions.hpp"
+#include "fettle/core/base/four.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -56,10 +55,9 @@ void forward_solve(const Matrix2& l, int count, std::array<V, 2>& a) {
 [[gnu::always_inline]] inline void add_columns(double factor, const PairVector& v, PairMatrix& h) {
     const auto add = [](double scale, const double* from, double* to) __attribute__((always_inline)) {
         base::Four x, y;
-        std::memcpy(&x, from, sizeof x);
-        std::memcpy(&y, to, sizeof y);
-        y += scale * x;
-        std::memcpy(to, &y, sizeof y);
+        base::load(from, x);
+        base::load(to, y);
+        base::store(y + scale * x, to);
     };
     for (int j = 0; j < 9; ++j) {
         double* column = h.data() + 9 * j;
