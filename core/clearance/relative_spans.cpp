@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "fettle/core/base/four.hpp"
 #include "fettle/core/base/rounding.hpp"
-#include "fettle/core/base/wide_instructions.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -18,15 +18,13 @@ namespace {
 // Four nodes at a time, which fit the registers; blocks without a wanted node are left out.
 using base::Four;
 using FourBits = long long __attribute__((vector_size(32)));
-constexpr int block_size = 4;
+constexpr int block_size = base::lanes;
 struct FourVectors {
     Four x, y, z;
 };
 static_assert((most_spans + 1) % block_size == 0);
 
-[[gnu::always_inline]] inline void load(const Lanes& lanes, int block, Four& out) {
-    std::memcpy(&out, lanes.data() + block * block_size, sizeof out);
-}
+[[gnu::always_inline]] inline void load(const Lanes& lanes, int block, Four& out) { base::load(lanes.data() + block * block_size, out); }
 [[gnu::always_inline]] inline void dot(const FourVectors& n, const Vector3& v, Four& out) { out = v[0] * n.x + v[1] * n.y + v[2] * n.z; }
 [[gnu::always_inline]] inline void subtract_magnitude(double factor, const FourVectors& n, const Vector3& v, Four& sum) {
     Four along;
@@ -190,8 +188,8 @@ NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece&
     for (int i = 0; i * block_size <= most_spans; ++i) {
         Four turn = {0, 0, 0, 0}, shift = {0, 0, 0, 0}, here, next;
         for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
-            std::memcpy(&here, nodes[k].data() + i * block_size, sizeof here);
-            std::memcpy(&next, nodes[k].data() + i * block_size + 1, sizeof next);
+            base::load(nodes[k].data() + i * block_size, here);
+            base::load(nodes[k].data() + i * block_size + 1, next);
             (k < 9 ? turn : shift) += (next - here) * (next - here);
         }
         for (int j = 0; j < block_size; ++j) {

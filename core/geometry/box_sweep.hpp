@@ -23,12 +23,11 @@ class BoxSweep {
 public:
     using Pairs = std::vector<std::pair<int, int>>;
 
-    /// Of these of the boxes.
+    /// Of these of the boxes. Contract: no end is a NaN.
     BoxSweep(const std::vector<Box>& boxes, std::vector<int> some);
 
     /// Adds the pairs (i, j), i < j, of boxes whose gap along no axis is at least `reach`, as far as they are found from those that are
-    /// `begin` to `end` - 1 in the sweep; each pair is found from one of them. In an order that the boxes alone determine. What is no
-    /// number is near.
+    /// `begin` to `end` - 1 in the sweep; each pair is found from one of them. In an order that the boxes alone determine.
     void find(int begin, int end, double reach, Pairs& out) const;
 
 private:

@@ -41,7 +41,7 @@ public:
     /// Both outlive this object.
     FixtureBodies(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
 
-    /// For each element of `list` one body, or one per facet-connected component (`split_components`); none if it is switched off
+    /// [element of `list`] One body, or one per facet-connected component (`split_components`); none if it is switched off
     /// (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
     /// @param timestep  [s], of the scene.
     std::vector<std::vector<FixtureBody>> read(const files::JsonNode& list, double timestep);
