@@ -77,7 +77,7 @@ std::vector<int>& limits() {  // what tbb::global_control keeps for the other ba
     return values;
 }
 
-void start_thread(void (*run)()) { std::thread(run).detach(); }
+void start_thread(const std::function<void()>& run) { std::thread(run).detach(); }
 
 // On threads of their own.
 void run_apart(int threads, const std::function<void(int thread)>& work) {
@@ -116,7 +116,7 @@ int thread_count() {
 
 namespace {
 
-void start_thread(void (*run)()) { tbb::this_task_arena::enqueue(run); }
+void start_thread(const std::function<void()>& run) { tbb::this_task_arena::enqueue(run); }
 
 // Isolated: a thread that waits for an inner loop must not pick up a piece of an outer one, whose scratch memory it is using.
 void run_apart(int threads, const std::function<void(int thread)>& work) {
@@ -286,10 +286,10 @@ public:
         return true;
     }
 
-    void start() {
+    void start(const std::function<void()>& first = {}) {
         present_.fetch_add(1, std::memory_order_relaxed);
         maker_processor_.store(processor(), std::memory_order_relaxed);
-        start_thread([] { instance().linger(); });
+        start_thread([first] { instance().linger(first); });
         std::this_thread::yield();  // it may share this processor
     }
 
@@ -302,10 +302,12 @@ private:
     // Of state_: the loop's number, how many threads are busy with it, how many more may be.
     static constexpr std::uint64_t seat = 1, busy = 1 << 16, number = std::uint64_t{1} << 32;
 
-    void linger() {
-        if (!Inside::is_inside()) {  // else this thread waits for an inner loop
+    void linger(const std::function<void()>& first) {
+        const bool is_free = !Inside::is_inside();  // else this thread waits for an inner loop
+        if (is_free) leave_processor(maker_processor_.load(std::memory_order_relaxed));
+        if (first) first();
+        if (is_free) {
             const Inside inside;
-            leave_processor(maker_processor_.load(std::memory_order_relaxed));
             std::uint64_t last = 0;  // loop
             do last = helped_after(last);
             while (last != 0);
@@ -346,8 +348,8 @@ void run_pieces(int pieces, const std::function<void(int)>& run) {
 
 }  // namespace
 
-void wake_threads() {
-    for (int i = 1; i < thread_count(); ++i) Lingerers::instance().start();
+void wake_threads(const std::function<void()>& meanwhile) {
+    for (int i = 1; i < thread_count(); ++i) Lingerers::instance().start(i == 1 ? meanwhile : std::function<void()>());
 }
 
 ThreadLimit::ThreadLimit(int threads) {

@@ -34,7 +34,8 @@ private:
 int thread_count();
 
 /// Has the threads made, while the caller goes on: otherwise the first loop waits for them.
-void wake_threads();
+/// @param meanwhile  what one of them does first, if there is another thread than the caller's; throws nothing
+void wake_threads(const std::function<void()>& meanwhile = {});
 
 /// Calls body(begin, end) for the pieces [0, grain), [grain, 2 grain), ... of [0, count), in any order, on any thread, each once.
 /// If pieces throw, the exception of the lowest is thrown on, after all that were running have ended; higher ones may not have run.

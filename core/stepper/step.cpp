@@ -47,17 +47,22 @@ bool is_clear(const model::Model& model, const std::vector<PathSegment>& segment
 }
 
 // Of one stretch, on from the nodes that are there: straight where that is clear, else through as few of the accepted points as are needed.
-void store_path(const model::Model& model, const StepState& state, const std::vector<std::vector<ChartPoint>>& accepted,
+// Those are moved there, but for the last, which is copied.
+void store_path(const model::Model& model, const StepState& state, std::vector<std::vector<ChartPoint>>& accepted,
                 solver::NewtonWorkspace& workspace, TrajectoryStep& out) {
-    if (out.nodes.empty()) out.nodes.push_back(accepted.front());
-    if (accepted.size() == 1) out.nodes.push_back(accepted.front());  // at rest
-    std::size_t from = 0;
-    while (from + 1 < accepted.size()) {
-        std::size_t to = accepted.size() - 1;
+    const std::size_t last = accepted.size() - 1;
+    const auto store = [&](std::size_t k) {
+        if (k == last)
+            out.nodes.push_back(accepted[k]);
+        else
+            out.nodes.push_back(std::move(accepted[k]));
+    };
+    if (out.nodes.empty()) store(0);
+    if (last == 0) store(0);  // at rest
+    for (std::size_t from = 0, to = last; from < last; from = to, to = last) {
         for (; to > from + 1; to = from + 1 + (to - from - 1) / 2)
-            if (is_clear(model, straight_segments(model, state, accepted[from], accepted[to]), workspace)) break;
-        out.nodes.push_back(accepted[to]);
-        from = to;
+            if (is_clear(model, straight_segments(model, state, out.nodes.back(), accepted[to]), workspace)) break;
+        store(to);
     }
 }
 

@@ -15,6 +15,7 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/cli/program_memory.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -98,6 +99,16 @@ Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& com
     return loaded;
 }
 
+// While the file is read other threads are made, and memory for what it becomes.
+void begin_to_read(const std::string& path) {
+    constexpr std::uintmax_t growth = 64;                      // of a body's text to the body and a motion of some fifty steps
+    constexpr std::uintmax_t least = 1 << 20, most = 8 << 20;  // bytes: what pays, and what is cleared before it is wanted
+    std::error_code unreadable;
+    const std::uintmax_t size = std::filesystem::file_size(path, unreadable);
+    const std::uintmax_t bytes = unreadable ? 0 : std::min(most / growth, size) * growth;
+    core::base::wake_threads(bytes >= least && core::base::thread_count() > 1 ? memory_ahead(bytes) : std::function<void()>());
+}
+
 }  // namespace
 
 reading::Programs programs_of(const CommonOptions& common) {
@@ -113,7 +124,7 @@ FileKind file_kind(const std::string& path) {
 
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
     if (is_foreign(path)) return foreign_error(path);
-    core::base::wake_threads();
+    begin_to_read(path);
     const bool design = core::files::has_top_level_key(path, "fettle_design");
     Result<LoadedModel> loaded = design ? load_design(path, common) : load_scene(path, common, check_start);
     if (!loaded) return loaded.errors();

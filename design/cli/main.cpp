@@ -11,11 +11,8 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/program_memory.hpp"
 #include "fettle/design/cli/session.hpp"
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace {
 
@@ -125,17 +122,6 @@ int run(int argc, char** argv) {
         return console.internal_error(error.what());
     }
     return console.internal_error("no command ran");
-}
-
-// A step's matrices are made and dropped hundreds of times a second: memory that went back to the system each time would be a tenth of a
-// long simulation.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    constexpr int megabyte = 1 << 20;
-    mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
-    mallopt(M_TRIM_THRESHOLD, 512 * megabyte);
-    mallopt(M_TOP_PAD, 16 * megabyte);
-#endif
 }
 
 }  // namespace

@@ -129,6 +129,33 @@ TEST_CASE("the exception of the lowest piece arrives, whatever the timing", "[ba
     }
 }
 
+TEST_CASE("what is to be done meanwhile is done once, on another thread, if there is one", "[base]") {
+    std::atomic<int> done = 0;
+    std::atomic<std::thread::id> by;
+    const auto job = [&] {
+        by = std::this_thread::get_id();
+        ++done;
+    };
+    {
+        const ThreadLimit one(1);
+        wake_threads(job);
+        CHECK(done == 0);
+    }
+    if (thread_count() == 1) {
+        WARN("skipped: one thread alone");
+        return;
+    }
+    wake_threads(job);
+    const auto begin = std::chrono::steady_clock::now();
+    while (done == 0 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60)) std::this_thread::yield();
+    REQUIRE(done == 1);
+    CHECK(by.load() != std::this_thread::get_id());
+    std::atomic<int> visits = 0;  // loops go on as before
+    for (int k = 0; k < 100; ++k) parallel_for(40, 1, [&](int) { ++visits; });
+    CHECK(visits == 4000);
+    CHECK(done == 1);
+}
+
 TEST_CASE("loops can be nested, and limits too", "[base]") {
     std::atomic<int> visits = 0;
     parallel_for(10, 1, [&](int) { parallel_for(10, 1, [&](int) { ++visits; }); });

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// The program's memory: when it comes from the system, and when it goes back. By the GNU C library; with others nothing is done.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace fettle::design::cli {
+
+/// A step's matrices are made and dropped hundreds of times a second: memory that went back to the system each time would be a tenth of a
+/// long simulation.
+void keep_freed_memory();
+
+/// The first use of each page of memory costs over a microsecond: the system clears it. This lets another thread have so many bytes for
+/// the caller cleared, while the caller does what does not need them yet.
+/// @return what the other thread is to do, once; until then the caller has as much less. Empty where there is nothing to do.
+std::function<void()> memory_ahead(std::size_t bytes);
+
+}  // namespace fettle::design::cli
