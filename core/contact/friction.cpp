@@ -77,6 +77,16 @@ FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, 
     return {model.friction.eps_v * slip_time, std::move(lagged)};
 }
 
+double sliding_share(const FrictionSet& set, const std::vector<Pose>& poses) {
+    double all = 0, sliding = 0;
+    for (const BodyPairFriction& pair : set.pairs)
+        for (const FrictionContact& c : pair.contacts) {
+            all += c.load;
+            if (slide_of(c, poses[pair.first], poses[pair.second]).distance > set.slip_bound) sliding += c.load;
+        }
+    return all > 0 ? sliding / all : 0;
+}
+
 double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses) {
     std::vector<double> values(set.pairs.size());
     base::parallel_for(static_cast<int>(values.size()), pairs_at_once(values.size(), contacts_of(set)), [&](int k) {

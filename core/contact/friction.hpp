@@ -50,6 +50,9 @@ struct FrictionSet {
 FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, const std::vector<kinematics::Pose>& poses,
                          const BarrierParameters& parameters, const std::vector<Matrix34>& slip_reference, double slip_time);
 
+/// Share of the contacts' load that is borne where one has slid farther than the slip bound; 0 without contacts.
+double sliding_share(const FrictionSet& set, const std::vector<kinematics::Pose>& poses);
+
 /// Sum of D.
 double friction_potential(const FrictionSet& set, const std::vector<kinematics::Pose>& poses);
 

@@ -11,6 +11,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/core/solver/caution.hpp"
+#include "fettle/core/solver/coasting.hpp"
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"
 #include "fettle/core/solver/prescribed_drive.hpp"
@@ -61,6 +62,7 @@ public:
         do {
             if (frictional_) lag_friction_of_round();
             value_ = potential(at_);
+            if (result_.friction_rounds == 1 && may_coast()) begin_where_bodies_coast();
             first_of_round_ = result_.iterations;
             while (iterate()) {
             }
@@ -69,6 +71,7 @@ public:
         result_.poses = std::move(at_.poses);
         result_.contacts = std::move(at_.contacts);
         result_.friction = std::exchange(problem_.friction, {});
+        workspace_.slides = mostly_slides(result_.friction, result_.poses);
         if (workspace_.rows) result_.multipliers = workspace_.rows->multipliers();
         return std::move(result_);
     }
@@ -132,6 +135,42 @@ private:
         if (!begins_on_the_way) return lag_friction();
         const std::vector<Pose>& start = problem_.poses_t0;
         lag_friction(contact::find_contacts(model_, contact::find_candidates(model_, start, 0), start), start);
+    }
+
+    static bool mostly_slides(const contact::FrictionSet& friction, const std::vector<Pose>& poses) {
+        return sliding_share(friction, poses) > 0.5;
+    }
+
+    // Not with joints, which straight ways leave.
+    bool may_coast() const { return workspace_.slides && !caution_.is_on() && !workspace_.rows && options_.start.empty(); }
+
+    // From where a step starts friction holds what slides, and Newton steps are as short as what it takes to tell sticking from sliding:
+    // half a dozen of them go by before it slides again. Bodies that coast do not have to get going.
+    void begin_where_bodies_coast() {
+        std::vector<ChartPoint> points = coasted(problem_, targets_, workspace_.dofs);
+        if (points.empty()) return;
+        Iterate ahead{std::move(points), {}, {}};
+        ahead.poses = poses_of(problem_, ahead.points);
+        if (!mostly_slides(problem_.friction, ahead.poses)) return;
+        if (is_clear_to(ahead)) {
+            find_contacts(ahead);
+            if (const double value = potential(ahead); value <= value_) {
+                settle(ahead.poses, workspace_.candidates);
+                at_ = std::move(ahead);
+                value_ = value;
+                result_.path.push_back(at_.points);
+                return;
+            }
+        }
+        settle(at_.poses, workspace_.candidates);
+    }
+
+    // Searches the straight way there.
+    bool is_clear_to(const Iterate& ahead) {
+        const std::vector<PathSegment> segments = segments_to(ahead.points);
+        cover(segments);
+        const auto span = workspace_.clock.charge(SolvePhase::ccd);
+        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts).fraction == 1;
     }
 
     // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
@@ -394,10 +433,7 @@ private:
         const double left = 1 - fraction * direction.drive;
         if (!workspace_.rows->put_on_rows(problem_, workspace_.dofs, left, trial.points)) return false;
         trial.poses = poses_of(problem_, trial.points);
-        const std::vector<PathSegment> segments = segments_to(trial.points);
-        cover(segments);
-        const auto span = workspace_.clock.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts).fraction == 1;
+        return is_clear_to(trial);
     }
 
     // CCD, then backtracking; accepts the point found. @return the fraction of the direction taken, 0 if none.

@@ -11,7 +11,7 @@
 ///
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
 /// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from
-/// sliding.
+/// sliding. A step of bodies that slide begins where they coast to (coasting.hpp).
 #pragma once
 
 #include <functional>

@@ -30,7 +30,7 @@ struct KnownContacts {
     contact::ContactSet contacts;
 };
 
-/// What is worth keeping from one solve to the next; the result does not depend on it.
+/// What is worth keeping from one solve to the next; what a solve comes to depends on it by no more than its tolerance.
 struct NewtonWorkspace {
     FreeDofs dofs;
     LinearSolver linear;                  ///< its symbolic factor
@@ -38,9 +38,17 @@ struct NewtonWorkspace {
     contact::ContactPlans contact_plans;  ///< how their contacts were counted last
     KnownContacts contacts;               ///< where the last step ended
     std::optional<RowSystem> rows;        ///< of a model with joints or motors; its symbolic factor, and the last multipliers
+    bool slides = false;                  ///< most of what friction acts on, at the end of the last solve
     base::PhaseClock<SolvePhase> clock;
     explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {
         if (!model.mechanism.rows.empty()) rows.emplace(dofs);
+    }
+
+    /// All that the next solve's bits could depend on.
+    void forget() {
+        candidates = {};
+        slides = false;
+        if (rows) rows->forget_multipliers();
     }
 
     /// Of the Hessian, or of the saddle-point system that the rows make of it. @return false: it is not positive definite (on the rows)

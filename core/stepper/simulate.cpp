@@ -71,8 +71,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {
-            workspace.candidates = {};
-            if (workspace.rows) workspace.rows->forget_multipliers();
+            workspace.forget();
             out.checkpoint = {t, state};
         }
         StepResult result = step(model, state, workspace, options);

@@ -143,6 +143,20 @@ TEST_CASE("friction's force is mu times the normal force against the sliding, le
     }
 }
 
+TEST_CASE("the share of the load that slides is that of the contacts beyond the slip bound", "[friction]") {
+    CHECK(sliding_share(FrictionSet{}, {}) == 0);
+    CHECK(sliding_share(make_scene(1e-6).friction, make_scene(1e-6).poses) == 0);
+    CHECK(sliding_share(make_scene(3e-2).friction, make_scene(3e-2).poses) == 1);
+    Scene s = make_scene(3e-2);  // one contact goes with what it touches
+    FrictionContact& sticks = s.friction.pairs.front().contacts.front();
+    sticks.separation_reference = world_position(s.poses[s.friction.pairs.front().first], sticks.point_first) -
+                                  world_position(s.poses[s.friction.pairs.front().second], sticks.point_second);
+    double all = 0;
+    for (const BodyPairFriction& pair : s.friction.pairs)
+        for (const FrictionContact& c : pair.contacts) all += c.load;
+    CHECK(sliding_share(s.friction, s.poses) == Approx(1 - sticks.load / all).epsilon(1e-12));
+}
+
 TEST_CASE("pairs without friction are left out", "[friction]") {
     Scene s = make_scene(0);
     s.model.friction.mu(0, 0) = 0;

@@ -113,6 +113,60 @@ TEST_CASE("a sliding slab loses mu times the impulse that its contact carries", 
     }
 }
 
+namespace {
+
+/// The slab on its way at 2 m/s, `room` before a wall.
+core::model::Model slide_to_wall(double room) {
+    const double front = -1 + 0.1;
+    std::vector<core::model::Body> bodies{slab(-1, 5e-4), ground_plate()};
+    const core::kinematics::Pose beyond = make_pose(Vector3::Zero(), Vector3(front + room, 0, 0));
+    bodies.push_back(make_body("wall", box_mesh({0, -1, 0.01}, {0.1, 0, 0.2}), beyond, BodyType::static_body));
+    core::model::Model model = world(std::move(bodies), 0.005);
+    set_velocity(model.bodies[0], Vector3(2, 0, 0), Vector3::Zero());
+    set_friction(model, 0.1, 1e-4);
+    return model;
+}
+
+}  // namespace
+
+TEST_CASE("what slides need not get going in each step: three iterations at most, but after a checkpoint", "[physics]") {
+    const auto slide = run(slide_to_wall(1), 80);
+    for (int t = 5; t < 80; ++t) {
+        if (t % checkpoint_interval < 2) continue;  // a step begins where it starts until the one before it is known
+        INFO("step " << t);
+        CHECK(slide.report.steps[static_cast<std::size_t>(t)].newton_iterations <= 3);
+    }
+}
+
+TEST_CASE("what slides is stopped by a wall where it would have gone through", "[physics]") {
+    for (const double room : {2.1e-2, 2.5e-2, 3e-2}) {  // of 1 cm a step
+        INFO("room " << room);
+        const auto slide = run(slide_to_wall(room), 20);
+        for (int t = 1; t <= 20; ++t) CHECK(position(slide, t).x() < -1 + room);
+        CHECK(velocity(slide, 20).x() < 0.1);
+    }
+}
+
+TEST_CASE("a run goes on from a checkpoint as it would have, bit for bit, where bodies slide", "[physics]") {
+    const core::model::Model model = slide_to_wall(1);
+    SimulationOptions options;
+    options.steps = 70;
+    const Simulation whole = simulate(model, options);
+    options.steps = 40;
+    const Simulation part = simulate(model, options);
+    REQUIRE(part.checkpoint.step == checkpoint_interval);
+    options.steps = 70;
+    options.resume = &part;
+    const Simulation resumed = simulate(model, options);
+    REQUIRE(resumed.trajectory.poses.size() == whole.trajectory.poses.size());
+    for (int t = 0; t <= 70; ++t) {
+        INFO("step " << t);
+        CHECK(position(resumed, t) == position(whole, t));
+        CHECK(rotation(resumed, t) == rotation(whole, t));
+    }
+    CHECK(resumed.report.newton_iterations == whole.report.newton_iterations);
+}
+
 TEST_CASE("a block on the incline slides at mu 0.49 and stays at 0.5", "[physics]") {
     const double angle = 26.565 * pi / 180;  // tan = 0.499998
     const Vector3 down(std::cos(angle), 0, -std::sin(angle));
