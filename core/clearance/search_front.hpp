@@ -2,8 +2,9 @@
 /// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, the bounds so far, and the
 /// upper bounds with their witnesses.
 ///
-/// The most promising entry comes first. Not where a bound of `enough` is to be proven and nothing nearer has been seen: then each entry
-/// below it has to be looked at, in whatever order, and the last one made comes first, whose data are still at hand.
+/// The most promising entry comes first, and then for a while the last one made, which is mostly a part of it: what is below the cutoff has
+/// to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is to be proven and
+/// nothing nearer has been seen, always the last one made.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +66,8 @@ public:
           segments(all_segments),
           options(search_options),
           within_(within),
-          in_order_(within >= 0 || options.seek_intersection || options.sample_nodes || !(options.enough < infinity)) {
+          strict_(within >= 0 || options.seek_intersection || options.sample_nodes),
+          in_order_(strict_ || !(options.enough < infinity)) {
         result.upper = infinity;
         result.sampled.pair.distance = infinity;
     }
@@ -92,19 +94,22 @@ public:
 
     void push(double lower, EntryKind kind, int entry) {
         if (std::isnan(lower)) return set_aside(lower);  // nor would its parts be one
-        queue_.push_back({lower, made_++, static_cast<std::uint32_t>(entry), kind == EntryKind::spans});
-        if (in_order_) std::push_heap(queue_.begin(), queue_.end(), Later{});
+        last_made_.push_back({lower, made_++, static_cast<std::uint32_t>(entry), kind == EntryKind::spans});
+        if (strict_) put_in_order();
     }
     Key pop() {
-        if (in_order_) std::pop_heap(queue_.begin(), queue_.end(), Later{});
-        const Key key = queue_.back();
-        queue_.pop_back();
-        return key;
+        if (in_order_ && (last_made_.empty() || ++taken_ > longest_dive)) {
+            put_in_order();
+            taken_ = 0;
+            std::pop_heap(queue_.begin(), queue_.end(), Later{});
+            return taken_from(queue_);
+        }
+        return taken_from(last_made_);
     }
 
     bool is_settled() const {
-        if (queue_.empty() || result.upper < options.refuted) return true;
-        if (!in_order_) return false;
+        if ((queue_.empty() && last_made_.empty()) || result.upper < options.refuted) return true;
+        if (!in_order_ || !last_made_.empty()) return false;
         const double next = queue_.front().lower;
         if (is_collecting()) return next > within_;
         if (options.seek_intersection) return result.intersecting || next > 0;
@@ -127,7 +132,7 @@ public:
         result.upper = upper;
         result.nearest = encounter;
         result.intersecting = clash;
-        if (result.upper - options.tolerance < options.enough) put_in_order();
+        if (result.upper - options.tolerance < options.enough) in_order_ = true;
     }
 
 private:
@@ -135,14 +140,29 @@ private:
         bool operator()(const Key& x, const Key& y) const { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
     };
 
-    void put_in_order() {
-        if (!std::exchange(in_order_, true)) std::make_heap(queue_.begin(), queue_.end(), Later{});
+    static Key taken_from(std::vector<Key>& keys) {
+        const Key key = keys.back();
+        keys.pop_back();
+        return key;
     }
 
+    void put_in_order() {
+        for (const Key& key : last_made_) {
+            queue_.push_back(key);
+            std::push_heap(queue_.begin(), queue_.end(), Later{});
+        }
+        last_made_.clear();
+    }
+
+    static constexpr int longest_dive = 64;
+
     double within_ = -1;
-    bool in_order_;            // else the last one first
-    std::vector<Key> queue_;   // a heap if in order
-    double aside_ = infinity;  // least bound of the entries that are not in the queue any more and were not split
+    bool strict_;                 // the most promising one always
+    bool in_order_;               // else the last one always
+    std::vector<Key> queue_;      // a heap
+    std::vector<Key> last_made_;  // and not in the queue yet
+    int taken_ = 0;               // of these since the last one from the queue
+    double aside_ = infinity;     // least bound of the entries that are not in the queue any more and were not split
     std::uint32_t made_ = 0;
 };
 
