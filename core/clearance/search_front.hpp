@@ -98,7 +98,7 @@ public:
         if (strict_) put_in_order();
     }
     Key pop() {
-        if (in_order_ && (last_made_.empty() || ++taken_ > longest_dive)) {
+        if (last_made_.empty() || (in_order_ && ++taken_ > longest_dive)) {
             put_in_order();
             taken_ = 0;
             std::pop_heap(queue_.begin(), queue_.end(), Later{});
