@@ -28,6 +28,8 @@ public:
     void set_plane(int cell, const certificate::LeafPlane& plane) {
         if (on_) cells_[static_cast<std::size_t>(cell)].plane = plane;
     }
+    /// What was set; not if off.
+    certificate::LeafPlane plane(int cell) const { return on_ ? cells_[static_cast<std::size_t>(cell)].plane : certificate::LeafPlane{}; }
     /// One proof per segment.
     void write(certificate::PairProof& proof) const {
         const std::size_t segments = segment_count();

@@ -126,28 +126,27 @@ struct Rounding {
     double shrink, slack;
 };
 
-template <class AtNodes>
-[[gnu::always_inline]] inline void find_bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
-    NodeFunctions found;
-    add_nodes(at, at_nodes, found);
-    const double outer = at.a.radius * rounded_up;
+// Of points within `radius`; `turns`: do the planes?
+[[gnu::always_inline]] inline void cover_spans(const SpanGroup& group, const NodeFunctions& found, bool turns, double radius,
+                                               const Rounding& rounding, SpanBounds& out) {
+    const double outer = radius * rounded_up;
     const auto next = [](const std::array<double, most_spans + 2>& x, int block, Four& after) __attribute__((always_inline)) {
         std::memcpy(&after, x.data() + block * block_size + 1, sizeof after);
     };
     for (int i = 0; i * block_size <= most_spans; ++i) {
         Four rest, turn, nodes, after;
-        load(at.group.rest_shift, i, rest);
-        load(at.group.rest_turn, i, turn);
+        load(group.rest_shift, i, rest);
+        load(group.rest_turn, i, turn);
         rest += outer * turn;
-        if (at.plane.rate != 0) {
+        if (turns) {
             Four squared = {0, 0, 0, 0}, shift;
             for (const auto& n : found.direction) {
                 std::memcpy(&nodes, n.data() + i * block_size, sizeof nodes);
                 next(n, i, after);
                 squared += (after - nodes) * (after - nodes);
             }
-            load(at.group.step_shift, i, shift);
-            load(at.group.step_turn, i, turn);
+            load(group.step_shift, i, shift);
+            load(group.step_turn, i, turn);
             for (int j = 0; j < block_size; ++j) squared[j] = std::sqrt(squared[j]);
             rest += squared * (0.25 * rounded_up) * (shift + outer * turn);
         }
@@ -160,6 +159,13 @@ template <class AtNodes>
         std::memcpy(out.spans.data() + i * block_size, &spans, sizeof spans);
         std::memcpy(out.nodes.data() + i * block_size, &nodes, sizeof nodes);
     }
+}
+
+template <class AtNodes>
+[[gnu::always_inline]] inline void find_bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
+    NodeFunctions found;
+    add_nodes(at, at_nodes, found);
+    cover_spans(at.group, found, at.plane.rate != 0, at.a.radius, rounding, out);
 }
 
 template <class AtNodes>
@@ -247,6 +253,7 @@ Separation separation(const RelativePose& at, const Piece& a, const Piece& b) {
 RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b,
                              double deviation_scale) {
     const RelativeChain chain(segments, frame, radius_a, radius_b);
+    radius_ = radius_a;
     const double norm = chain.base_norm();
     slack_ = (chain.rounding() + (norm * norm - 1 + 8 * unit_roundoff) * 2 * radius_b) * rounded_up + std::numeric_limits<double>::min();
     shrink_ = (1 - 8 * unit_roundoff) / norm;
@@ -286,6 +293,17 @@ SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const TurningPlane& p
 SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
                                       const Corners& element_b, std::uint32_t wanted) const {
     return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfElements{element_a, element_b});
+}
+
+SpanBounds RelativeSpans::of_planes(const SpanGroup& group, const NodePlanes& planes) const {
+    NodeFunctions found;
+    for (std::size_t j = 0; j <= most_spans; ++j) {
+        found.f[j] = planes.f[j];
+        for (int k = 0; k < 3; ++k) found.direction[static_cast<std::size_t>(k)][j] = planes.n[j][k];
+    }
+    SpanBounds out;
+    cover_spans(group, found, true, radius_, {shrink_, slack_}, out);
+    return out;
 }
 
 Frame better_frame(const std::vector<PairSegment>& segments, double radius_a, double radius_b) {

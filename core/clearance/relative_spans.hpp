@@ -74,6 +74,12 @@ struct TurningPlane {
     double rate = 0;
 };
 
+/// Any n_j, |n_j| <= 1, in b's frame, and f_j of two whole bodies [m].
+struct NodePlanes {
+    std::array<Vector3, most_spans + 1> n{};
+    std::array<double, most_spans + 1> f{};
+};
+
 /// Lower bounds; entries beyond the group's count mean nothing.
 struct SpanBounds {
     Lanes spans;  ///< over each span
@@ -95,9 +101,12 @@ public:
     SpanBounds of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
                            const Corners& element_b, std::uint32_t wanted = all_nodes) const;
 
+    /// Of the whole bodies.
+    SpanBounds of_planes(const SpanGroup& group, const NodePlanes& planes) const;
+
 private:
     std::vector<SpanGroup> groups_;  // level by level
-    double slack_ = 0, shrink_ = 1;
+    double radius_ = 0, slack_ = 0, shrink_ = 1;
 };
 
 /// In which frame do points of the other body leave the chords of their segments by less? There bounds are better. Told by some of the

@@ -66,8 +66,8 @@ public:
           segments(all_segments),
           options(search_options),
           within_(within),
-          strict_(within >= 0 || options.seek_intersection || options.sample_nodes),
-          in_order_(strict_ || !(options.enough < infinity)) {
+          strict_(within >= 0 || options.seek_intersection),
+          in_order_(strict_ || options.sample_nodes || !(options.enough < infinity)) {
         result.upper = infinity;
         result.sampled.pair.distance = infinity;
     }
@@ -88,6 +88,10 @@ public:
     }
     /// The same of bounds that hold at the ends of segments, for the least distance there.
     double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * options.tolerance : -infinity; }
+
+    /// Bounds of whole bodies by their hulls are told less by this: what lies within the tolerance is still looked at, part by part, so
+    /// that the witness is the nearest place at its instant, and not only as near as the tolerance asks.
+    double hull_reserve() const { return options.tolerance; }
 
     /// A bound of what is not split any further.
     void set_aside(double lower) { aside_ = std::min(aside_, proven(lower)); }

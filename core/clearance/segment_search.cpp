@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "fettle/core/base/rounding.hpp"
+
 namespace fettle::core::clearance {
 namespace {
 
@@ -18,6 +20,9 @@ bool can_halve(const Interval& interval) {
     return interval.start != interval.end && interval.halvings < max_halvings;
 }
 
+// As corners_reach().
+Reach whole_reach(const BodySegment& body, double radius) { return {radius, body.speed * body.base_norm * radius * rounded_up}; }
+
 }  // namespace
 
 bool splits_a(const Piece& a, const Piece& b) {
@@ -25,7 +30,8 @@ bool splits_a(const Piece& a, const Piece& b) {
     return b.is_element() || a.size >= b.size;
 }
 
-SegmentSearch::SegmentSearch(SearchFront& front) : front_(front), recorder_(front.options.proof != nullptr, front.segments.size()) {
+SegmentSearch::SegmentSearch(SearchFront& front)
+    : front_(front), recorder_(front.options.proof != nullptr, front.segments.size()), hulls_(front.a, front.b) {
     const auto count = static_cast<int>(front_.segments.size());
     intervals_.resize(static_cast<std::size_t>(count));
     bounds_.resize(static_cast<std::size_t>(count));
@@ -40,7 +46,7 @@ void SegmentSearch::try_roots() {
     const auto roots = static_cast<int>(intervals_.size());
     for (int i = 0; i < roots; ++i) {
         if (i < static_cast<int>(front_.segments.size())) make_whole(i);
-        try_pieces(i, 0, 0, recorder_.root(intervals_[i].segment));
+        try_pieces(i, 0, 0, {recorder_.root(intervals_[i].segment)});
     }
 }
 
@@ -88,35 +94,83 @@ void SegmentSearch::keep(const Entry& entry, double lower, const certificate::Le
     front_.push(lower, EntryKind::segment, entries_.add(entry));
 }
 
-double SegmentSearch::try_pieces(int interval_index, int a, int b, int cell) {
+// `cell` knows what was proven of the pieces that these are parts of.
+double SegmentSearch::try_pieces(int interval_index, int a, int b, const Cell& cell) {
     ++front_.result.evaluations;
     const Interval& interval = intervals_[interval_index];
     const IntervalBound& prepared = *bounds_[interval_index];
     const Piece &piece_of_a = piece_a(a), &piece_of_b = piece_b(b);
     const Separation gap = separation(instants_[interval.middle], piece_of_a, piece_of_b);
-    const certificate::LeafPlane plane{gap.direction, gap.direction};
     Entry entry;
     entry.interval = interval_index;
     entry.a = a;
     entry.b = b;
-    entry.cell = cell;
-    const double slack = segment_of(interval).slack, motion = prepared.motion(piece_of_a, piece_of_b);
-    const double at_once = gap.apart - motion - slack;
+    entry.cell = cell.index;
+    Cell known = cell;
+    const auto learn = [&](double lower) {
+        if (!(known.lower > lower)) known = {cell.index, lower, {gap.direction, gap.direction}};
+    };
+    const double motion = prepared.motion(piece_of_a, piece_of_b), at_once = gap.apart - motion - segment_of(interval).slack;
     const bool elements = piece_of_a.is_element() && piece_of_b.is_element();
-    if (at_once >= front_.cutoff() || (interval.start == interval.end && !elements)) {
-        keep(entry, at_once, plane, true);
-        return at_once;
+    learn(at_once);
+    if (!(at_once >= front_.cutoff()) && (elements || interval.start != interval.end)) {
+        const SegmentBound bound = prepared.along(gap.direction, piece_of_a, piece_of_b, elements ? &corners_a(a) : nullptr,
+                                                  elements ? &corners_b(b) : nullptr, front_.options.deviation_scale);
+        if (!elements && can_halve(interval)) {
+            const double size = piece_of_a.size + piece_of_b.size;
+            entry.halve = bound.at_ends - bound.lower > 0.5 * size || (gap.apart <= 0 && motion > size);
+        }
+        // With the exact values of their corners elements may do better than at once, boxes with an overlap worse.
+        learn(bound.lower);
     }
-    const SegmentBound bound = prepared.along(gap.direction, piece_of_a, piece_of_b, elements ? &corners_a(a) : nullptr,
-                                              elements ? &corners_b(b) : nullptr, front_.options.deviation_scale);
-    if (!elements && can_halve(interval)) {
-        const double size = piece_of_a.size + piece_of_b.size;
-        entry.halve = bound.at_ends - bound.lower > 0.5 * size || (gap.apart <= 0 && motion > size);
+    if (a == 0 && b == 0 && !elements && gap.apart > 0 && known.lower < front_.cutoff()) return try_hulls(entry, known);
+    keep(entry, known.lower, known.plane, true);
+    return known.lower;
+}
+
+// From b to a where their hulls are nearest at an instant; zero if they meet.
+Vector3 SegmentSearch::hull_direction(int instant) {
+    ++front_.result.evaluations;
+    const Instant& at = instants_[instant];
+    const HullDirection::Bound found =
+        hulls_.at({at.rotation_b.transpose() * at.rotation_a, at.rotation_b.transpose() * at.offset}, hull_gap * front_.hull_reserve());
+    return found.apart > 0 ? unit_direction(at.rotation_b * found.n) : Vector3::Zero();
+}
+
+// Both whole bodies, as if they were two elements, where their hulls are apart.
+double SegmentSearch::try_hulls(const Entry& whole, const Cell& known) {
+    const Interval interval = intervals_[whole.interval];
+    const Vector3 n0 = hull_direction(interval.start);
+    if (!n0.isZero(0)) return try_hulls(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.end), known);
+    keep(whole, known.lower, known.plane, true);
+    return known.lower;
+}
+
+double SegmentSearch::try_hulls(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known) {
+    ++front_.result.evaluations;
+    const Interval& interval = intervals_[whole.interval];
+    const PairSegment& segment = segment_of(interval);
+    const MovingPlane plane = moving_plane(instants_[interval.start], instants_[interval.middle], instants_[interval.end], n0, n1);
+    Coefficients c{};
+    Support a = any_support(front_.a), b = any_support(front_.b);
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        a = support(front_.a, -plane.a[i], a);
+        b = support(front_.b, plane.b[i], b);
+        c[i] = plane.offset[i] - (a.value + b.value);
     }
-    // With the exact values of their corners elements may do better than at once, boxes with an overlap worse.
-    const double lower = std::max(bound.lower, at_once);
-    keep(entry, lower, plane, true);
-    return lower;
+    const ReachPair reach{whole_reach(*segment.a, front_.a.radius()), whole_reach(*segment.b, front_.b.radius())};
+    const SegmentBound bound = segment_bound(segment, length(interval), plane, c, reach, front_.options.deviation_scale);
+    const double reserve = front_.hull_reserve(), lower = bound.lower - reserve;
+    Entry entry = whole;
+    entry.beside = true;
+    entry.halve = false;
+    entry.n0 = n0;
+    entry.n1 = n1;
+    const bool worth = bound.at_ends - bound.lower > 4 * segment.slack;
+    entry.at_ends = worth && can_halve(interval) ? bound.at_ends - reserve : -infinity;
+    const bool better = !(known.lower > lower);
+    keep(entry, better ? lower : known.lower, better ? certificate::LeafPlane{n0, n1} : known.plane, true);
+    return better ? lower : known.lower;
 }
 
 SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1) {
@@ -193,21 +247,22 @@ void SegmentSearch::take_distance_of_any_pair() {
 void SegmentSearch::split(int index, double lower) {
     const Entry entry = entries_.take(index);
     if (lower >= front_.cutoff()) return front_.set_aside(lower);
+    const certificate::LeafPlane plane = recorder_.plane(entry.cell);
     const bool elements = piece_a(entry.a).is_element() && piece_b(entry.b).is_element();
     if (elements && front_.is_collecting() && entry.measured) {
         if (!collect_pair(entry)) halve(entry);
-    } else if (entry.halve) {
+    } else if (entry.halve || (entry.beside && entry.at_ends >= front_.cutoff())) {
         halve(entry);
     } else if (elements) {
         measure_elements(entry);
     } else if (splits_a(piece_a(entry.a), piece_b(entry.b))) {
         const auto [first, second] = recorder_.split(entry.cell, 'a');
-        try_pieces(entry.interval, piece_a(entry.a).left, entry.b, first);
-        try_pieces(entry.interval, piece_a(entry.a).right, entry.b, second);
+        try_pieces(entry.interval, piece_a(entry.a).left, entry.b, {first, lower, plane});
+        try_pieces(entry.interval, piece_a(entry.a).right, entry.b, {second, lower, plane});
     } else {
         const auto [first, second] = recorder_.split(entry.cell, 'b');
-        try_pieces(entry.interval, entry.a, piece_b(entry.b).left, first);
-        try_pieces(entry.interval, entry.a, piece_b(entry.b).right, second);
+        try_pieces(entry.interval, entry.a, piece_b(entry.b).left, {first, lower, plane});
+        try_pieces(entry.interval, entry.a, piece_b(entry.b).right, {second, lower, plane});
     }
 }
 
@@ -227,9 +282,20 @@ void SegmentSearch::halve(const Entry& entry) {
     if (intervals_[entry.interval].first_half < 0) make_halves(entry.interval);
     const Interval interval = intervals_[entry.interval];
     const auto [first, second] = recorder_.split(entry.cell, 't');
+    if (entry.beside) {
+        Entry half = entry;
+        const Vector3 n = hull_direction(interval.middle);
+        half.cell = first;
+        half.interval = interval.first_half;
+        try_hulls(half, entry.n0, n, {first});
+        half.cell = second;
+        half.interval = interval.second_half;
+        try_hulls(half, n, entry.n1, {second});
+        return;
+    }
     if (!entry.measured) {
-        try_pieces(interval.first_half, entry.a, entry.b, first);
-        try_pieces(interval.second_half, entry.a, entry.b, second);
+        try_pieces(interval.first_half, entry.a, entry.b, {first});
+        try_pieces(interval.second_half, entry.a, entry.b, {second});
         return;
     }
     const Vector3 n = measure(interval.segment, instants_[interval.middle], entry.a, entry.b).direction;

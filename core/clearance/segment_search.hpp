@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "fettle/core/clearance/hull_direction.hpp"
 #include "fettle/core/clearance/piece_bound.hpp"
 #include "fettle/core/clearance/proof_recorder.hpp"
 #include "fettle/core/clearance/relative_spans.hpp"
@@ -22,7 +23,7 @@ public:
     /// Two pieces over a whole segment; returns a lower bound of their distance there.
     double try_segment(int segment, int a, int b) {
         make_whole(segment);
-        return try_pieces(segment, a, b, recorder_.root(segment));
+        return try_pieces(segment, a, b, {recorder_.root(segment)});
     }
     /// Halves an entry that the queue gave back, in time or in space, unless its bound has become good enough.
     void split(int entry, double lower);
@@ -51,8 +52,17 @@ private:
         int a = 0, b = 0;       // pieces
         int cell = -1;          // of the recorder
         bool measured = false;  // two elements whose closest points are known at the interval's ends: n0, n1 are their directions
+        bool beside = false;    // both whole bodies, whose hulls are apart along n0 and n1 at the interval's ends
         bool halve = false;     // in time, else in space
+        double at_ends = 0;     // beside each other: a bound there
         Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
+    };
+
+    // Of the recorder, and what is known of it.
+    struct Cell {
+        int index = -1;
+        double lower = -infinity;
+        certificate::LeafPlane plane{};  // proves it
     };
 
     void make_whole(int segment);
@@ -61,7 +71,10 @@ private:
     int add_instant(const PairSegment& segment, double s);
     void make_halves(int index);
     void keep(const Entry& entry, double lower, const certificate::LeafPlane& plane, bool splittable);
-    double try_pieces(int interval_index, int a, int b, int cell);
+    double try_pieces(int interval_index, int a, int b, const Cell& cell);
+    double try_hulls(const Entry& whole, const Cell& known);
+    double try_hulls(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known);
+    Vector3 hull_direction(int instant);
     SegmentBound elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1);
     void try_elements(Entry entry, const Vector3& n0, const Vector3& n1);
     Separation measure(int segment_index, const Instant& at, int a, int b);
@@ -79,6 +92,7 @@ private:
 
     SearchFront& front_;
     ProofRecorder recorder_;
+    HullDirection hulls_;
     std::vector<Instant> instants_;
     std::vector<Interval> intervals_;
     std::vector<std::optional<IntervalBound>> bounds_;  // of the intervals

@@ -24,7 +24,8 @@ SpanSearch::SpanSearch(SearchFront& front, SegmentSearch& segments)
     : front_(front),
       segments_(segments),
       frame_(better_frame(front.segments, front.a.radius(), front.b.radius())),
-      spans_(front.segments, frame_, moving_tree().radius(), fixed_tree().radius(), front.options.deviation_scale) {}
+      spans_(front.segments, frame_, moving_tree().radius(), fixed_tree().radius(), front.options.deviation_scale),
+      hulls_(moving_tree(), fixed_tree()) {}
 
 void SpanSearch::try_root() { try_pieces(whole_group(spans_.root(), 0, 0, -infinity)); }
 
@@ -58,6 +59,30 @@ void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart) {
     const SpanBounds found = are_elements(entry)
                                  ? spans_.of_elements(group, plane, x, corners(moving_tree(), x), corners(fixed_tree(), y), open)
                                  : spans_.of_boxes(group, plane, x, y, open);
+    take(found, open, entry);
+}
+
+// Whole bodies along the directions in which their hulls are nearest.
+void SpanSearch::tighten_by_hulls(Entry& entry) {
+    const SpanGroup& group = spans_.group(entry.group);
+    const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
+    const double gap = hull_gap * front_.hull_reserve();
+    NodePlanes planes;
+    planes.n.fill(Vector3::Zero());
+    ++front_.result.evaluations;
+    if (!(hulls_.at(group.at(entry.nearest), gap).apart > 0)) return;
+    entry.beside = true;
+    for_bits(open, [&](int j) {
+        ++front_.result.evaluations;
+        const HullDirection::Bound bound = hulls_.at(group.at(j), gap);
+        planes.n[static_cast<std::size_t>(j)] = bound.n;
+        planes.f[static_cast<std::size_t>(j)] = bound.apart - front_.hull_reserve();
+    });
+    const SpanBounds found = spans_.of_planes(group, planes);
+    take(found, open, entry);
+}
+
+void SpanSearch::take(const SpanBounds& found, std::uint32_t open, Entry& entry) {
     entry.lower = {entry.lower.spans.max(found.spans), entry.lower.nodes.max(found.nodes)};
     double least = infinity;
     for_bits(open, [&](int j) {
@@ -94,7 +119,11 @@ double SpanSearch::close(Entry& entry) {
 void SpanSearch::try_pieces(Entry entry) {
     const Separation gap = separation(spans_.group(entry.group).at(entry.nearest), moving(entry), fixed(entry));
     tighten(entry, gap.direction, gap.apart);
-    const double least = close(entry);
+    double least = close(entry);
+    if (least < infinity && entry.a == 0 && entry.b == 0 && gap.apart > 0 && !are_elements(entry)) {
+        tighten_by_hulls(entry);
+        least = close(entry);
+    }
     if (least < infinity) front_.push(least, EntryKind::spans, entries_.add(entry));
 }
 
@@ -110,7 +139,8 @@ void SpanSearch::split(int index) {
     for_bits(entry.open_spans, [&](int j) {
         const double at_ends = std::min(entry.lower.nodes[j], entry.lower.nodes[j + 1]);
         const bool goes_far = group.level > 0 && group.step_shift[j] + radius * group.step_turn[j] > size;
-        if (at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) return;
+        const bool whole = group.level > 0 && entry.beside;
+        if (!whole && at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) return;
         halve_span(entry, j);
         entry.open_spans ^= 1U << j;
     });
@@ -121,6 +151,7 @@ void SpanSearch::split_space(const Entry& entry) {
     const Piece &a = piece_a(entry.a), &b = piece_b(entry.b);
     const bool first = splits_a(a, b);
     Entry half = entry;
+    half.beside = false;
     (first ? half.a : half.b) = (first ? a : b).left;
     try_pieces(half);
     (first ? half.a : half.b) = (first ? a : b).right;

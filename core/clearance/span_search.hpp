@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "fettle/core/clearance/hull_direction.hpp"
 #include "fettle/core/clearance/relative_spans.hpp"
 #include "fettle/core/clearance/search_front.hpp"
 #include "fettle/core/clearance/segment_search.hpp"
@@ -28,6 +29,7 @@ private:
         int a = 0, b = 0;  // pieces
         SpanBounds lower;
         std::uint32_t open_spans = 0, open_nodes = 0;  // bits
+        bool beside = false;                           // both whole bodies, whose hulls are apart
         int nearest = 0;                               // node: where the pieces are likely to be nearest
     };
 
@@ -41,6 +43,8 @@ private:
     const Piece& moving(const Entry& entry) const { return frame_.exchanged ? piece_b(entry.b) : piece_a(entry.a); }
     const Piece& fixed(const Entry& entry) const { return frame_.exchanged ? piece_a(entry.a) : piece_b(entry.b); }
     void tighten(Entry& entry, const Vector3& n, double apart);
+    void tighten_by_hulls(Entry& entry);
+    static void take(const SpanBounds& found, std::uint32_t open, Entry& entry);
     double close(Entry& entry);
     void try_pieces(Entry entry);
     void split_space(const Entry& entry);
@@ -52,6 +56,7 @@ private:
     SegmentSearch& segments_;
     Frame frame_;  // of the spans
     RelativeSpans spans_;
+    HullDirection hulls_;
     EntryPool<Entry> entries_;
 };
 

@@ -280,4 +280,31 @@ TEST_CASE("Many segments: those far away cost one bound each", "[clearance]") {
     CHECK(result.evaluations < 1500);
 }
 
+TEST_CASE("Bodies beside each other need no search of all pairs of their parts", "[clearance]") {
+    const Solid a = ring(200, 0.01, 0.012, 0.004), b = ring(200, 0.01, 0.012, 0.004);
+    std::vector<core::clearance::PairSegment> segments;
+    for (int i = 0; i < 60; ++i) {  // round facets that are nearly as near as each other, at every instant
+        core::kinematics::PathSegment still, rolling;
+        rolling.position_t0 << 0.03, 1e-4 * i, 1e-3;
+        rolling.position_step << 0, 1e-4, 0;
+        rolling.base = core::kinematics::rotation(Vector3(0, 0, 0.01 * i));
+        rolling.rotation_vector_step << 0, 0, 0.01;
+        segments.push_back(core::clearance::pair_segment(still, rolling, a.radius(), b.radius()));
+        segments.back().step = i;
+    }
+    SearchOptions options;
+    options.tolerance = 1e-8;
+    const SearchResult together = search_pair(a.search(), b.search(), segments, options);
+    certificate::PairProof proof;
+    options.proof = &proof;
+    const SearchResult recorded = search_pair(a.search(), b.search(), segments, options);
+    for (const SearchResult& result : {together, recorded}) {
+        CHECK(result.upper - result.lower <= 1e-8);
+        CHECK(result.upper == Approx(0.006).margin(2e-6));
+    }
+    CAPTURE(together.evaluations, recorded.evaluations);
+    CHECK(together.evaluations < 3000);
+    CHECK(recorded.evaluations < 3000);
+}
+
 }  // namespace fettle::core::clearance::pair_search_test

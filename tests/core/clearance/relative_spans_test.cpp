@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "fettle/core/clearance/hull_direction.hpp"
 #include "fettle/core/clearance/witness_instant.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
@@ -73,8 +74,19 @@ std::vector<int> segments_of(const RelativeSpans& spans, const SpanGroup& group,
     return all;
 }
 
+/// In the directions in which the bodies' hulls are nearest.
+NodePlanes hull_planes(const SpanGroup& group, HullDirection& hulls) {
+    NodePlanes planes;
+    for (int j = 0; j <= most_spans; ++j) {
+        const HullDirection::Bound bound = hulls.at(group.at(j), 0);
+        planes.n[static_cast<std::size_t>(j)] = bound.n;
+        planes.f[static_cast<std::size_t>(j)] = bound.apart;
+    }
+    return planes;
+}
+
 struct Verdict {
-    int spans = 0, wrong = 0, useful = 0;
+    int spans = 0, wrong = 0, useful = 0, useful_planes = 0;
     std::vector<int> seen;
 };
 
@@ -91,6 +103,8 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
     for (std::size_t i = 0; i < segments.size(); ++i)
         least.push_back(static_cast<double>(sampled_minimum({solid_a, solid_b, motion.a[i], motion.b[i]}, 12, 3)));
     const RelativeSpans spans(segments, {}, solid_a.radius(), solid_b.radius(), deviation_scale);
+    const PieceTree tree_a = solid_a.search(), tree_b = solid_b.search();
+    HullDirection hulls(tree_a, tree_b);
     Verdict verdict;
     verdict.seen.resize(segments.size());
     std::vector<int> pending{spans.root()};
@@ -102,7 +116,8 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
         const double rate = random() % 2 ? 1 / (nearest.distance + size) : 0;
         const TurningPlane n{node, unit_direction(nearest.difference), rate};
         const SpanBounds of_elements = spans.of_elements(group, n, piece_of(a), a, b),
-                         of_boxes = spans.of_boxes(group, n, piece_of(a), piece_of(b));
+                         of_boxes = spans.of_boxes(group, n, piece_of(a), piece_of(b)),
+                         of_planes = spans.of_planes(group, hull_planes(group, hulls));
         for (int j = 0; j < group.count; ++j) {
             double sampled = 1e300;
             for (const int i : segments_of(spans, group, j)) {
@@ -110,8 +125,10 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
                 if (group.level == 0) ++verdict.seen[static_cast<std::size_t>(i)];
             }
             ++verdict.spans;
-            verdict.wrong += of_elements.spans[j] > sampled || of_boxes.spans[j] > sampled;
+            verdict.wrong += of_elements.spans[j] > sampled || of_boxes.spans[j] > sampled || of_planes.spans[j] > sampled;
             verdict.useful += of_elements.spans[j] > 0.8 * sampled;
+            verdict.useful_planes += of_planes.spans[j] > 0.8 * sampled;
+            CHECK(of_planes.nodes[j] == Approx(distance_at(group, j, a, b).distance).margin(1e-7 * size));
             CHECK(of_boxes.spans[j] <= of_elements.nodes[j] + 1e-9 * size);
             CHECK(of_elements.spans[j] <= std::min(of_elements.nodes[j], of_elements.nodes[j + 1]));
             if (group.level > 0) pending.push_back(group.first + j);
@@ -124,7 +141,7 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
 
 TEST_CASE("Bounds over many segments at once hold against samples in extended precision", "[clearance]") {
     std::mt19937 random(3);
-    int spans = 0, useful = 0;
+    int spans = 0, useful = 0, useful_planes = 0;
     for (int trial = 0; trial < 60; ++trial) {
         const int steps = 1 + static_cast<int>(random() % 60);
         const double size = std::pow(10.0, -3 + trial % 4), turn = std::pow(10.0, -3 + trial % 3);
@@ -134,8 +151,10 @@ TEST_CASE("Bounds over many segments at once hold against samples in extended pr
         CHECK(std::all_of(verdict.seen.begin(), verdict.seen.end(), [](int times) { return times == 1; }));
         spans += verdict.spans;
         useful += verdict.useful;
+        useful_planes += verdict.useful_planes;
     }
     CHECK(useful > spans / 4);
+    CHECK(useful_planes > spans / 3);
 }
 
 TEST_CASE("A path that jumps between its segments is bounded all the same", "[clearance]") {
