@@ -99,7 +99,7 @@ public:
     Closest(const Corners& a, const Corners& b) : a_(a), b_(b) { closest_.distance_squared = std::numeric_limits<double>::infinity(); }
 
     void vertex_of_a(int i) {
-        if (is_behind(along_a_[i], along_b_.maxCoeff())) return;
+        if (is_behind(along_a_[i], most_of_b_)) return;
         const auto c = geometry::point_triangle_closest(a_.x.col(i), b_.x.col(0), b_.x.col(1), b_.x.col(2));
         if (!take(c, Primitive::vertex, i, Primitive::triangle, 0)) return;
         best_.point_a = a_.x.col(i);
@@ -108,7 +108,7 @@ public:
         look_along(best_.difference);
     }
     void vertex_of_b(int j) {
-        if (is_behind(along_a_.minCoeff(), along_b_[j])) return;
+        if (is_behind(least_of_a_, along_b_[j])) return;
         const auto c = geometry::point_triangle_closest(b_.x.col(j), a_.x.col(0), a_.x.col(1), a_.x.col(2));
         if (!take(c, Primitive::triangle, 0, Primitive::vertex, j)) return;
         best_.point_b = b_.x.col(j);
@@ -129,6 +129,14 @@ public:
         best_.difference = c.difference;
         look_along(best_.difference);
     }
+    // Features of the same elements elsewhere.
+    void features_of(const ElementPairDistance& known) {
+        if (known.kind_a == Primitive::triangle) return vertex_of_b(known.corner_b);
+        if (known.kind_b == Primitive::triangle) return vertex_of_a(known.corner_a);
+        edges(known.kind_a, known.corner_a, known.kind_b, known.corner_b);
+    }
+    // No others are closer, and the elements are apart.
+    bool is_least() const { return least_of_a_ - most_of_b_ >= apart_; }
     ElementPairDistance result() {
         best_.distance = best_.difference.norm();
         return best_;
@@ -155,12 +163,15 @@ private:
         const Vector3 n = difference / distance;
         along_a_ = a_.x.transpose() * n;
         along_b_ = b_.x.transpose() * n;
+        least_of_a_ = along_a_.minCoeff();
+        most_of_b_ = along_b_.maxCoeff();
         apart_ = distance * (1 - 1e-13);
     }
     bool is_behind(double least_of_a, double most_of_b) const { return least_of_a - most_of_b >= apart_; }
 
     const Corners &a_, &b_;
     Vector3 along_a_ = Vector3::Zero(), along_b_ = Vector3::Zero();
+    double least_of_a_ = 0, most_of_b_ = 0;
     double apart_ = std::numeric_limits<double>::infinity();
     geometry::ClosestPoints closest_;
     ElementPairDistance best_;
@@ -168,8 +179,12 @@ private:
 
 }  // namespace
 
-ElementPairDistance element_pair_distance(const Corners& a, const Corners& b) {
+ElementPairDistance element_pair_distance(const Corners& a, const Corners& b, const ElementPairDistance* before) {
     Closest closest(a, b);
+    if (before != nullptr) {
+        closest.features_of(*before);
+        if (closest.is_least()) return closest.result();
+    }
     if (b.count == 3)
         for (int i = 0; i < a.count; ++i) closest.vertex_of_a(i);
     if (a.count == 3)

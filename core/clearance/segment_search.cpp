@@ -202,10 +202,13 @@ void SegmentSearch::try_elements(Entry entry, const Vector3& n0, const Vector3& 
 }
 
 Separation SegmentSearch::measure(int segment_index, const Instant& at, int a, int b) {
-    const Encounter encounter{segment_index, at.s, piece_a(a).first, piece_b(b).first, placed_distance(at, corners_a(a), corners_b(b))};
-    front_.take_upper(encounter);
-    if (encounter.pair.intersecting) return {};
-    return {unit_direction(encounter.pair.difference), encounter.pair.distance};
+    const int element_a = piece_a(a).first, element_b = piece_b(b).first;
+    const bool again = measured_.segment >= 0 && measured_.element_a == element_a && measured_.element_b == element_b;
+    const ElementPairDistance pair = placed_distance(at, corners_a(a), corners_b(b), again ? &measured_.pair : nullptr);
+    measured_ = {segment_index, at.s, element_a, element_b, pair};
+    front_.take_upper(measured_);
+    if (pair.intersecting) return {};
+    return {unit_direction(pair.difference), pair.distance};
 }
 
 Separation SegmentSearch::measure_at(const SegmentEnd& place, int a, int b) {

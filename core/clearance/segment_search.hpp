@@ -97,6 +97,7 @@ private:
     std::vector<Interval> intervals_;
     std::vector<std::optional<IntervalBound>> bounds_;  // of the intervals
     EntryPool<Entry> entries_;
+    Encounter measured_;  // the last one
     std::vector<Encounter> found_;
 };
 

@@ -17,13 +17,12 @@ struct Encounter {
 };
 
 /// Distance of two elements (corners in their bodies' frames) at an instant; points relative to body b's reference point.
-ElementPairDistance placed_distance(const Instant& at, const Corners& corners_a, const Corners& corners_b);
+/// @param before  as of element_pair_distance()
+ElementPairDistance placed_distance(const Instant& at, const Corners& corners_a, const Corners& corners_b,
+                                    const ElementPairDistance* before = nullptr);
 
-/// Its derivative in s: n.(velocity of a's closest point - that of b's), n from b to a. Zero at distance 0.
-double distance_rate(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s);
-
-/// The local minimum of the distance next to `s`, by bisection of its derivative, in [0, 1]: an end, or a place where the rate changes
-/// sign.
+/// The local minimum of the distance next to `s`, in [0, 1], by bisection of its derivative in s, n.(velocity of a's closest point - that
+/// of b's), n from b to a: an end, or a place where that changes sign.
 double least_distance_near(const PairSegment& segment, const Corners& corners_a, const Corners& corners_b, double s);
 
 /// The encounter at the local minimum next to it, if that is as near up to rounding; else the encounter itself.

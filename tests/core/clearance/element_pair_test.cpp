@@ -138,4 +138,25 @@ TEST_CASE("Slivers and triangles without area break nothing", "[clearance]") {
     }
 }
 
+TEST_CASE("The features of another place are a way to begin, whatever they are", "[clearance]") {
+    std::mt19937 random(11);
+    int same = 0, other = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Vector3 beside(0.3, 0.2, 2.2);
+        const Matrix3 a = random_triangle(random, Vector3::Zero()),
+                      b = random_triangle(random, i % 3 == 0 ? Vector3(0.5 * beside) : beside);
+        const Vector3 moved = random_vector(random, i % 2 == 0 ? 0.1 : 3);
+        const auto before = element_pair_distance({a, 3}, {b.colwise() + moved, 3});
+        const auto pair = element_pair_distance({a, 3}, {b, 3}), again = element_pair_distance({a, 3}, {b, 3}, &before);
+        (pair.kind_a == before.kind_a && pair.corner_a == before.corner_a && pair.corner_b == before.corner_b ? same : other) += 1;
+        CHECK(again.intersecting == pair.intersecting);
+        CHECK(std::abs(again.distance - pair.distance) < 1e-14);
+        CHECK((again.difference - pair.difference).norm() < 1e-13);
+        CHECK((again.point_a - again.point_b - again.difference).norm() < 1e-14);
+        CHECK(std::abs(again.depth - pair.depth) < 1e-13);
+    }
+    CHECK(same > 500);
+    CHECK(other > 500);
+}
+
 }  // namespace fettle::core::clearance::element_pair_test
