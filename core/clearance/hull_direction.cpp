@@ -12,6 +12,7 @@ namespace fettle::core::clearance {
 namespace {
 
 constexpr int most_rounds = 32;
+constexpr int most_elements_in_turn = 16;  // without a look at boxes
 
 double reach(const Piece& piece, const Vector3& direction) {
     return direction.dot(piece.center) + (piece.axes.transpose() * direction).cwiseAbs().dot(piece.half_extent);
@@ -26,16 +27,19 @@ struct Descent {
     const Vector3& direction;
     Support best;
 
+    void take(const PieceElement& element) {
+        const Matrix3& x = element.corners.x;  // whose last columns repeat a corner where there are fewer than three
+        const double along[] = {direction.dot(x.col(0)), direction.dot(x.col(1)), direction.dot(x.col(2))};
+        if (!(std::max({along[0], along[1], along[2]}) > best.value)) return;
+        for (int k = 0; k < element.corners.count; ++k)
+            if (along[k] > best.value) best = {&element, k, along[k]};
+    }
     // What is no number is not left out.
     void visit(int index, double reaches) {
         if (reaches <= best.value) return;
         const Piece& piece = tree.pieces[static_cast<std::size_t>(index)];
         if (piece.is_element()) {
-            const PieceElement& element = tree.elements[static_cast<std::size_t>(piece.first)];
-            for (int k = 0; k < element.corners.count; ++k) {
-                const Support here = value_of(element, k, direction);
-                if (here.value > best.value) best = here;
-            }
+            take(tree.elements[static_cast<std::size_t>(piece.first)]);
             return;
         }
         const double left = reach(tree.pieces[static_cast<std::size_t>(piece.left)], direction);
@@ -94,14 +98,20 @@ Nearest nearest_of(const std::array<Vector3, 4>& x, int count) {
 
 }  // namespace
 
-Support support(const PieceTree& tree, const Vector3& direction, const Support& guess) {
+Support support(const PieceTree& tree, const Vector3& direction, const Support& guess, int piece) {
+    const Piece& root = tree.pieces[static_cast<std::size_t>(piece)];
     Descent descent{tree, direction, value_of(*guess.element, guess.corner, direction)};
-    descent.visit(0, reach(tree.pieces[0], direction));
+    if (root.count <= most_elements_in_turn) {
+        for (int i = root.first; i < root.first + root.count; ++i) descent.take(tree.elements[static_cast<std::size_t>(i)]);
+    } else {
+        descent.visit(piece, reach(root, direction));
+    }
     return descent.best;
 }
 
-HullDirection::HullDirection(const PieceTree& a, const PieceTree& b) : a_(a), b_(b) {
-    simplex_[0] = {any_support(a), any_support(b), Vector3::Zero()};
+HullDirection::HullDirection(const PieceTree& a, const PieceTree& b, int piece_a, int piece_b)
+    : a_(a), b_(b), piece_a_(piece_a), piece_b_(piece_b) {
+    simplex_[0] = {any_support(a, piece_a), any_support(b, piece_b), Vector3::Zero()};
 }
 
 // To the vertices that hold the point nearest to the origin, which is returned.
@@ -122,20 +132,39 @@ HullDirection::Bound HullDirection::at(const RelativePose& pose, double toleranc
         Vertex& vertex = simplex_[static_cast<std::size_t>(i)];
         vertex.difference = pose.rotation * vertex.a.point() + pose.offset - vertex.b.point();
     }
+    return approach(pose, [tolerance](double nearest, double apart) { return !(nearest - apart > tolerance); });
+}
+
+HullDirection::Bound HullDirection::beyond(const RelativePose& pose, const Vector3& n, double distance) {
+    count_ = 1;
+    simplex_[0] = furthest(pose, n, simplex_[0]);
+    return approach(
+        pose, [distance](double nearest, double apart) { return !(nearest > distance) || apart - distance > 0.5 * (nearest - distance); });
+}
+
+// What of a lies furthest back along n, and of b furthest along it.
+HullDirection::Vertex HullDirection::furthest(const RelativePose& pose, const Vector3& n, const Vertex& guess) const {
+    const Support a = support(a_, -(pose.rotation.transpose() * n), guess.a, piece_a_), b = support(b_, n, guess.b, piece_b_);
+    return {a, b, pose.rotation * a.point() + pose.offset - b.point()};
+}
+
+// `is_done`: of the distance of the nearest points so far, which are no nearer than the hulls, and of the best bound.
+template <class IsDone>
+HullDirection::Bound HullDirection::approach(const RelativePose& pose, const IsDone& is_done) {
     Bound best;
     for (int round = 0; round < most_rounds; ++round) {
         const Vector3 nearest = reduce();
         const Vector3 n = unit_direction(nearest);
         if (n.isZero(0) || count_ == 4) return best;
-        const Support a = support(a_, -(pose.rotation.transpose() * n), simplex_[0].a), b = support(b_, n, simplex_[0].b);
-        const double apart = n.dot(pose.offset) - a.value - b.value;
+        const Vertex next = furthest(pose, n, simplex_[0]);
+        const double apart = n.dot(pose.offset) - next.a.value - next.b.value;
         if (apart > best.apart) best = {n, apart};
-        if (!(nearest.norm() - best.apart > tolerance)) return best;
+        if (is_done(nearest.norm(), best.apart)) return best;
         for (int i = 0; i < count_; ++i) {
             const Vertex& known = simplex_[static_cast<std::size_t>(i)];
-            if (known.a.point() == a.point() && known.b.point() == b.point()) return best;
+            if (known.a.point() == next.a.point() && known.b.point() == next.b.point()) return best;
         }
-        simplex_[static_cast<std::size_t>(count_++)] = {a, b, pose.rotation * a.point() + pose.offset - b.point()};
+        simplex_[static_cast<std::size_t>(count_++)] = next;
     }
     return best;
 }

@@ -26,7 +26,7 @@ public:
         }
         search(0);
         front_.result.lower = front_.lower_bound();
-        if (!front_.options.nodes_only && front_.result.upper <= front_.options.enough) segments_.refine_nearest();
+        if (!front_.options.nodes_only && front_.result.upper <= front_.options.enough) refine_nearest();
         if (front_.options.proof != nullptr) segments_.recorder().write(*front_.options.proof);
         return front_.result;
     }
@@ -37,13 +37,48 @@ public:
     }
 
 private:
-    void search(std::size_t most) {
-        if (spans_) {
-            spans_->try_root();
-        } else {
-            segments_.try_roots();
+    // Whole bodies' bounds leave open which elements are nearest: the nearest ones at an instant, then the instant where these are.
+    void refine_nearest() {
+        constexpr int most_rounds = 4;
+        for (int round = 0; front_.are_beside && round < most_rounds; ++round) {
+            take_nearest_at_instant();
+            const double s = front_.result.nearest.s;
+            segments_.refine_nearest();
+            if (front_.result.nearest.s == s) return;
         }
+        front_.are_beside ? take_nearest_at_instant() : segments_.refine_nearest();
+    }
+
+    void take_nearest_at_instant() {
+        constexpr long most_evaluations = 2000;  // of faces that slide along each other many are as near
+        const Encounter known = front_.result.nearest;
+        const PairSegment& segment = front_.segments[static_cast<std::size_t>(known.segment)];
+        const std::vector<PairSegment> held{held_at(segment, known.s, front_.a.radius(), front_.b.radius())};
+        SearchOptions options;
+        options.tolerance = 3 * held.front().slack;  // what bounds are told less by, and distances more
+        options.max_evaluations = most_evaluations;
+        PairSearch at_instant(front_.a, front_.b, held, options);
+        Encounter nearest = known;
+        nearest.segment = 0;
+        at_instant.front_.take_upper(nearest);
+        at_instant.search(0);
+        nearest = at_instant.front_.result.nearest;
+        nearest.segment = known.segment;
+        nearest.s = known.s;
+        front_.take_upper(nearest);
+    }
+
+    void search(std::size_t most) {
         SearchResult& result = front_.result;
+        if (!spans_) {
+            segments_.try_roots();
+        } else if (front_.options.should_stop && front_.options.should_stop()) {  // the root may well be all there is to do
+            result.complete = false;
+            front_.set_aside(0);
+            return;
+        } else {
+            spans_->try_root();
+        }
         while (!front_.is_settled() && (most == 0 || segments_.found().size() < most)) {
             result.complete = result.evaluations < front_.options.max_evaluations && !is_stopped();
             if (!result.complete) break;

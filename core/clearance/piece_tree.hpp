@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "fettle/core/clearance/element_pair.hpp"
@@ -39,6 +40,9 @@ struct PieceTree {
     std::vector<Piece> pieces;  ///< root is 0; in preorder
     std::vector<PieceElement> elements;
     double radius() const { return pieces[0].radius; }
+    std::span<const PieceElement> elements_of(const Piece& piece) const {
+        return {elements.data() + piece.first, static_cast<std::size_t>(piece.count)};
+    }
 };
 
 /// `mesh` must outlive the tree; `hierarchy` is that of the mesh.

@@ -107,6 +107,8 @@ private:
         }
         reach *= rounded_up;  // an upper bound of |q_a - q_b|
         keep(first, at[0], at[2]);
+        for (std::size_t k = 0; k < entries; ++k)
+            store(2 * at[1][k] - 0.5 * (at[0][k] + at[2][k]), chain.row(entries + static_cast<int>(k)) + first);
         Rests rest, jump;
         find_norms(
             [&](std::size_t k, Four & out) __attribute__((always_inline)) { out = 2 * at[1][k] - at[0][k] - at[2][k]; }, rest);
@@ -149,8 +151,11 @@ private:
         find_norm(step, travel);
         const Four w = wa + wb;
         const Four third_turn = w * w * w * norm_a, third_shift = wb * wb * (wb * reach + 3 * travel);
-        store(0.5 * rest.turn + norm_b * third_turn / 124 + jump.turn, chain.row(entries) + first);
-        store(0.5 * rest.shift + norm_b * third_shift / 124 + jump.shift, chain.row(entries + 1) + first);
+        const Four beside_turn = norm_b * third_turn / 124 + jump.turn, beside_shift = norm_b * third_shift / 124 + jump.shift;
+        store(0.5 * rest.turn + beside_turn, chain.row(2 * entries) + first);
+        store(0.5 * rest.shift + beside_shift, chain.row(2 * entries + 1) + first);
+        store(beside_turn, chain.row(2 * entries + 2) + first);
+        store(beside_shift, chain.row(2 * entries + 3) + first);
         const Four size = 2 * radius_sum + reach;
         take_larger<Four>(
             8 * (norm_a * norm_b) * ((rounding_a + rounding_b + 64 * unit_roundoff) * size + 8 * unit_roundoff * (extent_a + extent_b)),
@@ -201,15 +206,14 @@ FETTLE_WIDE void find_rest_wide(const RelativeChain& chain, int first, int last,
 RelativeChain::RelativeChain(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b)
     : segments_(static_cast<int>(segments.size())),
       length_(segments.size() + 1 + padding),
-      values_(std::make_unique_for_overwrite<double[]>((entries + 2) * length_)) {
+      values_(std::make_unique_for_overwrite<double[]>(rows * length_)) {
     FETTLE_ASSERT(!segments.empty(), "a chain of no segments");
     Block block{*this, segments, frame, radius_a + radius_b};
     if (base::has_wide_instructions())
         block.find_all_wide();
     else
         block.find_all();
-    std::fill(row(entries) + segments_, row(entries) + length_, 0);
-    std::fill(row(entries + 1) + segments_, row(entries + 1) + length_, 0);
+    for (int i = entries; i < rows; ++i) std::fill(row(i) + segments_, row(i) + length_, 0);
     for (int j = 0; j < lanes; ++j) {
         take_larger<double>(block.rounding[j], rounding_);
         take_larger<double>(block.base_norm[j], base_norm_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The poses of body a as seen from body b at all nodes of their path, and how far the segments between leave their chords: what the spans
-/// of relative_spans.hpp are made of, where the formulas stand. Worked out four segments at a time.
+/// The poses of body a as seen from body b at all nodes of their path, and how far the segments between leave their chords and their
+/// parabolas: what the spans of relative_spans.hpp are made of, where the formulas stand. Worked out four segments at a time.
 #pragma once
 
 #include <cstddef>
@@ -41,9 +41,14 @@ public:
     int segments() const { return segments_; }
     /// An entry of the poses at all nodes.
     const double* entry(int i) const { return row(i); }
+    /// An entry of 2 X(1/2) - (X(0) + X(1))/2 of the segments: the middle coefficient of the parabola through three poses.
+    const double* middle(int i) const { return row(entries + i); }
     /// Of the segments, each beside its chord, with what its end and the next one's start differ by; 0 beyond the last.
-    const double* rest_turns() const { return row(entries); }
-    const double* rest_shifts() const { return row(entries + 1); }
+    const double* rest_turns() const { return row(2 * entries); }
+    const double* rest_shifts() const { return row(2 * entries + 1); }
+    /// The same beside its parabola.
+    const double* parabola_rest_turns() const { return row(2 * entries + 2); }
+    const double* parabola_rest_shifts() const { return row(2 * entries + 3); }
     /// Of segments first .. last - 1, beside the chord of all of them.
     Rest rest_of_span(int first, int last) const;
 
@@ -54,12 +59,13 @@ public:
 
 private:
     struct Block;
+    static constexpr int rows = 2 * entries + 4;
     const double* row(int i) const { return values_.get() + static_cast<std::size_t>(i) * length_; }
     double* row(int i) { return values_.get() + static_cast<std::size_t>(i) * length_; }
 
     int segments_;
     std::size_t length_;                // of a row
-    std::unique_ptr<double[]> values_;  // entries of the poses, then the rests
+    std::unique_ptr<double[]> values_;  // entries of the poses, of the middles, then the rests
     double rounding_ = 0, base_norm_ = 1;
 };
 

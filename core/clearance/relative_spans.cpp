@@ -40,6 +40,7 @@ struct NodeFunctions {
 
 struct NodesAt {
     const SpanGroup& group;
+    const SpanMiddles* middles;  // or null
     const TurningPlane& plane;
     const Piece& a;
     std::uint32_t wanted;
@@ -64,36 +65,81 @@ struct OfBoxes {
     }
 };
 
+[[gnu::always_inline]] inline void find_least(const FourVectors& m, const Corners& corners, Four& out) {
+    Four other;
+    dot(m, corners.x.col(0), out);
+    for (int k = 1; k < 3; ++k) {
+        dot(m, corners.x.col(k), other);
+        out = other < out ? other : out;
+    }
+}
+[[gnu::always_inline]] inline void find_most(const FourVectors& n, const Corners& corners, Four& out) {
+    Four other;
+    dot(n, corners.x.col(0), out);
+    for (int k = 1; k < 3; ++k) {
+        dot(n, corners.x.col(k), other);
+        out = other > out ? other : out;
+    }
+}
+
 struct OfElements {
     const Corners &a, &b;
 
     [[gnu::always_inline]] inline void operator()(const FourVectors& n, const FourVectors& m, Four& out) const {
+        Four low, high;
+        find_least(m, a, low);
+        find_most(n, b, high);
+        out = low - high;
+    }
+};
+
+// Of the corners of several elements each.
+struct OfPieces {
+    std::span<const PieceElement> a, b;
+
+    [[gnu::always_inline]] inline void operator()(const FourVectors& n, const FourVectors& m, Four& out) const {
         Four low, high, other;
-        dot(m, a.x.col(0), low);
-        dot(n, b.x.col(0), high);
-        for (int k = 1; k < 3; ++k) {
-            dot(m, a.x.col(k), other);
+        find_least(m, a[0].corners, low);
+        for (const PieceElement& element : a.subspan(1)) {
+            find_least(m, element.corners, other);
             low = other < low ? other : low;
-            dot(n, b.x.col(k), other);
+        }
+        find_most(n, b[0].corners, high);
+        for (const PieceElement& element : b.subspan(1)) {
+            find_most(n, element.corners, other);
             high = other > high ? other : high;
         }
         out = low - high;
     }
 };
 
+using Rotations = std::array<Four, 9>;
+
+[[gnu::always_inline]] inline void load_pose(const std::array<Lanes, 9>& r, const std::array<Lanes, 3>& offset, int block,
+                                             Rotations& rotation, FourVectors& p) {
+    for (std::size_t k = 0; k < 9; ++k) load(r[k], block, rotation[k]);
+    load(offset[0], block, p.x);
+    load(offset[1], block, p.y);
+    load(offset[2], block, p.z);
+}
+
+// n.p and what `support` makes of n and R^T n: f without the slack.
+template <class Support>
+[[gnu::always_inline]] inline void apart_along(const FourVectors& n, const Rotations& r, const FourVectors& p, const Support& support,
+                                               Four& out) {
+    const FourVectors m{n.x * r[0] + n.y * r[3] + n.z * r[6], n.x * r[1] + n.y * r[4] + n.z * r[7], n.x * r[2] + n.y * r[5] + n.z * r[8]};
+    support(n, m, out);
+    out = n.x * p.x + n.y * p.y + n.z * p.z + out;
+}
+
 // `at_nodes` is told n_j and R_j^T n_j: the rest of f_j, beside n_j.p_j.
 template <class AtNodes>
 [[gnu::always_inline]] inline void add_nodes(const NodesAt& at, const AtNodes& at_nodes, NodeFunctions& out) {
-    const auto& r = at.group.rotation;
-    const auto& offset = at.group.offset;
     for (int i = 0; i * block_size <= most_spans; ++i) {
         if ((at.wanted >> (i * block_size) & ((1U << block_size) - 1)) == 0) continue;
-        std::array<Four, 9> rotation;
+        Rotations rotation;
         FourVectors p;
-        for (std::size_t k = 0; k < 9; ++k) load(r[k], i, rotation[k]);
-        load(offset[0], i, p.x);
-        load(offset[1], i, p.y);
-        load(offset[2], i, p.z);
+        load_pose(at.group.rotation, at.group.offset, i, rotation, p);
         const Four zero = {0, 0, 0, 0};
         FourVectors n{zero + at.plane.n[0], zero + at.plane.n[1], zero + at.plane.n[2]};
         if (at.plane.rate != 0) {
@@ -112,12 +158,8 @@ template <class AtNodes>
             std::memcpy(out.direction[1].data() + i * block_size, &n.y, sizeof n.y);
             std::memcpy(out.direction[2].data() + i * block_size, &n.z, sizeof n.z);
         }
-        const FourVectors m{n.x * rotation[0] + n.y * rotation[3] + n.z * rotation[6],
-                            n.x * rotation[1] + n.y * rotation[4] + n.z * rotation[7],
-                            n.x * rotation[2] + n.y * rotation[5] + n.z * rotation[8]};
         Four f;
-        at_nodes(n, m, f);
-        f = n.x * p.x + n.y * p.y + n.z * p.z + f;
+        apart_along(n, rotation, p, at_nodes, f);
         std::memcpy(out.f.data() + i * block_size, &f, sizeof f);
     }
 }
@@ -161,11 +203,62 @@ struct Rounding {
     }
 }
 
+// Raises the bounds of spans of one segment to those by their parabolas.
+template <class AtNodes>
+[[gnu::always_inline]] inline void cover_by_parabolas(const NodesAt& at, const NodeFunctions& found, const Rounding& rounding,
+                                                      const AtNodes& at_nodes, SpanBounds& out) {
+    const double outer = at.a.radius * rounded_up;
+    const Four zero = {0, 0, 0, 0};
+    for (int i = 0; i * block_size <= most_spans; ++i) {
+        if ((at.wanted >> (i * block_size) & ((1U << block_size) - 1)) == 0) continue;
+        Rotations rotation;
+        FourVectors p;
+        load_pose(at.middles->rotation, at.middles->offset, i, rotation, p);
+        Four rest, turn;
+        load(at.middles->rest_shift, i, rest);
+        load(at.middles->rest_turn, i, turn);
+        rest += outer * turn;
+        FourVectors n{zero + at.plane.n[0], zero + at.plane.n[1], zero + at.plane.n[2]};
+        Four turned = zero;
+        if (at.plane.rate != 0) {
+            std::array<Four*, 3> parts{&n.x, &n.y, &n.z};
+            Four squared = zero, here, next, step, leaves;
+            for (std::size_t k = 0; k < 3; ++k) {
+                base::load(found.direction[k].data() + i * block_size, here);
+                base::load(found.direction[k].data() + i * block_size + 1, next);
+                *parts[k] = 0.5 * (here + next);
+                squared += (next - here) * (next - here);
+            }
+            base::square_root(squared, turned);
+            load(at.group.step_shift, i, step);
+            load(at.group.step_turn, i, turn);
+            step += outer * turn;
+            load(at.group.rest_shift, i, leaves);
+            load(at.group.rest_turn, i, turn);
+            leaves += outer * turn;  // at least |g|/2
+            turned *= (0.25 * rounded_up) * (0.5 * step + 2 * leaves);
+        }
+        Four middle, f, after;
+        apart_along(n, rotation, p, at_nodes, middle);
+        base::load(found.f.data() + i * block_size, f);
+        base::load(found.f.data() + i * block_size + 1, after);
+        Four least = f;
+        base::take_smaller(after, least);
+        base::take_smaller<Four>(0.5 * (least + middle) - turned, least);
+        const Four spans = (least - rest) * rounding.shrink - rounding.slack;
+        Four known;
+        load(out.spans, i, known);
+        known = spans > known ? spans : known;  // also a NaN's place: then the other bound is one
+        std::memcpy(out.spans.data() + i * block_size, &known, sizeof known);
+    }
+}
+
 template <class AtNodes>
 [[gnu::always_inline]] inline void find_bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at_nodes, SpanBounds& out) {
     NodeFunctions found;
     add_nodes(at, at_nodes, found);
     cover_spans(at.group, found, at.plane.rate != 0, at.a.radius, rounding, out);
+    if (at.middles != nullptr) cover_by_parabolas(at, found, rounding, at_nodes, out);
 }
 
 template <class AtNodes>
@@ -183,9 +276,9 @@ SpanBounds bounds(const NodesAt& at, const Rounding& rounding, const AtNodes& at
     return out;
 }
 
-NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::uint32_t wanted) {
+NodesAt nodes_at(const SpanGroup& group, const SpanMiddles* middles, const TurningPlane& plane, const Piece& a, std::uint32_t wanted) {
     const RelativePose at = group.at(plane.node);
-    return {group, plane, a, wanted, at.rotation * a.center + at.offset};
+    return {group, middles, plane, a, wanted, at.rotation * a.center + at.offset};
 }
 
 // How far points go from each node to the next one.
@@ -233,6 +326,24 @@ NodesAt nodes_at(const SpanGroup& group, const TurningPlane& plane, const Piece&
     for (Lanes* lengths : {&group.rest_turn, &group.rest_shift, &group.step_turn, &group.step_shift}) *lengths *= scale * rounded_up;
 }
 
+// With what lies beside the chord times `scale`.
+void fill_middles(const RelativeChain& chain, double scale, const SpanGroup& group, SpanMiddles& out) {
+    for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
+        const double *nodes = chain.entry(static_cast<int>(k)) + group.first_segment,
+                     *middles = chain.middle(static_cast<int>(k)) + group.first_segment;
+        Lanes& lanes = k < 9 ? out.rotation[k] : out.offset[k - 9];
+        std::memcpy(lanes.data(), middles, sizeof lanes);
+        if (scale == 1) continue;
+        for (int j = 0; j < most_spans; ++j) {
+            const double chord = 0.5 * (nodes[j] + nodes[j + 1]);
+            lanes[j] = chord + scale * (lanes[j] - chord);
+        }
+    }
+    std::memcpy(out.rest_turn.data(), chain.parabola_rest_turns() + group.first_segment, sizeof(Lanes));
+    std::memcpy(out.rest_shift.data(), chain.parabola_rest_shifts() + group.first_segment, sizeof(Lanes));
+    for (Lanes* lengths : {&out.rest_turn, &out.rest_shift}) *lengths *= scale * rounded_up;
+}
+
 FETTLE_WIDE void fill_wide(const RelativeChain& chain, double scale, SpanGroup& group) { fill(chain, scale, group); }
 
 }  // namespace
@@ -262,6 +373,7 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
     int all = 1;
     for (int groups = groups_of(total); groups > 1; groups = groups_of(groups)) all += groups;
     groups_.reserve(static_cast<std::size_t>(all));
+    middles_.reserve(static_cast<std::size_t>(groups_of(total)));
     int begin = 0, spans = total, length = 1;  // spans of the level begin at this index, and last so many segments
     for (int level = 0;; ++level) {
         const int groups = groups_of(spans);
@@ -277,6 +389,7 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
                 fill_wide(chain, deviation_scale, group);
             else
                 fill(chain, deviation_scale, group);
+            if (level == 0) fill_middles(chain, deviation_scale, group, middles_.emplace_back());
         }
         if (groups == 1) break;
         begin = static_cast<int>(groups_.size()) - groups;
@@ -287,12 +400,16 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
 
 SpanBounds RelativeSpans::of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,
                                    std::uint32_t wanted) const {
-    return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfBoxes{a, b});
+    return bounds(nodes_at(group, nullptr, plane, a, wanted), Rounding{shrink_, slack_}, OfBoxes{a, b});
 }
 
-SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
-                                      const Corners& element_b, std::uint32_t wanted) const {
-    return bounds(nodes_at(group, plane, a, wanted), Rounding{shrink_, slack_}, OfElements{element_a, element_b});
+SpanBounds RelativeSpans::of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a,
+                                      std::span<const PieceElement> elements_a, std::span<const PieceElement> elements_b,
+                                      std::uint32_t wanted) const {
+    const NodesAt at = nodes_at(group, middles(group), plane, a, wanted);
+    if (elements_a.size() == 1 && elements_b.size() == 1)
+        return bounds(at, Rounding{shrink_, slack_}, OfElements{elements_a[0].corners, elements_b[0].corners});
+    return bounds(at, Rounding{shrink_, slack_}, OfPieces{elements_a, elements_b});
 }
 
 SpanBounds RelativeSpans::of_planes(const SpanGroup& group, const NodePlanes& planes) const {

@@ -17,6 +17,14 @@
 ///   of the product of the linear n and the linear part of x there remains s (1 - s) (n_1 - n_0).(x(1) - x(0)) beside its chord.
 /// In a span of several segments: the largest of these, and how far the poses at its inner nodes are from the chord of R and p.
 ///
+/// A span of one segment is not held to its chord alone. With x_m = (x(0) + x(1))/2 + g = R_m X + p_m, R_m = 2 R(1/2) - (R(0) + R(1))/2 and
+/// p_m likewise, x - e is the parabola with Bernstein coefficients x(0), x_m, x(1), and n.(x - e - Z) a cubic. With n_m the mean of n_0 and
+/// n_1, and f_m = n_m.(x_m - Z), least over the pieces a difference of supports like f_0 and f_1, its coefficients are f_0, f_1 and
+///   (f_0 + 2 f_m)/3 + (n_1 - n_0).(x(0) - x_m)/3,   (f_1 + 2 f_m)/3 + (n_1 - n_0).(x_m - x(1))/3,
+/// the inner two of which have a weight of 3 s (1 - s) <= 3/4 together: with f_least = min(f_0, f_1)
+///   f >= min(f_least, (f_least + f_m)/2 - |n_1 - n_0| (|x(1) - x(0)|/2 + |g|)/4) - |e| - (what the ends differ by).
+/// Both bounds hold; the second one is second order in time where faces slide or turn. Bounds of whole bodies use the first alone.
+///
 /// Bases that are rotations up to rounding only: |R_b n| <= |B_b|, and R_b^T R_b = B_b^T B_b turns n.Z by at most (|B_b|^2 - 1) |Z|.
 /// Rounding: with the errors of poses (segment_bound.hpp) an R_j is off by their sum, p_j by that of R_b times Q and 4u times the size of
 /// the positions; products, functionals and supports by 64u of radii and Q. In all eight times: poses enter a bound with weight 7.
@@ -25,6 +33,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fettle/core/clearance/piece_bound.hpp"
@@ -63,6 +72,15 @@ struct SpanGroup {
     SegmentEnd end_at(int j) const { return {std::min(place_of(j), segments - 1), place_of(j) == segments}; }
 };
 
+/// Of the spans of a group of single segments.
+struct SpanMiddles {
+    std::array<Lanes, 9> rotation;  ///< R_m by rows
+    std::array<Lanes, 3> offset;    ///< p_m
+    Lanes rest_turn, rest_shift;    ///< how far points leave their parabolas
+
+    SpanMiddles() {}  // NOLINT: numbers are written once
+};
+
 /// As separation() of two placed boxes, the direction in b's frame.
 Separation separation(const RelativePose& at, const Piece& a, const Piece& b);
 
@@ -98,14 +116,18 @@ public:
     /// Bounds at the nodes of `wanted` (bits), and over the spans between two of them.
     SpanBounds of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,
                         std::uint32_t wanted = all_nodes) const;
-    SpanBounds of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Corners& element_a,
-                           const Corners& element_b, std::uint32_t wanted = all_nodes) const;
+    /// The same of pieces that are these elements.
+    SpanBounds of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::span<const PieceElement> elements_a,
+                           std::span<const PieceElement> elements_b, std::uint32_t wanted = all_nodes) const;
 
     /// Of the whole bodies.
     SpanBounds of_planes(const SpanGroup& group, const NodePlanes& planes) const;
 
 private:
-    std::vector<SpanGroup> groups_;  // level by level
+    const SpanMiddles* middles(const SpanGroup& group) const { return group.length == 1 ? &middles_[group.first / most_spans] : nullptr; }
+
+    std::vector<SpanGroup> groups_;     // level by level
+    std::vector<SpanMiddles> middles_;  // of the first level
     double radius_ = 0, slack_ = 0, shrink_ = 1;
 };
 

@@ -89,9 +89,10 @@ public:
     /// The same of bounds that hold at the ends of segments, for the least distance there.
     double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * options.tolerance : -infinity; }
 
-    /// Bounds of whole bodies by their hulls are told less by this: what lies within the tolerance is still looked at, part by part, so
-    /// that the witness is the nearest place at its instant, and not only as near as the tolerance asks.
-    double hull_reserve() const { return options.tolerance; }
+    /// How well the distance of the bodies' hulls is to be known at an instant.
+    double hull_tolerance() const { return 1e-3 * options.tolerance; }
+    /// Bounds of whole bodies were of use: the elements of `nearest` may be others than the nearest ones at its instant, by the tolerance.
+    bool are_beside = false;
 
     /// A bound of what is not split any further.
     void set_aside(double lower) { aside_ = std::min(aside_, proven(lower)); }
@@ -102,13 +103,11 @@ public:
         if (strict_) put_in_order();
     }
     Key pop() {
-        if (last_made_.empty() || (in_order_ && ++taken_ > longest_dive)) {
-            put_in_order();
-            taken_ = 0;
-            std::pop_heap(queue_.begin(), queue_.end(), Later{});
-            return taken_from(queue_);
-        }
-        return taken_from(last_made_);
+        // Of those made since the last one was given back, the most promising one comes first.
+        std::sort(last_made_.begin() + static_cast<std::ptrdiff_t>(sorted_), last_made_.end(), Later{});
+        const Key key = next();
+        sorted_ = last_made_.size();
+        return key;
     }
 
     bool is_settled() const {
@@ -150,12 +149,23 @@ private:
         return key;
     }
 
+    Key next() {
+        if (last_made_.empty() || (in_order_ && ++taken_ > longest_dive)) {
+            put_in_order();
+            taken_ = 0;
+            std::pop_heap(queue_.begin(), queue_.end(), Later{});
+            return taken_from(queue_);
+        }
+        return taken_from(last_made_);
+    }
+
     void put_in_order() {
         for (const Key& key : last_made_) {
             queue_.push_back(key);
             std::push_heap(queue_.begin(), queue_.end(), Later{});
         }
         last_made_.clear();
+        sorted_ = 0;
     }
 
     static constexpr int longest_dive = 64;
@@ -165,6 +175,7 @@ private:
     bool in_order_;               // else the last one always
     std::vector<Key> queue_;      // a heap
     std::vector<Key> last_made_;  // and not in the queue yet
+    std::size_t sorted_ = 0;      // of these
     int taken_ = 0;               // of these since the last one from the queue
     double aside_ = infinity;     // least bound of the entries that are not in the queue any more and were not split
     std::uint32_t made_ = 0;

@@ -80,6 +80,17 @@ PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::Pat
     return pair;
 }
 
+PairSegment held_at(const PairSegment& segment, double s, double radius_a, double radius_b) {
+    const auto held = [s](const BodySegment& body) {
+        const kinematics::Pose pose = kinematics::pose_at(body.path, s);
+        kinematics::PathSegment path;
+        path.base = pose.rotation;
+        path.position_t0 = pose.position;
+        return path;
+    };
+    return pair_segment(held(*segment.a), held(*segment.b), radius_a, radius_b);
+}
+
 Instant instant_at(const PairSegment& segment, double s) {
     const auto pose = [&](const BodySegment& body) {
         if (s == 0 || s == 0.5 || s == 1) return body.poses[static_cast<std::size_t>(2 * s)];

@@ -129,19 +129,21 @@ double SegmentSearch::try_pieces(int interval_index, int a, int b, const Cell& c
 }
 
 // From b to a where their hulls are nearest at an instant; zero if they meet.
-Vector3 SegmentSearch::hull_direction(int instant) {
+Vector3 SegmentSearch::hull_direction(int segment, int instant) {
     ++front_.result.evaluations;
     const Instant& at = instants_[instant];
     const HullDirection::Bound found =
-        hulls_.at({at.rotation_b.transpose() * at.rotation_a, at.rotation_b.transpose() * at.offset}, hull_gap * front_.hull_reserve());
+        hulls_.at({at.rotation_b.transpose() * at.rotation_a, at.rotation_b.transpose() * at.offset}, front_.hull_tolerance());
+    if (found.apart < front_.cutoff()) measure(segment, at, hulls_.element_a(), hulls_.element_b());
     return found.apart > 0 ? unit_direction(at.rotation_b * found.n) : Vector3::Zero();
 }
 
 // Both whole bodies, as if they were two elements, where their hulls are apart.
 double SegmentSearch::try_hulls(const Entry& whole, const Cell& known) {
     const Interval interval = intervals_[whole.interval];
-    const Vector3 n0 = hull_direction(interval.start);
-    if (!n0.isZero(0)) return try_hulls(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.end), known);
+    const Vector3 n0 = hull_direction(interval.segment, interval.start);
+    if (!n0.isZero(0))
+        return try_hulls(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.segment, interval.end), known);
     keep(whole, known.lower, known.plane, true);
     return known.lower;
 }
@@ -160,17 +162,17 @@ double SegmentSearch::try_hulls(const Entry& whole, const Vector3& n0, const Vec
     }
     const ReachPair reach{whole_reach(*segment.a, front_.a.radius()), whole_reach(*segment.b, front_.b.radius())};
     const SegmentBound bound = segment_bound(segment, length(interval), plane, c, reach, front_.options.deviation_scale);
-    const double reserve = front_.hull_reserve(), lower = bound.lower - reserve;
     Entry entry = whole;
-    entry.beside = true;
+    entry.beside = front_.are_beside = true;
     entry.halve = false;
     entry.n0 = n0;
     entry.n1 = n1;
     const bool worth = bound.at_ends - bound.lower > 4 * segment.slack;
-    entry.at_ends = worth && can_halve(interval) ? bound.at_ends - reserve : -infinity;
-    const bool better = !(known.lower > lower);
-    keep(entry, better ? lower : known.lower, better ? certificate::LeafPlane{n0, n1} : known.plane, true);
-    return better ? lower : known.lower;
+    entry.at_ends = worth && can_halve(interval) ? bound.at_ends : -infinity;
+    const bool better = !(known.lower > bound.lower);
+    const double lower = better ? bound.lower : known.lower;
+    keep(entry, lower, better ? certificate::LeafPlane{n0, n1} : known.plane, true);
+    return lower;
 }
 
 SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1) {
@@ -194,28 +196,33 @@ void SegmentSearch::try_elements(Entry entry, const Vector3& n0, const Vector3& 
     // Where the bound has its dip the distance is nearly least: an upper bound that halving would take long to find.
     if (bound.dip >= 0 && bound.lower < front_.cutoff()) {
         const double s = instants_[interval.start].s + bound.dip * length(interval);
-        measure(interval.segment, instant_at(segment, s), entry.a, entry.b);
+        measure(entry, instant_at(segment, s));
     }
     // Halving cannot win more than the loss; below the rounding charge it is not worth while.
     const bool worth = bound.at_ends - bound.lower > 4 * segment.slack;
     keep(entry, bound.lower, {n0, n1}, front_.is_collecting() || (worth && can_halve(interval)));
 }
 
-Separation SegmentSearch::measure(int segment_index, const Instant& at, int a, int b) {
-    const int element_a = piece_a(a).first, element_b = piece_b(b).first;
+Separation SegmentSearch::measure(int segment_index, const Instant& at, int element_a, int element_b) {
     const bool again = measured_.segment >= 0 && measured_.element_a == element_a && measured_.element_b == element_b;
-    const ElementPairDistance pair = placed_distance(at, corners_a(a), corners_b(b), again ? &measured_.pair : nullptr);
+    const Corners &corners_a = front_.a.elements[static_cast<std::size_t>(element_a)].corners,
+                  &corners_b = front_.b.elements[static_cast<std::size_t>(element_b)].corners;
+    const ElementPairDistance pair = placed_distance(at, corners_a, corners_b, again ? &measured_.pair : nullptr);
     measured_ = {segment_index, at.s, element_a, element_b, pair};
     front_.take_upper(measured_);
     if (pair.intersecting) return {};
     return {unit_direction(pair.difference), pair.distance};
 }
 
-Separation SegmentSearch::measure_at(const SegmentEnd& place, int a, int b) {
+Separation SegmentSearch::measure(const Entry& entry, const Instant& at) {
+    return measure(intervals_[entry.interval].segment, at, piece_a(entry.a).first, piece_b(entry.b).first);
+}
+
+Separation SegmentSearch::measure_at(const SegmentEnd& place, int element_a, int element_b) {
     make_whole(place.segment);
     Instant at = instants_[place.at_end ? intervals_[place.segment].end : intervals_[place.segment].start];
     at.s = place.at_end ? 1 : 0;  // those of a segment at rest are one
-    return measure(place.segment, at, a, b);
+    return measure(place.segment, at, element_a, element_b);
 }
 
 void SegmentSearch::refine_nearest() {
@@ -244,7 +251,7 @@ void SegmentSearch::take_distance_of_any_pair() {
             b = apart(a, piece.left) <= apart(a, piece.right) ? piece.left : piece.right;
         }
     }
-    measure(0, at, a, b);
+    measure(0, at, piece_a(a).first, piece_b(b).first);
 }
 
 void SegmentSearch::split(int index, double lower) {
@@ -272,13 +279,13 @@ void SegmentSearch::split(int index, double lower) {
 // Closest points at the middle first: their direction is enough for most, and those at both ends cost twice as much.
 void SegmentSearch::measure_elements(const Entry& entry) {
     const Interval interval = intervals_[entry.interval];
-    const Vector3 n = measure(interval.segment, instants_[interval.middle], entry.a, entry.b).direction;
+    const Vector3 n = measure(entry, instants_[interval.middle]).direction;
     if (interval.start == interval.end) return try_elements(entry, n, n);
     const SegmentBound bound = bounds_[entry.interval]->along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a),
                                                               &corners_b(entry.b), front_.options.deviation_scale);
     if (!front_.is_collecting() && bound.lower >= front_.cutoff()) return keep(entry, bound.lower, {n, n}, true);
-    const Vector3 n0 = measure(interval.segment, instants_[interval.start], entry.a, entry.b).direction;
-    try_elements(entry, n0, measure(interval.segment, instants_[interval.end], entry.a, entry.b).direction);
+    const Vector3 n0 = measure(entry, instants_[interval.start]).direction;
+    try_elements(entry, n0, measure(entry, instants_[interval.end]).direction);
 }
 
 void SegmentSearch::halve(const Entry& entry) {
@@ -287,7 +294,7 @@ void SegmentSearch::halve(const Entry& entry) {
     const auto [first, second] = recorder_.split(entry.cell, 't');
     if (entry.beside) {
         Entry half = entry;
-        const Vector3 n = hull_direction(interval.middle);
+        const Vector3 n = hull_direction(interval.segment, interval.middle);
         half.cell = first;
         half.interval = interval.first_half;
         try_hulls(half, entry.n0, n, {first});
@@ -301,7 +308,7 @@ void SegmentSearch::halve(const Entry& entry) {
         try_pieces(interval.second_half, entry.a, entry.b, {second});
         return;
     }
-    const Vector3 n = measure(interval.segment, instants_[interval.middle], entry.a, entry.b).direction;
+    const Vector3 n = measure(entry, instants_[interval.middle]).direction;
     Entry half = entry;
     half.cell = first;
     half.interval = interval.first_half;

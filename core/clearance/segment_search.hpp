@@ -29,7 +29,7 @@ public:
     void split(int entry, double lower);
 
     /// Distance of two elements at an end of a segment: an upper bound, and the direction for lower ones.
-    Separation measure_at(const SegmentEnd& place, int a, int b);
+    Separation measure_at(const SegmentEnd& place, int element_a, int element_b);
     /// So that there is an upper bound however small the budget: down from the roots at the first instant, to the nearest boxes.
     void take_distance_of_any_pair();
     /// The instants that the search looks at have a distance within the tolerance of the least, but a derivative at fixed time wants the
@@ -74,10 +74,11 @@ private:
     double try_pieces(int interval_index, int a, int b, const Cell& cell);
     double try_hulls(const Entry& whole, const Cell& known);
     double try_hulls(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known);
-    Vector3 hull_direction(int instant);
+    Vector3 hull_direction(int segment, int instant);
     SegmentBound elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1);
     void try_elements(Entry entry, const Vector3& n0, const Vector3& n1);
-    Separation measure(int segment_index, const Instant& at, int a, int b);
+    Separation measure(int segment_index, const Instant& at, int element_a, int element_b);
+    Separation measure(const Entry& entry, const Instant& at);
     void measure_elements(const Entry& entry);
     void halve(const Entry& entry);
     bool collect_pair(const Entry& entry);

@@ -16,7 +16,9 @@ void for_bits(std::uint32_t bits, const Call& call) {
     for (; bits != 0; bits &= bits - 1) call(std::countr_zero(bits));
 }
 
-const Corners& corners(const PieceTree& tree, const Piece& piece) { return tree.elements[static_cast<std::size_t>(piece.first)].corners; }
+// Pieces of so many elements are tried by their hulls where their boxes are too near: corners of more of them cost more than parts do, and
+// hulls of larger pieces of a surface that is not convex are nearer than it. Fewer pairs are as soon looked at one by one.
+constexpr int most_elements_of_hull = 8, fewest_pairs_of_hulls = 4;
 
 }  // namespace
 
@@ -49,34 +51,60 @@ double SpanSearch::span_cutoff(const SpanGroup& group) const {
 
 // Along n at the nearest node, which points from the frame's body to the other one. At the other nodes it points where the distance of
 // two round pieces would: what is far away turns it, faces that slide along each other do not.
-void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart) {
+void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart, bool by_corners) {
     ++front_.result.evaluations;
     const Piece &x = moving(entry), &y = fixed(entry);
     const SpanGroup& group = spans_.group(entry.group);
     const double reach = apart + x.size + y.size;
     const TurningPlane plane{entry.nearest, n, apart / (reach * reach)};
     const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
-    const SpanBounds found = are_elements(entry)
-                                 ? spans_.of_elements(group, plane, x, corners(moving_tree(), x), corners(fixed_tree(), y), open)
+    const SpanBounds found = by_corners
+                                 ? spans_.of_elements(group, plane, x, moving_tree().elements_of(x), fixed_tree().elements_of(y), open)
                                  : spans_.of_boxes(group, plane, x, y, open);
     take(found, open, entry);
+}
+
+// Are both pieces small?
+bool SpanSearch::are_for_hulls(const Entry& entry) const {
+    const int a = piece_a(entry.a).count, b = piece_b(entry.b).count;
+    return std::max(a, b) <= most_elements_of_hull && a * b >= fewest_pairs_of_hulls;
+}
+
+// Small pieces along the direction in which their hulls are nearest, at one node after another: where that is beyond the cutoff nothing is
+// as near there, or soon before and after. Returns the least bound of what stays open, which was `least`.
+double SpanSearch::tighten_by_corners(Entry& entry, Vector3 n, double least) {
+    const SpanGroup& group = spans_.group(entry.group);
+    HullDirection hulls(moving_tree(), fixed_tree(), frame_.exchanged ? entry.b : entry.a, frame_.exchanged ? entry.a : entry.b);
+    const double cutoff = span_cutoff(group);
+    for (std::uint32_t tried = 0; least < infinity && (tried >> entry.nearest & 1) == 0;) {
+        tried |= 1U << entry.nearest;
+        const HullDirection::Bound bound = hulls.beyond(group.at(entry.nearest), n, cutoff);
+        if (!(bound.apart > cutoff)) break;
+        n = bound.n;
+        tighten(entry, n, bound.apart, true);
+        least = close(entry);
+    }
+    return least;
 }
 
 // Whole bodies along the directions in which their hulls are nearest.
 void SpanSearch::tighten_by_hulls(Entry& entry) {
     const SpanGroup& group = spans_.group(entry.group);
     const std::uint32_t open = entry.open_spans | entry.open_spans << 1 | entry.open_nodes;
-    const double gap = hull_gap * front_.hull_reserve();
+    const double tolerance = front_.hull_tolerance();
     NodePlanes planes;
     planes.n.fill(Vector3::Zero());
     ++front_.result.evaluations;
-    if (!(hulls_.at(group.at(entry.nearest), gap).apart > 0)) return;
-    entry.beside = true;
+    if (!(hulls_.at(group.at(entry.nearest), tolerance).apart > 0)) return;
+    entry.beside = front_.are_beside = true;
     for_bits(open, [&](int j) {
         ++front_.result.evaluations;
-        const HullDirection::Bound bound = hulls_.at(group.at(j), gap);
+        const HullDirection::Bound bound = hulls_.at(group.at(j), tolerance);
         planes.n[static_cast<std::size_t>(j)] = bound.n;
-        planes.f[static_cast<std::size_t>(j)] = bound.apart - front_.hull_reserve();
+        planes.f[static_cast<std::size_t>(j)] = bound.apart;
+        if (!(bound.apart < front_.cutoff())) return;
+        const int of_moving = hulls_.element_a(), of_fixed = hulls_.element_b();
+        segments_.measure_at(group.end_at(j), frame_.exchanged ? of_fixed : of_moving, frame_.exchanged ? of_moving : of_fixed);
     });
     const SpanBounds found = spans_.of_planes(group, planes);
     take(found, open, entry);
@@ -118,11 +146,13 @@ double SpanSearch::close(Entry& entry) {
 
 void SpanSearch::try_pieces(Entry entry) {
     const Separation gap = separation(spans_.group(entry.group).at(entry.nearest), moving(entry), fixed(entry));
-    tighten(entry, gap.direction, gap.apart);
+    tighten(entry, gap.direction, gap.apart, are_elements(entry));
     double least = close(entry);
     if (least < infinity && entry.a == 0 && entry.b == 0 && gap.apart > 0 && !are_elements(entry)) {
         tighten_by_hulls(entry);
         least = close(entry);
+    } else if (least < infinity && gap.apart > 0 && are_for_hulls(entry)) {
+        least = tighten_by_corners(entry, gap.direction, least);
     }
     if (least < infinity) front_.push(least, EntryKind::spans, entries_.add(entry));
 }
@@ -171,10 +201,10 @@ void SpanSearch::measure_at(Entry& entry, int node) {
     const SegmentEnd place = spans_.group(entry.group).end_at(node);
     const BodySegment& fixed = frame_.fixed(front_.segments[static_cast<std::size_t>(place.segment)]);
     const Matrix3& frame = fixed.poses[place.at_end ? 2 : 0].rotation;
-    const Separation found = segments_.measure_at(place, entry.a, entry.b);
+    const Separation found = segments_.measure_at(place, piece_a(entry.a).first, piece_b(entry.b).first);
     entry.nearest = node;
     entry.open_nodes &= ~(1U << node);
-    tighten(entry, unit_direction(frame.transpose() * (frame_.exchanged ? -found.direction : found.direction)), found.apart);
+    tighten(entry, unit_direction(frame.transpose() * (frame_.exchanged ? -found.direction : found.direction)), found.apart, true);
     close(entry);
 }
 

@@ -42,7 +42,9 @@ private:
     const PieceTree& fixed_tree() const { return frame_.exchanged ? front_.a : front_.b; }
     const Piece& moving(const Entry& entry) const { return frame_.exchanged ? piece_b(entry.b) : piece_a(entry.a); }
     const Piece& fixed(const Entry& entry) const { return frame_.exchanged ? piece_a(entry.a) : piece_b(entry.b); }
-    void tighten(Entry& entry, const Vector3& n, double apart);
+    void tighten(Entry& entry, const Vector3& n, double apart, bool by_corners);
+    bool are_for_hulls(const Entry& entry) const;
+    double tighten_by_corners(Entry& entry, Vector3 n, double least);
     void tighten_by_hulls(Entry& entry);
     static void take(const SpanBounds& found, std::uint32_t open, Entry& entry);
     double close(Entry& entry);

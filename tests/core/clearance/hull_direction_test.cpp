@@ -64,6 +64,45 @@ TEST_CASE("Along the direction of convex bodies the bound is their distance", "[
     CHECK(apart > 230);
 }
 
+TEST_CASE("Looked for beyond a distance, a direction is found where there is one", "[clearance]") {
+    std::mt19937 random(5);
+    int beyond = 0, nearer = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Solid a = i % 2 == 0 ? prism(3 + i % 17, 1, 2) : tetrahedron(random, 1),
+                    b = i % 3 == 0 ? box({1, 0.5, 0.1}) : prism(16, 0.2, 3);
+        const PieceTree tree_a = a.search(), tree_b = b.search();
+        const RelativePose pose = random_pose(random, 4);
+        const double distance = oracle_at(a, b, pose), wanted = distance + 0.2 * random_vector(random, 1).x();
+        const Vector3 n = i % 5 == 0 ? Vector3::Zero().eval() : unit_direction(random_vector(random, 1));
+        HullDirection hulls(tree_a, tree_b);
+        const HullDirection::Bound bound = hulls.beyond(pose, n, wanted);
+        CAPTURE(i, distance, wanted);
+        CHECK(bound.n.norm() <= 1);
+        CHECK(bound.apart <= distance + 1e-14);
+        if (!(distance > 0 && wanted > 0)) continue;
+        (wanted < distance ? beyond : nearer) += 1;
+        if (wanted < distance - 1e-9) CHECK(bound.apart > wanted);
+    }
+    CHECK(beyond > 50);
+    CHECK(nearer > 50);
+}
+
+TEST_CASE("Pieces of bodies have corners and hulls of their own", "[clearance]") {
+    std::mt19937 random(6);
+    const Solid solid = ring(40, 0.5, 1, 0.3);
+    const PieceTree tree = solid.search();
+    for (int i = 0; i < 300; ++i) {
+        const int index = static_cast<int>(random() % tree.pieces.size());
+        const Vector3 direction = random_vector(random, 1);
+        double most = -1e300;
+        for (const PieceElement& element : tree.elements_of(tree.pieces[static_cast<std::size_t>(index)]))
+            most = std::max(most, (direction.transpose() * element.corners.x).maxCoeff());
+        const Support found = support(tree, direction, any_support(tree, index), index);
+        CHECK(found.value == Approx(most).epsilon(1e-14).margin(1e-15));
+        CHECK(found.value == direction.dot(found.point()));
+    }
+}
+
 TEST_CASE("Of bodies that are not convex it is a bound, of hulls that meet none", "[clearance]") {
     std::mt19937 random(3);
     const Solid a = ring(12, 0.8, 1, 0.2), pin = prism(12, 0.3, 2);

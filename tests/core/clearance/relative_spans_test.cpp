@@ -60,6 +60,12 @@ Piece piece_of(const Corners& corners) {
     return piece;
 }
 
+std::array<PieceElement, 1> one(const Corners& corners) {
+    std::array<PieceElement, 1> elements;
+    elements[0].corners = corners;
+    return elements;
+}
+
 ElementPairDistance distance_at(const SpanGroup& group, int node, const Corners& a, const Corners& b) {
     const RelativePose pose = group.at(node);
     return placed_distance({0, pose.rotation, Matrix3::Identity(), pose.offset}, a, b);
@@ -115,7 +121,7 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
         const ElementPairDistance nearest = distance_at(group, node, a, b);
         const double rate = random() % 2 ? 1 / (nearest.distance + size) : 0;
         const TurningPlane n{node, unit_direction(nearest.difference), rate};
-        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(a), a, b),
+        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(a), one(a), one(b)),
                          of_boxes = spans.of_boxes(group, n, piece_of(a), piece_of(b)),
                          of_planes = spans.of_planes(group, hull_planes(group, hulls));
         for (int j = 0; j < group.count; ++j) {
@@ -157,6 +163,30 @@ TEST_CASE("Bounds over many segments at once hold against samples in extended pr
     CHECK(useful_planes > spans / 3);
 }
 
+TEST_CASE("Elements together have the least of the bounds that they have pair by pair", "[clearance]") {
+    std::mt19937 random(8);
+    const Motion motion = random_motion(random, 12, 1, 0.1, false);
+    const Solid solid_a = prism(5, 0.4, 0.2), solid_b = tetrahedron(random, 0.5);
+    std::vector<PairSegment> segments;
+    for (std::size_t i = 0; i < motion.a.size(); ++i)
+        segments.push_back(pair_segment(motion.a[i], motion.b[i], solid_a.radius(), solid_b.radius()));
+    const RelativeSpans spans(segments, {}, solid_a.radius(), solid_b.radius());
+    const SpanGroup& group = spans.group(spans.root());
+    const PieceTree a = solid_a.search(), b = solid_b.search();
+    for (const double rate : {0.0, 0.3}) {
+        const TurningPlane n{4, unit_direction(group.at(4).offset), rate};
+        const SpanBounds together = spans.of_elements(group, n, a.pieces[0], a.elements_of(a.pieces[0]), b.elements_of(b.pieces[0]));
+        SpanBounds pairs{Lanes::Constant(1e300), Lanes::Constant(1e300)};
+        for (const PieceElement& of_a : a.elements)
+            for (const PieceElement& of_b : b.elements) {
+                const SpanBounds pair = spans.of_elements(group, n, a.pieces[0], one(of_a.corners), one(of_b.corners));
+                pairs = {pairs.spans.min(pair.spans), pairs.nodes.min(pair.nodes)};
+            }
+        for (int j = 0; j <= group.count; ++j) CHECK(together.nodes[j] == pairs.nodes[j]);
+        for (int j = 0; j < group.count; ++j) CHECK(together.spans[j] <= pairs.spans[j]);
+    }
+}
+
 TEST_CASE("A path that jumps between its segments is bounded all the same", "[clearance]") {
     // A bar swings down and begins anew: at every node it points straight ahead, but for the end.
     constexpr double swing = 0.3;
@@ -171,7 +201,7 @@ TEST_CASE("A path that jumps between its segments is bounded all the same", "[cl
     REQUIRE(group.count == 4);
     for (const int node : {0, 2}) {
         const TurningPlane n{node, Vector3(0, 1 - 1e-12, 0), 0};
-        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(bar), bar, below);
+        const SpanBounds of_elements = spans.of_elements(group, n, piece_of(bar), one(bar), one(below));
         const SpanBounds of_boxes = spans.of_boxes(group, n, piece_of(bar), piece_of(below));
         for (int j = 0; j < group.count; ++j) {
             CHECK(of_elements.spans[j] <= 2 - std::sin(swing));
@@ -201,10 +231,32 @@ TEST_CASE("An arc bulges beyond its chord, whichever body turns") {
             a_turns ? pair_segment(turning, still, radius_a, radius_b) : pair_segment(still, turning, radius_a, radius_b);
         const RelativeSpans spans({segment}, {}, radius_a, radius_b);
         const TurningPlane n{0, unit_direction(-outside.x.col(0)), 0};
-        const double bound = spans.of_elements(spans.group(0), n, piece_of(end), end, outside).spans[0];
+        const double bound = spans.of_elements(spans.group(0), n, piece_of(end), one(end), one(outside)).spans[0];
         CAPTURE(a_turns, bound);
         CHECK(bound <= gap);
-        CHECK(bound > 0.5 * gap);  // the norm of a turn is taken by its entries
+        CHECK(bound > 0.9 * gap);
+    }
+}
+
+TEST_CASE("What goes by is nearest between its nodes, whatever the planes there tell") {
+    // A point goes by another one at distance 1, one segment from -half to half; the planes at both ends are those of the points there.
+    Corners point, other;
+    point.x.setZero();
+    other.x.setZero();
+    const Piece piece = piece_of(point);
+    for (const double half : {0.1, 0.5, 1.0, 2.0}) {
+        core::kinematics::PathSegment passing, still;
+        passing.position_t0 = Vector3(-half, 1, 0);
+        passing.position_step = Vector3(2 * half, 0, 0);
+        const RelativeSpans spans({pair_segment(passing, still, 1e-9, 1e-9)}, {}, 1e-9, 1e-9);
+        const double norm = std::sqrt(1 + half * half);
+        const TurningPlane n{0, unit_direction(passing.position_t0), 1 / norm};
+        const SpanBounds bounds = spans.of_elements(spans.group(0), n, piece, one(point), one(other));
+        CAPTURE(half, bounds.nodes[0], bounds.nodes[1], bounds.spans[0]);
+        CHECK(bounds.nodes[0] == Approx(norm));
+        CHECK(bounds.nodes[1] == Approx(norm));
+        CHECK(bounds.spans[0] <= 1);
+        CHECK(bounds.spans[0] > 1 - half * half);
     }
 }
 
@@ -231,7 +283,7 @@ TEST_CASE("Bodies that move together are at rest for each other", "[clearance]")
     const SpanGroup& all = spans.group(spans.root());
     const ElementPairDistance nearest = distance_at(all, 0, a, b);
     const TurningPlane n{0, unit_direction(nearest.difference), 0};
-    const SpanBounds bounds = spans.of_elements(all, n, piece_of(a), a, b);
+    const SpanBounds bounds = spans.of_elements(all, n, piece_of(a), one(a), one(b));
     // What is left are the segments' own terms of third order and of rounding; nothing grows with the number of segments.
     for (int j = 0; j < all.count; ++j) CHECK(bounds.spans[j] > nearest.distance - 0.01);
     CHECK(bounds.nodes[0] > nearest.distance - 1e-10);
