@@ -123,7 +123,7 @@ Vector3 HullDirection::reduce() {
     for (int i = 0; i < count_; ++i)
         if (nearest.weight[static_cast<std::size_t>(i)] > 0)
             simplex_[static_cast<std::size_t>(kept++)] = simplex_[static_cast<std::size_t>(i)];
-    count_ = std::max(kept, 1);
+    count_ = std::max(kept, 1);  // none where four hold the origin
     return nearest.point;
 }
 
@@ -155,7 +155,7 @@ HullDirection::Bound HullDirection::approach(const RelativePose& pose, const IsD
     for (int round = 0; round < most_rounds; ++round) {
         const Vector3 nearest = reduce();
         const Vector3 n = unit_direction(nearest);
-        if (n.isZero(0) || count_ == 4) return best;
+        if (n.isZero(0)) return best;  // four points hold the origin, or some touch it
         const Vertex next = furthest(pose, n, simplex_[0]);
         const double apart = n.dot(pose.offset) - next.a.value - next.b.value;
         if (apart > best.apart) best = {n, apart};

@@ -263,6 +263,7 @@ std::optional<double> proven_apart(const PairMotion& pair, double reach, const C
     search.max_evaluations = options.max_evaluations;
     search.should_stop = options.should_stop;
     search.enough = search.refuted = reach;
+    search.exact_witness = false;
     const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
     if (!(found.lower >= reach)) return std::nullopt;
     return found.lower;

@@ -63,6 +63,7 @@ std::vector<Witness> all_witnesses(const PairMotion& pair, const Encounter& firs
 std::vector<MarginInterval> margin_curve(const PairMotion& pair, const SearchResult& whole, const SearchOptions& search) {
     std::vector<MarginInterval> margin;
     SearchOptions options = search;
+    options.exact_witness = false;
     for (int i = 0; i < static_cast<int>(pair.segments.size()); ++i) {
         const PairSegment& segment = pair.segments[i];
         // A first search to a thousandth of the distance, then finer where that is not enough.

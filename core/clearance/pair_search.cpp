@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/clearance/pair_search.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "fettle/core/base/contract.hpp"
@@ -39,14 +40,17 @@ public:
 private:
     // Whole bodies' bounds leave open which elements are nearest: the nearest ones at an instant, then the instant where these are.
     void refine_nearest() {
+        const SearchOptions& options = front_.options;
+        if (!front_.are_beside || !front_.result.complete || !options.exact_witness || options.seek_intersection)
+            return segments_.refine_nearest();
         constexpr int most_rounds = 4;
-        for (int round = 0; front_.are_beside && round < most_rounds; ++round) {
+        for (int round = 0; round < most_rounds; ++round) {
             take_nearest_at_instant();
             const double s = front_.result.nearest.s;
             segments_.refine_nearest();
             if (front_.result.nearest.s == s) return;
         }
-        front_.are_beside ? take_nearest_at_instant() : segments_.refine_nearest();
+        take_nearest_at_instant();
     }
 
     void take_nearest_at_instant() {
@@ -56,13 +60,15 @@ private:
         const std::vector<PairSegment> held{held_at(segment, known.s, front_.a.radius(), front_.b.radius())};
         SearchOptions options;
         options.tolerance = 3 * held.front().slack;  // what bounds are told less by, and distances more
-        options.max_evaluations = most_evaluations;
+        options.max_evaluations = std::min(most_evaluations, front_.options.max_evaluations - front_.result.evaluations);
+        options.should_stop = front_.options.should_stop;
         PairSearch at_instant(front_.a, front_.b, held, options);
         Encounter nearest = known;
         nearest.segment = 0;
         at_instant.front_.take_upper(nearest);
         at_instant.search(0);
         nearest = at_instant.front_.result.nearest;
+        front_.result.evaluations += at_instant.front_.result.evaluations;
         nearest.segment = known.segment;
         nearest.s = known.s;
         front_.take_upper(nearest);

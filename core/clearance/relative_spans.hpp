@@ -23,7 +23,8 @@
 ///   (f_0 + 2 f_m)/3 + (n_1 - n_0).(x(0) - x_m)/3,   (f_1 + 2 f_m)/3 + (n_1 - n_0).(x_m - x(1))/3,
 /// the inner two of which have a weight of 3 s (1 - s) <= 3/4 together: with f_least = min(f_0, f_1)
 ///   f >= min(f_least, (f_least + f_m)/2 - |n_1 - n_0| (|x(1) - x(0)|/2 + |g|)/4) - |e| - (what the ends differ by).
-/// Both bounds hold; the second one is second order in time where faces slide or turn. Bounds of whole bodies use the first alone.
+/// Both bounds hold. What the second one loses is of third order in time for planes that keep their direction; of one that turns half of
+/// the first one's loss remains, and |g|. Only bounds by corners of elements use it.
 ///
 /// Bases that are rotations up to rounding only: |R_b n| <= |B_b|, and R_b^T R_b = B_b^T B_b turns n.Z by at most (|B_b|^2 - 1) |Z|.
 /// Rounding: with the errors of poses (segment_bound.hpp) an R_j is off by their sum, p_j by that of R_b times Q and 4u times the size of
@@ -106,7 +107,7 @@ struct SpanBounds {
 
 class RelativeSpans {
 public:
-    /// `deviation_scale`: of the rests, 1 but in tests that show that a bound without them is found out.
+    /// `deviation_scale`: of what leaves chords and of the steps, 1 but in tests that show that a bound without them is found out.
     RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b, double deviation_scale = 1);
 
     const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }

@@ -2,9 +2,9 @@
 /// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, the bounds so far, and the
 /// upper bounds with their witnesses.
 ///
-/// The most promising entry comes first, and then for a while the last one made, which is mostly a part of it: what is below the cutoff has
-/// to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is to be proven and
-/// nothing nearer has been seen, always the last one made.
+/// The most promising entry comes first, and then for a while the most promising of those made last, which are mostly parts of it: what is
+/// below the cutoff has to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is
+/// to be proven and nothing nearer has been seen, always one of those made last.
 #pragma once
 
 #include <algorithm>
@@ -172,7 +172,7 @@ private:
 
     double within_ = -1;
     bool strict_;                 // the most promising one always
-    bool in_order_;               // else the last one always
+    bool in_order_;               // else one of the last made always
     std::vector<Key> queue_;      // a heap
     std::vector<Key> last_made_;  // and not in the queue yet
     std::size_t sorted_ = 0;      // of these

@@ -23,6 +23,7 @@ struct SearchOptions {
     bool nodes_only = false;                                    ///< at the ends of the segments instead of over them
     bool seek_intersection = false;           ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
     std::optional<Encounter> seed;            ///< of the same bodies: its distance is the first upper bound
+    bool exact_witness = true;                ///< `nearest` are the nearest elements at their instant, if that is found soon
     bool sample_nodes = false;                ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
     certificate::PairProof* proof = nullptr;  ///< the tree of entries is recorded here, one proof per segment
 };

@@ -143,12 +143,12 @@ double SegmentSearch::try_hulls(const Entry& whole, const Cell& known) {
     const Interval interval = intervals_[whole.interval];
     const Vector3 n0 = hull_direction(interval.segment, interval.start);
     if (!n0.isZero(0))
-        return try_hulls(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.segment, interval.end), known);
+        return try_hulls_along(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.segment, interval.end), known);
     keep(whole, known.lower, known.plane, true);
     return known.lower;
 }
 
-double SegmentSearch::try_hulls(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known) {
+double SegmentSearch::try_hulls_along(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known) {
     ++front_.result.evaluations;
     const Interval& interval = intervals_[whole.interval];
     const PairSegment& segment = segment_of(interval);
@@ -297,10 +297,10 @@ void SegmentSearch::halve(const Entry& entry) {
         const Vector3 n = hull_direction(interval.segment, interval.middle);
         half.cell = first;
         half.interval = interval.first_half;
-        try_hulls(half, entry.n0, n, {first});
+        try_hulls_along(half, entry.n0, n, {first});
         half.cell = second;
         half.interval = interval.second_half;
-        try_hulls(half, n, entry.n1, {second});
+        try_hulls_along(half, n, entry.n1, {second});
         return;
     }
     if (!entry.measured) {

@@ -54,7 +54,7 @@ private:
         bool measured = false;  // two elements whose closest points are known at the interval's ends: n0, n1 are their directions
         bool beside = false;    // both whole bodies, whose hulls are apart along n0 and n1 at the interval's ends
         bool halve = false;     // in time, else in space
-        double at_ends = 0;     // beside each other: a bound there
+        double at_ends = 0;     // beside each other: what their bound may become by halving in time
         Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
     };
 
@@ -73,7 +73,7 @@ private:
     void keep(const Entry& entry, double lower, const certificate::LeafPlane& plane, bool splittable);
     double try_pieces(int interval_index, int a, int b, const Cell& cell);
     double try_hulls(const Entry& whole, const Cell& known);
-    double try_hulls(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known);
+    double try_hulls_along(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known);
     Vector3 hull_direction(int segment, int instant);
     SegmentBound elements_bound(const Entry& entry, const Vector3& n0, const Vector3& n1);
     void try_elements(Entry entry, const Vector3& n0, const Vector3& n1);

@@ -64,7 +64,7 @@ void SpanSearch::tighten(Entry& entry, const Vector3& n, double apart, bool by_c
     take(found, open, entry);
 }
 
-// Are both pieces small?
+// Are both pieces small, and yet more than a few pairs?
 bool SpanSearch::are_for_hulls(const Entry& entry) const {
     const int a = piece_a(entry.a).count, b = piece_b(entry.b).count;
     return std::max(a, b) <= most_elements_of_hull && a * b >= fewest_pairs_of_hulls;
@@ -78,7 +78,10 @@ double SpanSearch::tighten_by_corners(Entry& entry, Vector3 n, double least) {
     const double cutoff = span_cutoff(group);
     for (std::uint32_t tried = 0; least < infinity && (tried >> entry.nearest & 1) == 0;) {
         tried |= 1U << entry.nearest;
-        const HullDirection::Bound bound = hulls.beyond(group.at(entry.nearest), n, cutoff);
+        ++front_.result.evaluations;
+        const bool sampled = (entry.open_nodes >> entry.nearest & 1) != 0;
+        const HullDirection::Bound bound =
+            hulls.beyond(group.at(entry.nearest), n, sampled ? std::max(cutoff, front_.sampling_cutoff()) : cutoff);
         if (!(bound.apart > cutoff)) break;
         n = bound.n;
         tighten(entry, n, bound.apart, true);
@@ -169,7 +172,9 @@ void SpanSearch::split(int index) {
     for_bits(entry.open_spans, [&](int j) {
         const double at_ends = std::min(entry.lower.nodes[j], entry.lower.nodes[j + 1]);
         const bool goes_far = group.level > 0 && group.step_shift[j] + radius * group.step_turn[j] > size;
-        const bool whole = group.level > 0 && entry.beside;
+        // Hulls cannot tell more in less time where they are near all the while.
+        const double goes = group.step_shift[j] + radius * group.step_turn[j] + (at_ends - entry.lower.spans[j]);
+        const bool whole = group.level > 0 && entry.beside && goes > enough - at_ends;
         if (!whole && at_ends < enough && at_ends - entry.lower.spans[j] <= 0.5 * size && !goes_far) return;
         halve_span(entry, j);
         entry.open_spans ^= 1U << j;

@@ -307,4 +307,30 @@ TEST_CASE("Bodies beside each other need no search of all pairs of their parts",
     CHECK(recorded.evaluations < 3000);
 }
 
+TEST_CASE("What rests before a gap whose hull is closed costs no more the longer it does", "[clearance]") {
+    const Solid prong = prism(60, 0.5, 0.5), pin = prism(60, 0.3, 0.5);
+    Matrix3X x(3, 2 * prong.mesh.vertices.cols());
+    std::vector<geometry::Triangle> triangles = prong.mesh.triangles;
+    const auto count = static_cast<int>(prong.mesh.vertices.cols());
+    x << prong.mesh.vertices.colwise() - Vector3(2, 0, 0), prong.mesh.vertices.colwise() + Vector3(2, 0, 0);
+    for (const geometry::Triangle& t : prong.mesh.triangles) triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+    const Solid fork = make_solid(x, triangles);
+    const auto evaluations = [&](int steps, double distance) {
+        std::vector<core::clearance::PairSegment> segments;
+        for (int i = 0; i < steps; ++i) {
+            core::kinematics::PathSegment still, resting;
+            resting.position_t0 = Vector3(0, 0.5 + 0.3 + distance, 0);
+            segments.push_back(core::clearance::pair_segment(still, resting, fork.radius(), pin.radius()));
+            segments.back().step = i;
+        }
+        SearchOptions options;
+        options.tolerance = 1e-6;
+        const SearchResult result = search_pair(fork.search(), pin.search(), segments, options);
+        CHECK(result.upper - result.lower <= 1e-6);
+        CHECK(result.upper == Approx(std::hypot(2, 0.8 + distance) - 0.8).epsilon(0.01));
+        return result.evaluations;
+    };
+    for (const double distance : {0.01, 0.2}) CHECK(evaluations(3375, distance) < 4 * evaluations(15, distance) + 2000);
+}
+
 }  // namespace fettle::core::clearance::pair_search_test
