@@ -27,6 +27,11 @@ void add_contact_damping_report(const SolvedStep& step, TermReport& report) {
             // On body a: the vertices of the first primitive, or those of the second if the pair is listed the other way round.
             const int n = first_count(contact.type);
             const bool first = list.first == f.a;
+            for (int i = 0; i < 4; ++i) {
+                const int body = i < n ? list.first : list.second;
+                report.dissipated_power +=
+                    scale * gradient[i].dot(point_velocity(step.poses[body], step.end.velocities[body], contact.x[i]));
+            }
             for (int i = first ? 0 : n; i < (first ? n : 4); ++i) {
                 f.force -= scale * gradient[i];
                 f.torque -= contact.x[i].cross(scale * gradient[i]);

@@ -31,10 +31,17 @@ void add_damping_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivat
     d.magnitude += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
 }
 
-void report_no_damping(const SolvedStep&, TermReport&) {}
+void add_damping_report(const SolvedStep& step, TermReport& report) {
+    for (std::size_t i = 0; i < step.poses.size(); ++i) {
+        const model::Body& body = step.problem.model->bodies[i];
+        if (!takes_part(step.problem, body)) continue;
+        const Matrix34& velocity = step.end.velocities[i];
+        report.dissipated_power += (velocity * damping_moments(body)).cwiseProduct(velocity).sum();
+    }
+}
 
 }  // namespace
 
-const BodyTerm damping_term{"damping", add_damping_value, add_damping_derivatives, report_no_damping};
+const BodyTerm damping_term{"damping", add_damping_value, add_damping_derivatives, add_damping_report};
 
 }  // namespace fettle::core::energy

@@ -24,21 +24,28 @@ void add_inertia_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivat
     d.magnitude += gradient.force.norm() + gradient.arm.norm() / std::max(body.radius, at.problem.model->dhat);
 }
 
-// Momenta: with M = integral rho [X;1][X;1]^T, integral rho x v^T = P M V^T.
 void add_inertia_report(const SolvedStep& step, TermReport& report) {
     for (std::size_t i = 0; i < step.poses.size(); ++i) {
         const Matrix4& moments = step.problem.model->bodies[i].moments;
         if (!(moments(3, 3) > 0)) continue;
         const Matrix34& velocity = step.end.velocities[i];
-        const Matrix34 momentum = velocity * moments;
-        report.kinetic_energy += 0.5 * momentum.cwiseProduct(velocity).sum();
-        report.linear_momentum += momentum.col(3);
-        const Matrix3 l = pose_matrix(step.end.poses[i]) * momentum.transpose();  // integral rho x v^T
-        report.angular_momentum += Vector3(l(1, 2) - l(2, 1), l(2, 0) - l(0, 2), l(0, 1) - l(1, 0));
+        report.kinetic_energy += 0.5 * (velocity * moments).cwiseProduct(velocity).sum();
+        const Vector6 momentum = momenta(step.end.poses[i], velocity, moments);
+        report.linear_momentum += momentum.head<3>();
+        report.angular_momentum += momentum.tail<3>();
     }
 }
 
 }  // namespace
+
+// With M = integral rho [X;1][X;1]^T, integral rho x v^T = P M V^T.
+Vector6 momenta(const kinematics::Pose& pose, const Matrix34& velocity, const Matrix4& moments) {
+    const Matrix34 momentum = velocity * moments;
+    const Matrix3 l = pose_matrix(pose) * momentum.transpose();
+    Vector6 out;
+    out << momentum.col(3), l(1, 2) - l(2, 1), l(2, 0) - l(0, 2), l(0, 1) - l(1, 0);
+    return out;
+}
 
 double inertia_potential(const Matrix34& pose, const Matrix34& pose_hat, const Matrix4& moments) {
     const Matrix34 d = pose - pose_hat;

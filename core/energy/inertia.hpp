@@ -15,6 +15,9 @@ double inertia_potential(const Matrix34& pose, const Matrix34& pose_hat, const M
 void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat, const Matrix4& moments,
                           kinematics::PoseGradient& gradient);
 
+/// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m^2/s] of a body with Pdot = velocity.
+Vector6 momenta(const kinematics::Pose& pose, const Matrix34& velocity, const Matrix4& moments);
+
 /// Of the bodies that are solved for.
 extern const BodyTerm inertia_term;
 

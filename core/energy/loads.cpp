@@ -40,6 +40,9 @@ void add_loads_derivatives(const DerivativesAt& at, std::size_t i, BodyDerivativ
 
 void add_loads_report(const SolvedStep& step, TermReport& report) {
     const model::Model& model = *step.problem.model;
+    for (std::size_t i = 0; i < step.poses.size(); ++i)
+        report.supplied_power +=
+            model.bodies[i].torque.dot(kinematics::angular_velocity(step.end.poses[i].rotation, step.end.velocities[i]));
     for (std::size_t i = 0; i < step.poses.size(); ++i) {
         const model::Body& body = model.bodies[i];
         if (!(body.moments(3, 3) > 0)) continue;

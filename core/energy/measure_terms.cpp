@@ -86,10 +86,14 @@ void add_measures_report(const SolvedStep& step, TermReport& report) {
     const model::Mechanism& mechanism = step.problem.model->mechanism;
     if (mechanism.terms.empty()) return;
     const Frames frames = placed(mechanism.set.frames, step.end.poses);
+    const std::vector<double> rates = measure_rates(mechanism.set, step.end.poses, step.end.velocities);
     for (const model::MeasureTerm& term : mechanism.terms) {
         const double m = measure_at(step.problem, term.measure, frames);
         const LawValue law = measure_law(step.problem, term, m);
-        report.measure_forces.push_back(-law.first / step.problem.weight);
+        const double force = -law.first / step.problem.weight, power = force * rates[static_cast<std::size_t>(term.measure)];
+        report.measure_forces.push_back(force);
+        if (term.kind == model::LawKind::force) report.supplied_power += power;
+        if (term.kind == model::LawKind::damper || term.kind == model::LawKind::friction) report.dissipated_power -= power;
         const bool stores = term.kind == model::LawKind::spring || term.kind == model::LawKind::stop;
         if (stores) report.spring_energy += law.value / step.problem.weight;
     }

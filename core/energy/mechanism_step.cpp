@@ -12,9 +12,17 @@ std::vector<double> measures_at(const measure::MeasureSet& set, const std::vecto
     return out;
 }
 
-// How fast measures change along V0.
-std::vector<double> rates_at(const measure::MeasureSet& set, const History& history) {
-    const std::vector<measure::PlacedFrame> frames = placed(set.frames, history.poses);
+bool looks_back(const model::Mechanism& mechanism) {
+    for (const model::MeasureTerm& term : mechanism.terms)
+        if (term.kind == model::LawKind::damper || term.kind == model::LawKind::friction) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<double> measure_rates(const measure::MeasureSet& set, const std::vector<kinematics::Pose>& poses,
+                                  const std::vector<Matrix34>& velocities) {
+    const std::vector<measure::PlacedFrame> frames = placed(set.frames, poses);
     std::vector<double> out(set.measures.size(), 0);
     for (std::size_t i = 0; i < out.size(); ++i) {
         const measure::Measure& m = set.measures[i];
@@ -23,21 +31,12 @@ std::vector<double> rates_at(const measure::MeasureSet& set, const History& hist
             const int body = set.frames[static_cast<std::size_t>(frame)].body;
             if (body == measure::world) continue;
             const auto k = static_cast<std::size_t>(body);
-            const Matrix34& velocity = history.velocities[k];
-            out[i] +=
-                gradient.force.dot(velocity.col(3)) + (gradient.arm * history.poses[k].rotation).cwiseProduct(velocity.leftCols<3>()).sum();
+            const Matrix34& velocity = velocities[k];
+            out[i] += gradient.force.dot(velocity.col(3)) + (gradient.arm * poses[k].rotation).cwiseProduct(velocity.leftCols<3>()).sum();
         }
     }
     return out;
 }
-
-bool looks_back(const model::Mechanism& mechanism) {
-    for (const model::MeasureTerm& term : mechanism.terms)
-        if (term.kind == model::LawKind::damper || term.kind == model::LawKind::friction) return true;
-    return false;
-}
-
-}  // namespace
 
 MechanismStep mechanism_step(const model::Model& model, const History& history) {
     MechanismStep step;
@@ -53,7 +52,7 @@ MechanismStep mechanism_step(const model::Model& model, const History& history) 
             for (std::size_t i = 0; i < earlier.size(); ++i) step.measures[i] = (4 * step.measures[i] - earlier[i]) / 3;
         }
         if (model.integrator == scene::Integrator::newmark) {
-            const std::vector<double> rates = rates_at(set, history);
+            const std::vector<double> rates = measure_rates(set, history.poses, history.velocities);
             for (std::size_t i = 0; i < rates.size(); ++i) step.measures[i] += 0.5 * model.timestep * rates[i];
         }
     }

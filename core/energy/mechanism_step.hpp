@@ -20,6 +20,10 @@ struct MechanismStep {
 /// m_slip is m at the start; of BDF2 (4 m(P0) - m(P_-1))/3, of Newmark m(P0) + h/2 (dm/dP)(P0) V0.
 MechanismStep mechanism_step(const model::Model& model, const History& history);
 
+/// dm/dt per measure, of bodies at `poses` with velocities Pdot.
+std::vector<double> measure_rates(const measure::MeasureSet& set, const std::vector<kinematics::Pose>& poses,
+                                  const std::vector<Matrix34>& velocities);
+
 void set_end_time(const model::Mechanism& mechanism, double time, MechanismStep& step);
 
 }  // namespace fettle::core::energy

@@ -27,7 +27,9 @@ struct TermReport {
     Vector3 angular_momentum = Vector3::Zero();  ///< about the world's origin [kg m^2/s]
     std::vector<ContactForce> contacts;          ///< by (a, b)
     double spring_energy = 0;                    ///< of springs and stops [J]
-    std::vector<double> measure_forces{};        ///< per term of the mechanism: force or torque along its measure [N], [N m]
+    double supplied_power = 0;             ///< by what is no potential: motors, prescribed coordinates, forces along measures, torques [W]
+    double dissipated_power = 0;           ///< by friction of contacts and joints, dampers, damping of bodies and contacts [W]
+    std::vector<double> measure_forces{};  ///< per term of the mechanism: force or torque along its measure [N], [N m]
 };
 
 /// The entry of these two bodies, in either order; made where there is none. Valid until the next one is made.

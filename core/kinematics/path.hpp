@@ -24,6 +24,17 @@ inline Matrix34 pose_matrix(const Pose& pose) {
     return p;
 }
 
+/// Velocity of the body's point that is at the world position x, where Pdot = [Rdot qdot].
+inline Vector3 point_velocity(const Pose& pose, const Matrix34& velocity, const Vector3& x) {
+    return velocity.leftCols<3>() * (pose.rotation.transpose() * (x - pose.position)) + velocity.col(3);
+}
+
+/// omega of Rdot = [omega] R.
+inline Vector3 angular_velocity(const Matrix3& rotation, const Matrix34& velocity) {
+    const Matrix3 w = velocity.leftCols<3>() * rotation.transpose();
+    return 0.5 * Vector3(w(2, 1) - w(1, 2), w(0, 2) - w(2, 0), w(1, 0) - w(0, 1));
+}
+
 /// A point of a step's chart: R = exp([rotation_vector]) R_t0, position absolute. Six numbers, position first:
 /// the order of degrees of freedom everywhere (px py pz rx ry rz, world axes).
 struct ChartPoint {

@@ -115,6 +115,21 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
     return friction;
 }
 
+// What a solve may leave of the forces, well below what the integrator's own error of a step is of them: a half for implicit Euler, a
+// twelfth times the angle or phase of the step for those of second order.
+double default_accuracy(scene::Integrator integrator) {
+    switch (integrator) {
+        case scene::Integrator::implicit_euler:
+            return 1e-3;
+        case scene::Integrator::bdf2:
+        case scene::Integrator::newmark:
+            return 1e-6;
+        case scene::Integrator::quasi_static:  // solved to rounding
+            break;
+    }
+    return 0;
+}
+
 // Without area a vertex or edge would have no barrier.
 Errors check_areas(const Model& model) {
     Errors errors;
@@ -227,6 +242,7 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.dhat = scene.dhat.value_or(1e-3 * size);
     model.dmin = scene.dmin;
     model.velocity_tolerance = scene.velocity_tolerance.value_or(1e-2 * size);
+    if (!scene.velocity_tolerance) model.solve_accuracy = default_accuracy(scene.integrator);
     model.bodies.resize(scene.bodies.size());
     base::parallel_for(static_cast<int>(scene.bodies.size()), 1, [&](int i) {
         const bool given = !options.reference_points.empty();

@@ -70,7 +70,10 @@ struct Model {
     scene::Integrator integrator = scene::Integrator::implicit_euler;
     double proximal_weight = 0;     ///< h^2/eps of quasi-static steps [s^2] (choose_proximal_weight.hpp); 0: not quasi-static
     double velocity_tolerance = 0;  ///< [m/s]
+    double solve_accuracy = 0;  ///< share of the forces on a body that a solve may leave unbalanced; 0: the tolerance is all that counts
     int max_newton_iterations = 3000;
+    bool for_gradient = false;          ///< of a design: each simulation of it is the one that is differentiated, whoever asks for it
+                                        ///< (stepper::SimulationOptions::for_gradient)
     double diagonal = 1;                ///< of the bounding box of everything at the start [m]
     double length_unit = 1;             ///< of the scene file [m], for reports
     std::vector<std::string> warnings;  ///< what build_model took with a doubt; for people, no part of a stored model

@@ -56,7 +56,8 @@ private:
 
 std::string steps_csv(const stepper::Simulation& simulation) {
     std::string text =
-        "time,kinetic_energy,potential_energy,contact_energy,px,py,pz,lx,ly,lz,kappa,newton_iterations,friction_rounds,contacts,"
+        "time,kinetic_energy,potential_energy,contact_energy,spring_energy,supplied_power,dissipated_power,px,py,pz,lx,ly,lz,kappa,newton_"
+        "iterations,friction_rounds,contacts,"
         "minimum_distance,residual\n";
     const std::size_t count = simulation.outputs.size(), reports = simulation.report.steps.size();
     FETTLE_ASSERT(reports >= count, "more outputs than steps");
@@ -68,6 +69,9 @@ std::string steps_csv(const stepper::Simulation& simulation) {
             .add(o.kinetic_energy)
             .add(o.potential_energy)
             .add(o.contact_energy)
+            .add(o.spring_energy)
+            .add(o.supplied_power)
+            .add(o.dissipated_power)
             .add(o.linear_momentum)
             .add(o.angular_momentum)
             .add(o.kappa)
@@ -106,10 +110,19 @@ std::string drives_csv(const stepper::Simulation& simulation, const std::vector<
 }
 
 std::string joints_csv(const stepper::Simulation& simulation, const model::Mechanism& mechanism) {
-    std::string text = "time,name,fx,fy,fz,tx,ty,tz,effort\n";
+    std::string text = "time,name,fx,fy,fz,tx,ty,tz,effort,spring,damping,friction,stop\n";
     for (const stepper::StepOutputs& o : simulation.outputs)
         for (const stepper::JointForce& f : o.joints)
-            Row(text).add(o.time).add(mechanism.joints[static_cast<std::size_t>(f.joint)].name).add(f.force).add(f.torque).add(f.effort);
+            Row(text)
+                .add(o.time)
+                .add(mechanism.joints[static_cast<std::size_t>(f.joint)].name)
+                .add(f.force)
+                .add(f.torque)
+                .add(f.effort)
+                .add(f.spring)
+                .add(f.damping)
+                .add(f.friction)
+                .add(f.stop);
     return text;
 }
 

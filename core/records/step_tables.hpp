@@ -10,8 +10,10 @@
 
 namespace fettle::core::records {
 
-/// time, kinetic_energy, potential_energy, contact_energy [J], linear momentum px py pz [kg m/s], angular momentum about the world's origin
-/// lx ly lz [kg m^2/s], kappa, newton_iterations, friction_rounds, contacts, minimum_distance [m; empty: nothing in contact], residual.
+/// time, kinetic_energy, potential_energy (of gravity and constant forces), contact_energy, spring_energy (of springs and stops) [J], whose
+/// sum is all there is; supplied_power (motors, prescribed coordinates, torques, loads at points), dissipated_power [W]; linear momentum px
+/// py pz [kg m/s], angular momentum about the world's origin lx ly lz [kg m^2/s], kappa, newton_iterations, friction_rounds, contacts,
+/// minimum_distance [m; empty: nothing in contact], residual.
 std::string steps_csv(const stepper::Simulation& simulation);
 
 /// One row per step and pair of bodies in contact: time, a, b, force on a fx fy fz [N], its torque about the world's origin tx ty tz [N m],
@@ -23,7 +25,8 @@ std::string contacts_csv(const stepper::Simulation& simulation, const std::vecto
 std::string drives_csv(const stepper::Simulation& simulation, const std::vector<std::string>& names);
 
 /// One row per step and joint, gear or motor: time, name, force on body b fx fy fz [N] and torque on it about the joint's point tx ty tz
-/// [N m], effort of a motor [N], [N m] (0 of others). A motor's force and torque are its own, beside those of its joint.
+/// [N m], effort of a motor [N], [N m] (0 of others); of a joint, along its coordinate [N], [N m], what its spring, damping, friction and
+/// stops push with: beside force and torque, which keep it together. A motor's force and torque are its own, beside those of its joint.
 std::string joints_csv(const stepper::Simulation& simulation, const model::Mechanism& mechanism);
 
 /// `later` after those rows of `earlier`, a table of the run that was taken up again, whose time is at most `until` [s]: the table of a run

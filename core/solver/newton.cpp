@@ -39,6 +39,7 @@ constexpr int most_friction_rounds = 30;      // when they are to converge: norm
 constexpr int most_settling_rounds = 100;     // when they are to agree to rounding, for a gradient
 constexpr double settled_motion = 1e-13;      // of the scene's size: that
 constexpr double friction_resolution = 0.1;   // of eps_v
+constexpr double stop_range = 0.1;            // of dhat: how near to a joint's stop a step may end
 constexpr double usable_residual = 1e-8;      // of a solve to rounding: the adjoint's accuracy
 constexpr double rounding_of_places = 1e-14;  // of the scene's size
 constexpr int bodies_a_loop = 32;             // that a thread takes
@@ -51,7 +52,13 @@ public:
           targets_(targets),
           workspace_(workspace),
           options_(options),
-          caution_(options.caution) {
+          caution_(options.caution),
+          joints_rub_(std::any_of(model_.mechanism.terms.begin(), model_.mechanism.terms.end(),
+                                  [](const model::MeasureTerm& term) { return term.kind == model::LawKind::friction; })),
+          joints_stop_(std::any_of(model_.mechanism.terms.begin(), model_.mechanism.terms.end(),
+                                   [](const model::MeasureTerm& term) { return term.kind == model::LawKind::stop; })) {
+        for (const model::Body& body : model_.bodies)
+            if (energy::has_free_dof(body)) smallest_radius_ = std::min(smallest_radius_, std::max(body.radius, model_.dhat));
         at_ = options_.start.empty() ? start_of_step() : Iterate{options_.start, poses_of(problem_, options_.start), {}};
         result_.path.push_back(at_.points);
     }
@@ -64,6 +71,8 @@ public:
             value_ = potential(at_);
             if (result_.friction_rounds == 1 && may_coast()) begin_where_bodies_coast();
             first_of_round_ = result_.iterations;
+            least_share_ = std::numeric_limits<double>::infinity();
+            since_least_share_ = 0;
             while (iterate()) {
             }
             if (frictional_ && options_.keep_rounds) keep_round();
@@ -230,8 +239,37 @@ private:
 
     // Velocities below eps_v are what friction tells sticking from sliding by: they must be resolved.
     double velocity_tolerance() const {
-        if (problem_.friction.pairs.empty()) return options_.velocity_tolerance;
+        if (!is_rubbing()) return options_.velocity_tolerance;
         return std::min(options_.velocity_tolerance, friction_resolution * model_.friction.eps_v);
+    }
+
+    bool is_rubbing() const { return joints_rub_ || !problem_.friction.pairs.empty(); }
+
+    // The motion whose square, in units of this, is what a whole Newton step leaves: within it the potential is nearly quadratic.
+    double quadratic_range() const {
+        double range = smallest_radius_;
+        if (at_.contacts.count > 0) range = std::min({range, model_.dhat, at_.contacts.minimum_distance - model_.dmin});
+        if (joints_stop_) range = std::min(range, stop_range * model_.dhat);
+        if (is_rubbing()) range = std::min(range, model_.friction.eps_v * problem_.slip_time);
+        return range;
+    }
+
+    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken?
+    bool leaves_too_much(double share, double motion) const {
+        return options_.accuracy > 0 && !(share * std::min(1.0, motion / quadratic_range()) <= options_.accuracy);
+    }
+
+    // Where rounding keeps it from getting there, the least that it gets to is taken.
+    bool is_accurate(const Direction& direction) {
+        constexpr int tries = 3;  // without halving it
+        const double share = *std::max_element(direction.unbalanced.begin(), direction.unbalanced.end());
+        if (options_.accuracy == 0 || share <= options_.accuracy) return true;
+        if (share < 0.5 * least_share_) {
+            least_share_ = share;
+            since_least_share_ = 0;
+            return false;
+        }
+        return ++since_least_share_ >= tries;
     }
 
     // One Newton iteration. @return whether to go on.
@@ -243,7 +281,8 @@ private:
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
-        if (solved && !options_.to_rounding) return stop(NewtonStatus::converged);
+        if (solved && !options_.to_rounding && (is_accurate(*direction) || result_.iterations >= options_.max_iterations))
+            return stop(NewtonStatus::converged);
         const char* too_rough = "rounding stops the solve before it is accurate enough for a gradient";
         if (result_.iterations >= options_.max_iterations)  // solved, in numbers that jump by more than such accuracy at each step
             return stop(failure(*direction), failure_message(*direction, solved ? too_rough : "too many Newton iterations"));
@@ -268,7 +307,8 @@ private:
     // A whole step of Newton's that is short enough to end with is followed by one of its square: no need to look at it.
     bool was_the_last(const Direction& direction, double fraction) const {
         const bool newton = direction.kind == HessianKind::exact && direction.shift == 0 && !caution_.is_on();
-        return !options_.to_rounding && newton && fraction == 1 && has_arrived(direction) && is_slow(direction);
+        return !options_.to_rounding && newton && fraction == 1 && has_arrived(direction) && is_slow(direction) &&
+               !leaves_too_much(*std::max_element(direction.unbalanced.begin(), direction.unbalanced.end()), direction.motion);
     }
 
     // Bodies that touch one another are a problem of their own. Each such group may be done for its own reason: a whole step of Newton's
@@ -282,21 +322,25 @@ private:
         if (!(std::abs(value_change_ - 0.5 * direction.slope) <= -foretold * 0.5 * direction.slope)) return false;
         const double enough = velocity_tolerance() * model_.timestep;
         const std::vector<int> group = touching_groups(model_, at_.contacts, problem_.friction);
-        std::vector<double> step(group.size(), 0);  // [group] the longest
+        std::vector<double> step(group.size(), 0), share = step;  // [group] the longest, the largest
         for (std::size_t i = 0; i < group.size(); ++i) {
-            double& longest = step[static_cast<std::size_t>(group[i])];
-            if (energy::has_free_dof(model_.bodies[i])) longest = std::max(longest, motion_of(model_.bodies[i], direction.step[i]));
+            if (!energy::has_free_dof(model_.bodies[i])) continue;
+            const auto g = static_cast<std::size_t>(group[i]);
+            step[g] = std::max(step[g], motion_of(model_.bodies[i], direction.step[i]));
+            share[g] = std::max(share[g], direction.unbalanced[i]);
         }
+        const auto was_short = [&](int g) { return step[g] <= enough && !leaves_too_much(share[g], step[g]); };
         const auto is_hopeless = [&](const contact::BodyPairContacts& pair) {  // contact leaves more than inertia could bear
-            return std::max(step[group[pair.first]], step[group[pair.second]]) > enough;
+            return !was_short(group[pair.first]) || !was_short(group[pair.second]);
         };
         if (std::any_of(at_.contacts.pairs.begin(), at_.contacts.pairs.end(), is_hopeless)) return false;
         std::vector<int> far;  // bodies whose step was not short
         for (std::size_t i = 0; i < group.size(); ++i)
-            if (!(step[group[i]] <= enough)) far.push_back(static_cast<int>(i));
+            if (!was_short(group[i])) far.push_back(static_cast<int>(i));
         const Remainder remainder = remainder_at(problem_, at_, far, workspace_);
-        const auto is_short = [&](double motion) { return motion <= enough; };
-        if (!std::all_of(remainder.motion.begin(), remainder.motion.end(), is_short)) return false;
+        for (std::size_t k = 0; k < far.size(); ++k)
+            if (!(remainder.motion[k] <= enough) || (options_.accuracy > 0 && !(remainder.unbalanced[k] <= options_.accuracy)))
+                return false;
         result_.residual = remainder.residual;
         return true;
     }
@@ -507,12 +551,16 @@ private:
     bool arrived_ = false;  // prescribed coordinates, at the last iteration
     PrescribedDrive drive_;
     Caution caution_;
+    bool joints_rub_ = false, joints_stop_ = false;                     // terms of the mechanism
+    double smallest_radius_ = std::numeric_limits<double>::infinity();  // of what is solved for
     contact::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction
     std::vector<std::vector<ChartPoint>> ends_of_rounds_;
     int projected_iterations_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
     int since_least_ = 0;
+    double least_share_ = std::numeric_limits<double>::infinity();  // the same of the largest Direction::unbalanced
+    int since_least_share_ = 0;
     NewtonResult result_;
 };
 

@@ -9,9 +9,14 @@
 /// Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere, shifted
 /// by a multiple of the inertia where that is not definite either: a matrix of finite numbers is always factorised.
 ///
+/// A step's error must be the integrator's, not the solver's: what is left after each solve is a velocity that adds up over the steps, and
+/// a force that no one exerts. So `accuracy` asks that no more than a small share of the forces on each body is left unbalanced
+/// (Direction::unbalanced), where the solve stands, or foretold for the end of the next whole Newton step: Newton's error is squared, in
+/// units of the least gap, of the slip that friction sticks by, or of the body.
+///
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
-/// friction in play, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that tells sticking from
-/// sliding. A step of bodies that slide begins where they coast to (coasting.hpp).
+/// friction in play, of contacts or of joints, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that
+/// tells sticking from sliding. A step of bodies that slide begins where they coast to (coasting.hpp).
 #pragma once
 
 #include <functional>
@@ -28,6 +33,7 @@ enum class NewtonStatus { converged, blocked, not_held, not_converged, interrupt
 
 struct NewtonOptions {
     double velocity_tolerance = 0;  ///< stop when the next step moves no point faster than this [m/s]
+    double accuracy = 0;            ///< and, if > 0, when no more than this share of the forces on any body is left unbalanced
     int max_iterations = 3000;
     bool keep_rounds = false;  ///< of friction: where each one ends. With caution they go on until the ends of two agree to rounding
     bool to_rounding = false;  ///< go on with exact steps until the residual is at rounding level: "converged" has at most 1e-8

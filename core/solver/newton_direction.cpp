@@ -82,6 +82,16 @@ double rounding_share(const ChartDerivatives& d, const model::Body& body, const 
     return d.force_magnitude[i] * ulp + body.moments(3, 3) * ulp * ulp;
 }
 
+// Direction::unbalanced. What moves the body by no more than the rounding of places counts for none.
+double unbalanced_share(const StepProblem& problem, const ChartDerivatives& d, const FreeDofs& dofs, const ChartPoint& point, std::size_t i,
+                        double motion) {
+    const model::Body& body = problem.model->bodies[i];
+    const double rounding = 64 * std::numeric_limits<double>::epsilon() * (point.position.norm() + body.radius);
+    if (motion <= rounding) return 0;
+    const double weight = problem.weight * problem.model->gravity.norm(), mass = body.moments(3, 3);  // gravity is in pose_hat
+    return std::sqrt(residual_share(d, *problem.model, dofs, i).square) / (d.force_magnitude[i] + mass * std::max(weight, rounding));
+}
+
 // x - x is 0 but for what is infinite or no number; so is their sum.
 template <class Matrix>
 bool all_finite(const Matrix& m) {
@@ -236,7 +246,7 @@ double measure(const StepProblem& problem, const ChartDerivatives& d, const Free
                Direction& direction) {
     const model::Model& model = *problem.model;
     struct Shares {
-        double slope = 0, motion = 0, rounding = 0, allowed = 1;
+        double slope = 0, motion = 0, unbalanced = 0, rounding = 0, allowed = 1;
         ResidualShare residual;
     };
     std::vector<Shares> shares(points.size());
@@ -244,8 +254,12 @@ double measure(const StepProblem& problem, const ChartDerivatives& d, const Free
         const auto i = static_cast<std::size_t>(k);
         const Vector6& step = direction.step[i];
         const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
-        shares[i] = {d.gradient[i].dot(step), solved_for ? motion_of(model.bodies[i], step) : 0,
-                     rounding_share(d, model.bodies[i], points[i], i), allowed_share(problem, direction, i),
+        const double motion = solved_for ? motion_of(model.bodies[i], step) : 0;
+        shares[i] = {d.gradient[i].dot(step),
+                     motion,
+                     unbalanced_share(problem, d, dofs, points[i], i, motion),
+                     rounding_share(d, model.bodies[i], points[i], i),
+                     allowed_share(problem, direction, i),
                      residual_share(d, model, dofs, i)};
     });
     Shares sum;
@@ -257,6 +271,8 @@ double measure(const StepProblem& problem, const ChartDerivatives& d, const Free
         sum.residual.square += share.residual.square;
         sum.residual.magnitude += share.residual.magnitude;
     }
+    direction.unbalanced.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) direction.unbalanced[i] = shares[i].unbalanced;
     direction.slope = sum.slope;
     direction.motion = sum.motion;
     direction.rounding = sum.rounding;
@@ -341,11 +357,13 @@ double motion_of(const model::Body& body, const Vector6& step) { return step.hea
 Remainder remainder_at(const StepProblem& problem, const Iterate& at, const std::vector<int>& bodies, NewtonWorkspace& workspace) {
     const model::Model& model = *problem.model;
     const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
-    Remainder out{std::vector<double>(bodies.size(), 0.0), residual_of(d, model, workspace.dofs)};
+    const std::vector<double> none(bodies.size(), 0.0);
+    Remainder out{none, none, residual_of(d, model, workspace.dofs)};
     base::parallel_for(static_cast<int>(bodies.size()), bodies_at_once, [&](int k) {
         const int body = bodies[k];
-        if (energy::has_free_dof(model.bodies[body]))
-            out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs, body));
+        if (!energy::has_free_dof(model.bodies[body])) return;
+        out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs, body));
+        out.unbalanced[k] = unbalanced_share(problem, d, workspace.dofs, at.points[body], static_cast<std::size_t>(body), out.motion[k]);
     });
     return out;
 }

@@ -26,6 +26,7 @@ struct Direction {
     double drive = 1;                ///< share of what remains that the step takes
     double slope = 0;                ///< g . step
     double motion = 0;               ///< bound on the largest motion of a point of a body that is solved for [m]
+    std::vector<double> unbalanced;  ///< per body: what is left of the forces on it at this point, as a share of their magnitudes
     double residual = 0;             ///< NewtonResult::residual, here
     double rounding = 0;             ///< of the potential's value here: what a difference of two values may be wrong by
     double shift = 0;                ///< added to the Hessian to make it definite, or by request, in units of the bodies' inertia; 0: none
@@ -64,10 +65,11 @@ double motion_of(const model::Body& body, const Vector6& step);
 
 /// What is left to solve at a point, by first derivatives alone.
 struct Remainder {
-    std::vector<double> motion;  ///< [k] bound on the motion of the points of bodies[k] in the step that it would make if its inertia
-                                 ///< were all that stands against what is left of the forces: what else is stiff makes it shorter [m];
-                                 ///< infinity without inertia, 0 where nothing is free
-    double residual = 0;         ///< NewtonResult::residual
+    std::vector<double> motion;      ///< [k] bound on the motion of the points of bodies[k] in the step that it would make if its inertia
+                                     ///< were all that stands against what is left of the forces: what else is stiff makes it shorter [m];
+                                     ///< infinity without inertia, 0 where nothing is free
+    std::vector<double> unbalanced;  ///< [k] Direction::unbalanced, here
+    double residual = 0;             ///< NewtonResult::residual
 };
 Remainder remainder_at(const energy::StepProblem& problem, const Iterate& at, const std::vector<int>& bodies, NewtonWorkspace& workspace);
 

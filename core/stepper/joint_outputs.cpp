@@ -16,13 +16,42 @@ double deviation(const kinematics::Pose& base, const kinematics::ChartPoint& fro
     return w.norm() * std::min(bound, w.norm() * Y.norm()) / 8;
 }
 
+// What its spring, damper, friction and stops push a joint's coordinate with.
+void add_own_forces(const Mechanism& mechanism, const std::vector<double>& measure_forces, std::vector<JointForce>& out) {
+    for (std::size_t k = 0; k < measure_forces.size(); ++k) {
+        const model::MeasureTerm& term = mechanism.terms[k];
+        if (term.origin.list != model::Origin::List::joint) continue;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const Joint& joint = mechanism.joints[i];
+            if (joint.is_motor || joint.origin.index != term.origin.index) continue;
+            switch (term.kind) {
+                case model::LawKind::spring:
+                    out[i].spring += measure_forces[k];
+                    break;
+                case model::LawKind::damper:
+                    out[i].damping += measure_forces[k];
+                    break;
+                case model::LawKind::friction:
+                    out[i].friction += measure_forces[k];
+                    break;
+                case model::LawKind::stop:
+                    out[i].stop += measure_forces[k];
+                    break;
+                case model::LawKind::force:  // a motor's
+                    break;
+            }
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const std::vector<kinematics::Pose>& poses,
-                                     const VectorX& multipliers) {
+                                     const VectorX& multipliers, const std::vector<double>& measure_forces) {
     const Mechanism& mechanism = problem.model->mechanism;
     std::vector<JointForce> out(mechanism.joints.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i].joint = static_cast<int>(i);
+    add_own_forces(mechanism, measure_forces, out);
     if (multipliers.size() != static_cast<Eigen::Index>(mechanism.rows.size())) return out;
     const std::vector<measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
     const constraint::RowJacobian rows = row_jacobian(mechanism.set, mechanism.rows, frames);

@@ -15,12 +15,16 @@ struct JointForce {
     Vector3 force = Vector3::Zero();   ///< on body b (of a joint with the world alone: on that body), world [N]
     Vector3 torque = Vector3::Zero();  ///< on it, about the joint's point in b [N m]
     double effort = 0;  ///< of a motor: along its joint's coordinate, so that effort times speed is its power [N], [N m]; 0 of others
+    /// Of a joint's own forces, along its coordinate, positive where they push it up: [N] of a slide, [N m] of an angle. They act between
+    /// the two bodies as well, and are not in `force` and `torque`, which are what it takes to keep the joint together.
+    double spring = 0, damping = 0, friction = 0, stop = 0;
 };
 
-/// @param poses        at the step's end.
-/// @param multipliers  per row, of the potential times its weight.
+/// @param poses           at the step's end.
+/// @param multipliers     per row, of the potential times its weight.
+/// @param measure_forces  per term of the mechanism (energy::TermReport).
 std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const std::vector<kinematics::Pose>& poses,
-                                     const VectorX& multipliers);
+                                     const VectorX& multipliers, const std::vector<double>& measure_forces);
 
 /// Bound on how far a joint's two points part (or leave the line or plane that they are to keep to) between the nodes of a step's path: the
 /// deviations B1 of both points from their chords (docs/method.md section 7), the largest over the path's segments and the joints that

@@ -68,6 +68,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     StepState state = out.checkpoint.state;
     solver::NewtonWorkspace workspace(model);
     const int steps = step_count(model, options);
+    if (options.outputs) out.start = start_report(model, state);
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,8 +72,9 @@ struct SimulationReport {
 struct Simulation {
     Trajectory trajectory;
     SimulationReport report;
-    std::vector<StepOutputs> outputs;  ///< per step, if asked for
-    Checkpoint checkpoint;             ///< the last one passed
+    std::vector<StepOutputs> outputs;         ///< per step, if asked for
+    std::optional<energy::TermReport> start;  ///< the same where they begin: energies and momenta, no powers and no forces
+    Checkpoint checkpoint;                    ///< the last one passed
 };
 
 }  // namespace fettle::core::stepper

@@ -212,12 +212,14 @@ StepState start_state(const model::Model& model) {
 }
 
 StepResult step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace, const SimulationOptions& options) {
-    energy::StepProblem problem = energy::step_problem(model, state.history, options.for_gradient ? model.kappa : state.kappa);
+    const bool for_gradient = options.for_gradient || model.for_gradient;
+    energy::StepProblem problem = energy::step_problem(model, state.history, for_gradient ? model.kappa : state.kappa);
     set_end_time(problem, state.time + model.timestep);
     solver::NewtonOptions newton;
     newton.velocity_tolerance = model.velocity_tolerance;
+    newton.accuracy = model.solve_accuracy;
     newton.max_iterations = model.max_newton_iterations;
-    newton.to_rounding = newton.keep_rounds = options.for_gradient;
+    newton.to_rounding = newton.keep_rounds = for_gradient;
     newton.should_stop = options.should_stop;
     const std::vector<PrescribedNode> way = prescribed_path(model, state.history.poses, state.time);
     if (is_quasi_static(model)) ask_for_equilibrium(model, way.back(), newton);
@@ -245,9 +247,9 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     result.path = std::move(driven.path);
     if (!model.mechanism.rows.empty() && !judge_joints(problem, solved, result)) return failed();
     result.state.time = state.time + model.timestep;
-    result.state.kappa = options.for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
+    result.state.kappa = for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     result.state.history = energy::advanced(model, state.history, problem, solved.poses);
-    if (options.outputs) result.outputs = step_outputs(model, problem, solved, result.state);
+    if (options.outputs) result.outputs = step_outputs(model, problem, solved, state, result.state);
     workspace.contacts = {std::move(driven.solved.poses), std::move(driven.solved.contacts)};
     return result;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/stepper/step_outputs.hpp"
 
+#include <algorithm>
+
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/energy/loads.hpp"
 #include "fettle/core/solver/newton.hpp"
@@ -27,37 +29,124 @@ Vector6 inertia_if_held(const energy::StepProblem& problem, std::size_t i, const
     return out;
 }
 
-// The residual of the prescribed coordinates is what the drive supplies; in world axes, out of the chart's.
-std::vector<DriveForce> drive_forces(const model::Model& model, const energy::StepProblem& problem, const solver::NewtonResult& solved) {
+// A chart's generalised force as force and torque about the body's reference point, world.
+Vector6 out_of_chart(const Vector6& force, const Vector3& theta) {
+    Vector6 out = force;
+    out.tail<3>() = kinematics::left_jacobian(theta).transpose().inverse() * force.tail<3>();
+    return out;
+}
+
+// The forces that the solve has left unbalanced on each body, in the chart: of the prescribed coordinates what the drive supplies. Without
+// the rows' forces.
+std::vector<Vector6> unbalanced(const energy::StepProblem& problem, const solver::NewtonResult& solved) {
     const auto& points = solved.path.back();
-    const energy::ChartDerivatives d =
-        energy::chart_derivatives(problem, points, solved.poses, solved.contacts, contact::HessianKind::projected);
+    std::vector<Vector6> out =
+        energy::chart_derivatives(problem, points, solved.poses, solved.contacts, contact::HessianKind::none).gradient;
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = (out[i] + inertia_if_held(problem, i, points[i], solved.poses[i])) / problem.weight;
+    return out;
+}
+
+// In world axes, out of the chart's.
+std::vector<DriveForce> drive_forces(const model::Model& model, const std::vector<Vector6>& unbalanced,
+                                     const std::vector<kinematics::ChartPoint>& points) {
     std::vector<DriveForce> out;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        const model::Body& body = model.bodies[i];
-        Vector6 residual = (d.gradient[i] + inertia_if_held(problem, i, points[i], solved.poses[i])) / problem.weight;
+        Vector6 supplied = unbalanced[i];
         for (int k = 0; k < 6; ++k)
-            if (is_free(body, k)) residual[k] = 0;
-        if (residual.isZero(0)) continue;
-        const Vector3& theta = points[i].rotation_vector;
-        out.push_back(
-            {static_cast<int>(i), residual.head<3>(), kinematics::left_jacobian(theta).transpose().inverse() * residual.tail<3>()});
+            if (is_free(model.bodies[i], k)) supplied[k] = 0;
+        if (supplied.isZero(0)) continue;
+        const Vector6 force = out_of_chart(supplied, points[i].rotation_vector);
+        out.push_back({static_cast<int>(i), force.head<3>(), force.tail<3>()});
     }
     return out;
 }
 
+double drive_power(const std::vector<DriveForce>& drives, const energy::History& end) {
+    double power = 0;
+    for (const DriveForce& d : drives) {
+        const auto i = static_cast<std::size_t>(d.body);
+        power +=
+            d.force.dot(end.velocities[i].col(3)) + d.torque.dot(kinematics::angular_velocity(end.poses[i].rotation, end.velocities[i]));
+    }
+    return power;
+}
+
+// Of motors that are rows: their effort along the rate of their joint's coordinate.
+double motor_power(const model::Mechanism& mechanism, const std::vector<JointForce>& joints, const energy::History& end) {
+    const auto is_motor = [&](const JointForce& f) { return mechanism.joints[static_cast<std::size_t>(f.joint)].is_motor; };
+    if (std::none_of(joints.begin(), joints.end(), is_motor)) return 0;
+    const std::vector<double> rates = energy::measure_rates(mechanism.set, end.poses, end.velocities);
+    double power = 0;
+    for (const JointForce& f : joints)
+        if (is_motor(f))
+            power += f.effort * rates[static_cast<std::size_t>(mechanism.joints[static_cast<std::size_t>(f.joint)].coordinate)];
+    return power;
+}
+
+// Force and torque about the body's reference point, about the world's origin.
+Vector6 about_origin(Vector6 force, const Vector3& position) {
+    force.tail<3>() += position.cross(force.head<3>());
+    return force;
+}
+
+// What acts on a body beside gravity is what its inertia shows, less what the solve has left unbalanced.
+void add_momentum_defects(const energy::StepProblem& problem, const solver::NewtonResult& solved, std::vector<Vector6> unbalanced,
+                          const StepState& start, const StepState& end, StepOutputs& out) {
+    const model::Model& model = *problem.model;
+    const auto& points = solved.path.back();
+    for (std::size_t i = 0; i < unbalanced.size(); ++i) unbalanced[i] = out_of_chart(unbalanced[i], points[i].rotation_vector);
+    if (solved.multipliers.size() > 0) {
+        const model::Mechanism& mechanism = model.mechanism;
+        const auto rows = row_jacobian(mechanism.set, mechanism.rows, placed(mechanism.set.frames, solved.poses));
+        add_transposed(rows, solved.multipliers / problem.weight, unbalanced);
+    }
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const model::Body& body = model.bodies[i];
+        bool solved_for = true;
+        for (int k = 0; k < 6; ++k) solved_for = solved_for && is_free(body, k);
+        if (!solved_for || !(body.moments(3, 3) > 0)) continue;
+        kinematics::PoseGradient inertia;
+        energy::add_inertia_gradient(solved.poses[i], problem.pose_hat[i], body.moments, inertia);
+        const Vector3 position = solved.poses[i].position, arm = solved.poses[i].rotation * body.moments.topRightCorner<3, 1>();
+        Vector6 force = tangent_gradient(inertia) / problem.weight - unbalanced[i];
+        force.head<3>() += body.moments(3, 3) * model.gravity;
+        force.tail<3>() += arm.cross(model.gravity);
+        const Vector6 defect = energy::momenta(end.history.poses[i], end.history.velocities[i], body.moments) -
+                               energy::momenta(start.history.poses[i], start.history.velocities[i], body.moments) -
+                               model.timestep * about_origin(force, position);
+        out.momentum_defect += defect.head<3>();
+        out.angular_momentum_defect += defect.tail<3>();
+    }
+}
+
 }  // namespace
 
+energy::TermReport start_report(const model::Model& model, const StepState& state) {
+    const energy::StepProblem problem = energy::step_problem(model, state.history, state.kappa);
+    const std::vector<Pose>& poses = state.history.poses;
+    const contact::ContactSet contacts = contact::find_contacts(model, contact::find_candidates(model, poses, 0), poses);
+    energy::TermReport report = energy::term_report({problem, poses, contacts, state.history});
+    report.contacts.clear();
+    report.measure_forces.clear();
+    report.supplied_power = report.dissipated_power = 0;
+    return report;
+}
+
 StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& problem, const solver::NewtonResult& solved,
-                         const StepState& end) {
+                         const StepState& start, const StepState& end) {
     energy::StepProblem last = problem;
     last.friction = solved.friction;
     StepOutputs out;
     static_cast<energy::TermReport&>(out) = energy::term_report({last, solved.poses, solved.contacts, end.history});
     out.time = end.time;
     out.kappa = problem.kappa;
-    out.drives = drive_forces(model, last, solved);
-    if (!model.mechanism.empty()) out.joints = joint_forces(last, solved.poses, solved.multipliers);
+    const std::vector<Vector6> left = unbalanced(last, solved);
+    out.drives = drive_forces(model, left, solved.path.back());
+    if (!model.mechanism.empty()) out.joints = joint_forces(last, solved.poses, solved.multipliers, out.measure_forces);
+    if (model.integrator == scene::Integrator::quasi_static) return out;
+    out.supplied_power += drive_power(out.drives, end.history) + motor_power(model.mechanism, out.joints, end.history);
+    add_momentum_defects(last, solved, left, start, end, out);
     return out;
 }
 

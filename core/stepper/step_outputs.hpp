@@ -28,10 +28,19 @@ struct StepOutputs : energy::TermReport {
     double kappa = 0;                  ///< of the barrier [N/m], or [N/m^3] if area-weighted
     std::vector<DriveForce> drives;    ///< of the bodies with prescribed coordinates that need any
     std::vector<JointForce> joints{};  ///< of every joint, gear and motor
+    /// What the momenta of bodies that are solved for changed by in the step, beyond the impulses of all forces on them: the error of the
+    /// solver and, of turning bodies, of the time integration. Forces are those at the step's end, so that a sum over steps is right to
+    /// half a step's impulse.
+    Vector3 momentum_defect = Vector3::Zero();          ///< [kg m/s]
+    Vector3 angular_momentum_defect = Vector3::Zero();  ///< about the world's origin [kg m^2/s]
 };
 
+/// Energies and momenta of a state, before any step.
+energy::TermReport start_report(const model::Model& model, const StepState& state);
+
+/// @param start    what the step started from.
 /// @param problem  as it was handed to the solver; `solved` holds the friction of the last round.
 StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& problem, const solver::NewtonResult& solved,
-                         const StepState& end);
+                         const StepState& start, const StepState& end);
 
 }  // namespace fettle::core::stepper

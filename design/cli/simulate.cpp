@@ -12,6 +12,7 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
@@ -63,6 +64,8 @@ Json joints_at_end(const core::model::Model& model, const Simulation& simulation
         const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
         Json entry{{"name", joint.name}, {"force", answers::vector_json(f.force)}, {"torque", answers::vector_json(f.torque)}};
         if (joint.is_motor) entry["effort"] = f.effort;
+        if (!joint.is_motor && joint.coordinate >= 0)
+            entry["own"] = Json{{"spring", f.spring}, {"damping", f.damping}, {"friction", f.friction}, {"stop", f.stop}};
         list.push_back(entry);
     }
     return list;
@@ -78,6 +81,28 @@ void add_joints(const core::model::Model& model, const Simulation& simulation, J
     json["joints"] = joints_at_end(model, simulation);
     json["joint_gap"] = gap;
     json["path_joint_gap"] = path_gap;
+}
+
+Json balance_json(const core::stepper::Balance& b) {
+    return Json{{"energy_start", b.energy_start},
+                {"energy_end", b.energy_end},
+                {"work", b.work},
+                {"dissipated", b.dissipated},
+                {"energy_error", b.energy_error},
+                {"energy_scale", b.energy_scale},
+                {"momentum_error", b.momentum_error},
+                {"angular_momentum_error", b.angular_momentum_error},
+                {"angular_momentum_scale", b.angular_momentum_scale}};
+}
+
+// A line of the answer.
+std::string balance_text(const core::stepper::Balance& b) {
+    std::string text = formatted("energy: %.4g J at the start, %.4g J at the end; %.4g J supplied, %.4g J lost by friction and dampers",
+                                 b.energy_start, b.energy_end, b.work, b.dissipated);
+    if (b.energy_scale > 0)
+        text += formatted("; %.4g J %s by the time integration (%.2g%% of the most that moves or is stored)", std::abs(b.energy_error),
+                          b.energy_error > 0 ? "gained" : "lost", 100 * std::abs(b.energy_error) / b.energy_scale);
+    return text + "\n";
 }
 
 // Adds nodes to the path until joints hold between them as well as is asked for. @return what of that could not be done; empty: all.
@@ -231,6 +256,14 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
     std::string told = answer_text(outcome, simulation, proof, writes_out ? options.out : "", console);
+    if (const auto balance = core::stepper::balance_of(model, simulation)) {
+        json["balance"] = balance_json(*balance);
+        told += balance_text(*balance);
+        if (const std::string warning = balance_warning(model, *balance); !warning.empty()) {
+            console.narrate("warning: " + warning);
+            json["warnings"].push_back(warning);
+        }
+    }
     if (writes_out) {
         json["out"] = options.out;
         errors = answers::write_result(options.out, json, common.command);

@@ -81,7 +81,9 @@ Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
     // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
     options.check_meshes = std::any_of(design_.shapes.begin(), design_.shapes.end(),
                                        [](const auto& shape) { return shape != nullptr && !shape->is_always_solid(); });
-    return core::model::build_model(scene, options);
+    Result<Model> model = core::model::build_model(scene, options);
+    if (model) model.value().for_gradient = true;
+    return model;
 }
 
 Result<Model> DesignProblem::model_at(const VectorX& p) const {
@@ -215,7 +217,6 @@ Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
 void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const {
     core::stepper::SimulationOptions simulation;
     simulation.steps = design_.steps;
-    simulation.for_gradient = true;  // also without gradients: the same numbers for the same design
     simulation.on_step = options.on_step;
     simulation.should_stop = options.should_stop;
     evaluation.simulation = core::stepper::simulate(*evaluation.model, simulation);

@@ -25,10 +25,12 @@ FETTLE_RECORD(fettle::core::energy::ContactForce, "ContactForce", field("a", &Ty
 FETTLE_RECORD(fettle::core::stepper::DriveForce, "DriveForce", field("body", &Type::body), field("force", &Type::force),
               field("torque", &Type::torque))
 FETTLE_RECORD(fettle::core::stepper::JointForce, "JointForce", field("joint", &Type::joint), field("force", &Type::force),
-              field("torque", &Type::torque), field("effort", &Type::effort))
+              field("torque", &Type::torque), field("effort", &Type::effort), field("spring", &Type::spring),
+              field("damping", &Type::damping), field("friction", &Type::friction), field("stop", &Type::stop))
 FETTLE_RECORD(fettle::core::stepper::StepOutputs, "StepOutputs", field("time", &Type::time), field("kappa", &Type::kappa),
               field("kinetic_energy", &Type::kinetic_energy), field("potential_energy", &Type::potential_energy),
               field("contact_energy", &Type::contact_energy), field("spring_energy", &Type::spring_energy),
+              field("supplied_power", &Type::supplied_power), field("dissipated_power", &Type::dissipated_power),
               field("linear_momentum", &Type::linear_momentum), field("angular_momentum", &Type::angular_momentum),
               field("contacts", &Type::contacts), field("drives", &Type::drives), field("joints", &Type::joints))
 FETTLE_RECORD(fettle::core::stepper::Simulation, "Simulation", field("trajectory", &Type::trajectory), field("report", &Type::report),

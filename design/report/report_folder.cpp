@@ -114,11 +114,9 @@ std::vector<std::string> files_beside(const fs::path& folder) {
     return names;
 }
 
-// As the optimiser's trials are simulated.
 Simulation simulated(const Model& model, int steps, bool outputs, const std::function<bool()>& should_stop) {
     core::stepper::SimulationOptions options;
     options.steps = steps;
-    options.for_gradient = true;
     options.outputs = outputs;
     options.should_stop = should_stop;
     return core::stepper::simulate(model, options);

@@ -70,12 +70,17 @@ class DriveForce(Record):
 
 @dataclasses.dataclass(eq=False, slots=True)
 class JointForce(Record):
-    """On body b, about the joint's point; effort: of a motor, along its coordinate."""
+    """On body b, about the joint's point: what keeps the joint together; effort: of a motor, along its coordinate; spring, damping, friction
+    and stop: of the joint's own, along its coordinate."""
 
     joint: int = 0
     force: Array = dataclasses.field(default_factory=_zero)
     torque: Array = dataclasses.field(default_factory=_zero)
     effort: float = 0.0
+    spring: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+    stop: float = 0.0
 
 
 @dataclasses.dataclass(eq=False, slots=True)
@@ -86,6 +91,8 @@ class StepOutputs(Record):
     potential_energy: float = 0.0  #: [J]
     contact_energy: float = 0.0  #: [J]
     spring_energy: float = 0.0  #: [J]
+    supplied_power: float = 0.0  #: by motors, prescribed coordinates, torques and loads at points [W]
+    dissipated_power: float = 0.0  #: by friction and dampers [W]
     linear_momentum: Array = dataclasses.field(default_factory=_zero)  #: [kg m/s]
     angular_momentum: Array = dataclasses.field(default_factory=_zero)  #: [kg m^2/s]
     contacts: List[ContactForce] = dataclasses.field(default_factory=list)

@@ -66,7 +66,7 @@ TEST_CASE("the table of joints has a row for each joint, gear and motor of each 
     const stepper::Simulation out = run(model, 4);
     const std::string text = joints_csv(out, model.mechanism);
     CHECK(std::count(text.begin(), text.end(), '\n') == 1 + 4 * 5);
-    CHECK(text.rfind("time,name,fx,fy,fz,tx,ty,tz,effort\n0.01,one,", 0) == 0);
+    CHECK(text.rfind("time,name,fx,fy,fz,tx,ty,tz,effort,spring,damping,friction,stop\n0.01,one,", 0) == 0);
     CHECK(text.find("\n0.04,drive,") != std::string::npos);
 }
 

@@ -124,7 +124,7 @@ TEST_CASE("tables have a header and a row per step", "[step_outputs]") {
     };
     const std::string steps = records::steps_csv(simulation);
     CHECK(lines(steps) == 5);
-    CHECK(columns(steps) == 15);
+    CHECK(columns(steps) == 18);
     const std::vector<std::string> names{"ground", "box, \"big\""};
     const std::string contacts = records::contacts_csv(simulation, names);
     CHECK(lines(contacts) == 5);

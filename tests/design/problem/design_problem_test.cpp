@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/problem/optimiser_problem.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 
@@ -91,6 +92,26 @@ TEST_CASE("an evaluation has the same bits each time, gradients asked for or not
     for (size_t i = 0; i < a.constraints.size(); ++i) CHECK(a.constraints[i].value == b.constraints[i].value);
     // the whole motion's least distance is that of the nearer window
     CHECK(a.constraints[0].value == Approx(std::min(a.constraints[1].value, a.constraints[2].value)).margin(2e-9));
+}
+
+TEST_CASE("a design is simulated as it is evaluated, whoever asks for the simulation") {
+    const DesignFolder folder;
+    const DesignProblem problem = problem_of(folder);
+    const VectorX p = values_of(problem.design().parameters);
+    const DesignEvaluation evaluated = problem.evaluate(p);
+    REQUIRE(evaluated.usable);
+    const auto model = problem.model_at(p);
+    REQUIRE(model);
+    core::stepper::SimulationOptions options;
+    options.steps = problem.design().steps;
+    const core::stepper::Simulation shown = core::stepper::simulate(*model, options);
+    const auto& poses = evaluated.simulation.trajectory.poses;
+    REQUIRE(shown.trajectory.poses.size() == poses.size());
+    for (size_t t = 0; t < poses.size(); ++t)
+        for (size_t i = 0; i < poses[t].size(); ++i) {
+            CHECK(shown.trajectory.poses[t][i].position == poses[t][i].position);
+            CHECK(shown.trajectory.poses[t][i].rotation == poses[t][i].rotation);
+        }
 }
 
 }  // namespace fettle::design::problem::design_problem_test
