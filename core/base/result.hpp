@@ -14,7 +14,9 @@ namespace fettle::core::base {
 
 enum class ErrorCode {
     file_not_found,    ///< no such file, or not where it was looked for
-    file_unreadable,   ///< exists but cannot be read or written
+    file_unreadable,   ///< exists but cannot be read
+    file_unwritable,   ///< a file, a folder or standard output that cannot be written: no permission, a full disk
+    out_of_memory,     ///< what was asked for takes more memory than there is
     parse,             ///< not valid JSON, not a mesh of its format
     unknown_key,       ///< a key that the format does not have
     missing_key,       ///< a key that the format requires

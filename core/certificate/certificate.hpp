@@ -66,9 +66,13 @@ enum class Solids {
     unproven,    ///< nothing is claimed: the surfaces are not proven to stay apart
     disjoint,    ///< no point is in both, over all the time
     overlap,     ///< one lies inside the other's material
-    not_closed,  ///< cannot be verified: a body is not closed, so that it has no inside
+    not_closed,  ///< a body is not closed, so that nothing is in both; neither does one come where the other would be if it were closed
+    unverified,  ///< one may lie inside the other: a mesh is not closed, and the other is within what would close it, or may come there
 };
-const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed"
+const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed", "not verified"
+
+/// Does this leave no way for one to lie inside the other? What is told as clear of each other needs that.
+inline bool are_apart(Solids solids) { return solids == Solids::disjoint || solids == Solids::not_closed; }
 
 struct PairCertificate {
     int a = 0, b = 0;
@@ -104,6 +108,9 @@ struct Certificate {
     std::vector<ExportedFile> exports{};
     /// That hold the bodies at all times, and how far from the path; nothing: the bounds are of the path as stored, and of nothing else.
     std::optional<IdealJoints> joints{};
+    /// Said by whoever made it: the path as stored is what is asked about, not joints that may have the bodies elsewhere between its nodes.
+    /// Without that and without `joints` it is not known what its bounds of moving bodies are good for.
+    bool is_of_path = false;
 };
 
 /// Pairs of `bodies` bodies that the certificate says nothing of, a < b.
@@ -111,7 +118,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 
 /// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
 ///   fettle_certificate 2, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
-///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp),
+///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp), path_as_stored (optional, is_of_path),
 ///   pairs [{a, b, lower, upper, solids, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
 /// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
 /// others, which it writes `:`. Written whole or not at all.

@@ -18,10 +18,6 @@ namespace {
 constexpr std::size_t most_faults = 1000;
 constexpr int leaf_halvings = 24;
 
-struct Place {
-    int step = -1, segment = 0;
-};
-
 class Checker {
 public:
     Checker(const Certificate& certificate, const model::Model& model, const stepper::Trajectory& trajectory)
@@ -79,20 +75,23 @@ private:
 
     const SolidMesh& solid(int body) {
         std::optional<SolidMesh>& known = solids_[static_cast<std::size_t>(body)];
-        if (!known) known = solid_mesh(model_.bodies[static_cast<std::size_t>(body)].mesh);
+        if (!known) known = solid_of(model_.bodies[static_cast<std::size_t>(body)]);
         return *known;
     }
 
     // Decided here, then compared: the lower bound is proven by now.
     void check_solids(const PairCertificate& pair, const std::string& where) {
         if (pair.solids == Solids::overlap) return fault(where, "the solids overlap: there is no clearance to certify");
-        const Solids found =
-            solids_of(solid(pair.a), solid(pair.b), {trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b}, pair.lower);
+        const SolidMesh &a = solid(pair.a), &b = solid(pair.b);
+        PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
+        if (ask_for_path(a, b)) start.path = places_;
+        const Solids found = solids_of(a, b, start, pair.lower);
         if (found == Solids::overlap) return fault(where, "one body lies inside the other's material");
         if (pair.solids == Solids::unproven || pair.solids == found) return;
         fault(where, std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
-                         (found == Solids::not_closed ? "which cannot be verified: a body is not closed"
-                                                      : std::string("but it is ") + to_string(found)));
+                         (found == Solids::not_closed   ? "which cannot be verified: a body is not closed"
+                          : found == Solids::unverified ? "which cannot be verified: a body is not closed, and the other may lie inside it"
+                                                        : std::string("but it is ") + to_string(found)));
     }
 
     void find_places() {

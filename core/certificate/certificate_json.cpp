@@ -18,8 +18,8 @@ using base::ErrorCode;
 using files::JsonNode;
 using files::JsonWriter;
 
-const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};                       // in the order of Primitive
-const std::vector<std::string_view> solids_names{"unproven", "disjoint", "overlap", "not closed"};  // of Solids
+const std::vector<std::string_view> kind_names{"vertex", "edge", "triangle"};  // in the order of Primitive
+const std::vector<std::string_view> solids_names{"unproven", "disjoint", "overlap", "not closed", "not verified"};  // of Solids
 
 std::vector<int> whole_numbers(const JsonNode& node) {
     std::vector<int> out;
@@ -202,6 +202,10 @@ base::Errors write_certificate(const std::filesystem::path& path, const Certific
         out.key("joints");
         write_joints(out, *certificate.joints);
     }
+    if (certificate.is_of_path) {
+        out.key("path_as_stored");
+        out.text += "true";
+    }
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
@@ -212,9 +216,9 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     auto document = files::JsonDocument::read(path.string());
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    root.allow_keys(
-        {"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "exports", "joints", "pairs"});
-    root.require("fettle_certificate").integer(2, 2);
+    root.allow_keys({"fettle_certificate", "geometry_hash", "path_hash", "length_unit", "source", "motion", "bodies", "exports", "joints",
+                     "path_as_stored", "pairs"});
+    files::is_version(root.require("fettle_certificate"), 2);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate;
     certificate.geometry_hash = read_hash(root.require("geometry_hash"));
@@ -227,6 +231,7 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
         certificate.exports.push_back({exported.require("file").string().value_or(""), exported.require("hash").string().value_or(""),
                                        exported.require("rounding").number(files::not_negative).value_or(0)});
     if (root["joints"].exists()) certificate.joints = read_joints(root["joints"]);
+    certificate.is_of_path = root["path_as_stored"].boolean().value_or(false);
     for (const JsonNode& pair : root.require("pairs").elements()) certificate.pairs.push_back(read_pair(pair));
     if (!document->errors().empty()) return document->errors();
     return certificate;

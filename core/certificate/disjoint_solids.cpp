@@ -34,6 +34,10 @@ struct Start {
     Interval3 offset;  // q_inner - q_outer
 };
 
+bool is_within(const Vector3& x, const geometry::Closure& closure) {
+    return geometry::winding_number(x, closure.vertices, closure.triangles).value_or(1) != 0;
+}
+
 Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double lower) {
     Interval3 world = placed(at.inner, x);
     for (std::size_t k = 0; k < 3; ++k) world[k] = world[k] + at.offset[k];
@@ -42,10 +46,11 @@ Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double l
     Interval3 off = placed(at.outer, near);
     for (std::size_t k = 0; k < 3; ++k) off[k] = off[k] - world[k];
     if (!(norm_bound(off) < lower)) return Side::unknown;
-    return is_in_material(near, outer) ? Side::inside : Side::outside;
+    const bool inside = outer.closure ? is_within(near, *outer.closure) : is_in_material(near, outer);
+    return inside ? Side::inside : Side::outside;
 }
 
-// One part inside is enough; else one that is not known. `outer` holds something: a closed mesh.
+// One part inside is enough; else one that is not known. `outer` is a closed mesh.
 Side any_inside(const SolidMesh& inner, const SolidMesh& outer, const Start& at, double lower) {
     Side found = Side::outside;
     for (const int v : inner.samples) {
@@ -58,12 +63,41 @@ Side any_inside(const SolidMesh& inner, const SolidMesh& outer, const Start& at,
 
 bool is_usable(const BodyPath& path) { return path.magnitude < largest_magnitude; }  // false for what is not a number, too
 
+// Is it excluded that a part of `inner` lies in what `outer` would be if it were closed, now or later?
+bool stays_outside(const SolidMesh& inner, const SolidMesh& outer, const Start& at, const PairStart& start, bool is_a_outer, double lower) {
+    const geometry::Closure& closure = *outer.closure;
+    // As far as a place may be off that is looked at in the other's frame: much less than the lids are away.
+    const double size = closure.vertices.cwiseAbs().maxCoeff() + inner.mesh->vertices.cwiseAbs().maxCoeff();
+    const double room = std::min(0.5 * lower, 1e-9 * size);
+    const auto is_outside = [&](int v) { return side_of(inner.mesh->vertices.col(v), at, outer, room) == Side::outside; };
+    if (!std::all_of(inner.samples.begin(), inner.samples.end(), is_outside)) return false;
+    if (lower > closure.reach + room) return true;
+    const LidBody lids{closure.vertices,
+                       {closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid), closure.triangles.end()}};
+    const int body = is_a_outer ? start.a : start.b, other = is_a_outer ? start.b : start.a;
+    std::optional<geometry::BodyHierarchy> own;
+    const geometry::BodyHierarchy& hierarchy = inner.hierarchy != nullptr ? *inner.hierarchy : own.emplace(*inner.mesh);
+    LidBody of_other;  // two lids must not meet either
+    if (inner.closure)
+        of_other = {
+            inner.closure->vertices,
+            {inner.closure->triangles.begin() + static_cast<std::ptrdiff_t>(inner.closure->first_lid), inner.closure->triangles.end()}};
+    return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {*inner.mesh, hierarchy, of_other}, room);
+}
+
 }  // namespace
 
-SolidMesh solid_mesh(const geometry::Mesh& mesh) {
+SolidMesh solid_of(const model::Body& body) {
+    SolidMesh solid = solid_mesh(body.mesh, body.mass_kind != scene::MassKind::volume);
+    solid.hierarchy = body.hierarchy.get();
+    return solid;
+}
+
+SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet) {
     SolidMesh solid;
     solid.mesh = &mesh;
     solid.is_closed = mesh.triangles.empty() || geometry::bounds_a_solid(mesh);
+    if (!solid.is_closed && !is_sheet) solid.closure = geometry::closure_of(mesh);
     solid.samples = mesh.codimensional_points;
     const bool has_shells = mesh.triangle_shell.size() == mesh.triangles.size();
     std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
@@ -101,7 +135,7 @@ bool is_in_material(const Vector3& point, const SolidMesh& solid) {
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower) {
     if (!(lower > 0)) return Solids::unproven;
     const bool a_holds = a.is_closed && !a.shells.empty(), b_holds = b.is_closed && !b.shells.empty();
-    if (a_holds || b_holds) {
+    if (a_holds || b_holds || ask_for_path(a, b)) {
         const BodyPath path_a = body_path(start.trajectory, start.step, start.segment, start.a),
                        path_b = body_path(start.trajectory, start.step, start.segment, start.b);
         if (!is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
@@ -114,6 +148,8 @@ Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start,
         const Side b_in_a = a_holds ? any_inside(b, a, back, lower) : Side::outside;
         if (a_in_b == Side::inside || b_in_a == Side::inside) return Solids::overlap;
         if (a_in_b == Side::unknown || b_in_a == Side::unknown) return Solids::unproven;
+        if (b.closure && !stays_outside(a, b, at, start, false, lower)) return Solids::unverified;
+        if (a.closure && !stays_outside(b, a, back, start, true, lower)) return Solids::unverified;
     }
     return a.is_closed && b.is_closed ? Solids::disjoint : Solids::not_closed;
 }

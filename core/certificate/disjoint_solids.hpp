@@ -7,14 +7,23 @@
 ///   to the other meets no surface; and whether Z is inside is decided by exact predicates (geometry/point_in_solid.hpp).
 /// A solid is what its shells together wind round, so that a cavity (a shell turned inwards) is not material. Loose edges and points bound
 /// nothing, but may lie inside.
+///
+/// What is not closed has no inside, yet it may have been meant to have one: a part that lies in it is not told as clear of it. Whether
+/// that can be excluded is decided here, for every command: nothing of the other body is within the mesh with its openings closed
+/// (geometry/closure.hpp) where the time begins, and nothing of it ever meets a lid, so that nothing comes in. The lids are out of reach
+/// where `lower` is more than any point of them is from the surface; else lid_distance.hpp looks along the path. What a scene says to be a
+/// shell, wires or points (scene::MassKind) is meant to have no inside.
 #pragma once
 
-#include <array>
+#include <optional>
 #include <vector>
 
 #include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/core/certificate/lid_distance.hpp"
+#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "fettle/core/geometry/closure.hpp"
 #include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/model/model.hpp"
 
 namespace fettle::core::certificate {
 
@@ -27,9 +36,13 @@ struct SolidMesh {
     const geometry::Mesh* mesh = nullptr;  ///< must stay where it is
     bool is_closed = false;                ///< geometry::bounds_a_solid, or no triangles: then nothing can be inside
     std::vector<Shell> shells;
-    std::vector<int> samples;  ///< one vertex of everything that hangs together
+    std::vector<int> samples;                            ///< one vertex of everything that hangs together
+    std::optional<geometry::Closure> closure;            ///< of an open mesh that may be meant as a solid
+    const geometry::BodyHierarchy* hierarchy = nullptr;  ///< of the mesh, if it is at hand; must stay where it is
 };
-SolidMesh solid_mesh(const geometry::Mesh& mesh);
+/// @param is_sheet  It is meant to have no inside, unless it is closed.
+SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet = false);
+SolidMesh solid_of(const model::Body& body);
 
 /// Is the point, in the body's frame, in the material? Exact; false on the surface. Contract: closed.
 bool is_in_material(const Vector3& point, const SolidMesh& solid);
@@ -39,10 +52,15 @@ struct PairStart {
     const stepper::Trajectory& trajectory;
     int step = -1, segment = 0;
     int a = 0, b = 0;
+    /// All of the time, from `step`, `segment` on, for bodies that are not closed; empty: it is not a path along which they can be
+    /// followed.
+    std::vector<Place> path{};
 };
+/// Is `path` of use for the two?
+inline bool ask_for_path(const SolidMesh& a, const SolidMesh& b) { return a.closure.has_value() || b.closure.has_value(); }
 
 /// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
-/// `not_closed` where what is not closed keeps the question open; `unproven` if lower is 0 or within rounding.
+/// `not_closed` or `unverified` where one is not closed; `unproven` if lower is 0 or within rounding.
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower);
 
 }  // namespace fettle::core::certificate

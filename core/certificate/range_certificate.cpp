@@ -171,7 +171,7 @@ base::Result<RangeCertificate> read_range_certificate(const std::filesystem::pat
     const JsonNode root = document->root();
     root.allow_keys(
         {"fettle_range_certificate", "geometry_hash", "path_hash", "length_unit", "source", "coordinates", "links", "bodies", "pairs"});
-    root.require("fettle_range_certificate").integer(1, 1);
+    files::is_version(root.require("fettle_range_certificate"), 1);
     if (!document->errors().empty()) return document->errors();
     RangeCertificate certificate;
     certificate.geometry_hash = read_hash(root.require("geometry_hash"));

@@ -80,7 +80,7 @@ private:
             return fault(where, "bounds with 0 <= lower <= upper are wanted");
         for (const int body : {pair.a, pair.b}) {
             std::optional<SolidMesh>& solid = solids_[static_cast<std::size_t>(body)];
-            if (!solid) solid = solid_mesh(mesh(body));
+            if (!solid) solid = solid_of(model_.bodies[static_cast<std::size_t>(body)]);
             if (pair.lower > 0) prepare_body(body, where);
         }
     }

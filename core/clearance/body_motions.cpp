@@ -62,11 +62,13 @@ std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<
         first.push_back(known.try_emplace(model.bodies[static_cast<std::size_t>(body)].hierarchy.get(), first.size()).first->second);
     parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         const model::Body& body = model.bodies[bodies[i]];
-        const bool is_copy = first[i] != static_cast<std::size_t>(i) && have_same_shape(model.bodies[bodies[first[i]]].mesh, body.mesh);
+        const model::Body& earlier = model.bodies[bodies[first[i]]];
+        const bool is_copy =
+            first[i] != static_cast<std::size_t>(i) && earlier.mass_kind == body.mass_kind && have_same_shape(earlier.mesh, body.mesh);
         if (is_copy) return;
         first[i] = static_cast<std::size_t>(i);
         shapes[bodies[i]].tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));
-        shapes[bodies[i]].solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_mesh(body.mesh));
+        shapes[bodies[i]].solid = std::make_shared<const certificate::SolidMesh>(certificate::solid_of(body));
     });
     for (std::size_t i = 0; i < bodies.size(); ++i) shapes[bodies[i]] = shapes[bodies[first[i]]];
     return shapes;

@@ -11,11 +11,9 @@
 
 namespace fettle::core::clearance {
 
-/// One segment of the path; step -1 is the start pose, held.
-struct PathPlace {
-    int step = -1, segment = 0;
-};
-/// All segments in order; without motion, or without steps, the start pose alone.
+using PathPlace = certificate::Place;
+
+/// All segments of the path in order; without motion, or without steps, the start pose alone.
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion);
 /// Those of steps [first, last).
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int first, int last);

@@ -101,6 +101,14 @@ const char* to_string(PairStatus status) {
     return "unknown";
 }
 
+const char* why_not_apart(Solids solids) {
+    if (solids == Solids::unverified)
+        return "whether one lies inside the other cannot be verified: a mesh is not closed, and the other is within what would close it, "
+               "or "
+               "may come there; close the mesh, or say \"mass_per\": \"area\" of what is meant as a sheet";
+    return "whether one lies inside the other is a matter of rounding";
+}
+
 namespace {
 
 class Certification {
@@ -149,6 +157,7 @@ private:
         for (const BodyMotion& motion : motions_) trees.push_back(motion.shape.tree.get());
         certificate::Certificate& certificate = *options_.certificate;
         certificate = start_certificate(model_, trajectory_, trees, options_.motion && !trajectory_.steps.empty(), pairs_.size());
+        certificate.is_of_path = true;
         certified_ = certified_bodies(certificate, model_);
     }
 

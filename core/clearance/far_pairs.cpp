@@ -55,7 +55,7 @@ public:
             lower = std::min(lower, *proven);
         }
         const Solids solids = solids_at_start(request, lower);
-        if (solids == Solids::overlap || solids == Solids::unproven) return std::nullopt;
+        if (!certificate::are_apart(solids)) return std::nullopt;
         return far_pair(request, lower, solids);
     }
 
@@ -67,10 +67,11 @@ private:
     }
 
     Solids solids_at_start(const PairRequest& request, double lower) const {
-        const PathPlace& start = places_.front();
-        return certificate::solids_of(*shapes_[static_cast<std::size_t>(request.a)].solid,
-                                      *shapes_[static_cast<std::size_t>(request.b)].solid,
-                                      {trajectory_, start.step, start.segment, request.a, request.b}, lower);
+        const PathPlace& first = places_.front();
+        const auto &a = *shapes_[static_cast<std::size_t>(request.a)].solid, &b = *shapes_[static_cast<std::size_t>(request.b)].solid;
+        certificate::PairStart start{trajectory_, first.step, first.segment, request.a, request.b};
+        if (ask_for_path(a, b)) start.path = places_;
+        return certificate::solids_of(a, b, start, lower);
     }
 
     const stepper::Trajectory& trajectory_;

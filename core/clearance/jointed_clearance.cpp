@@ -5,11 +5,13 @@
 #include <map>
 #include <set>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/certificate/joint_prover.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
+using base::infinity;
 using certificate::IdealJoints;
 
 constexpr double claimed_room = 1 + 1e-6;  // for another processor's library of sines
@@ -67,8 +69,24 @@ private:
     std::map<int, int> frames_, measures_;
 };
 
+/// Nothing is known of it.
+PairClearance unbounded(PairClearance pair, double minimum, const std::string& reason) {
+    pair.minimum = minimum;
+    pair.lower = 0;
+    pair.upper = infinity;
+    pair.is_bounded = pair.is_far = pair.intersecting = false;
+    pair.overlap.reset();
+    pair.touch.reset();
+    pair.solids = Solids::unproven;
+    pair.margin.clear();
+    pair.status = PairStatus::undecided;
+    pair.reason = reason;
+    return pair;
+}
+
 PairClearance undecided(PairClearance pair, const std::string& reason) {
     pair.intersecting = false;
+    pair.touch.reset();
     pair.overlap.reset();
     if (pair.solids == Solids::overlap || !(pair.lower > 0)) pair.solids = Solids::unproven;
     pair.status = PairStatus::undecided;
@@ -90,6 +108,7 @@ PairClearance charged(PairClearance pair, double minimum, double charge) {
         interval.upper += charge;
     }
     pair.clash_not_before = 0;  // of the path's own clash
+    if (pair.touch && pair.touch->room > charge) return pair;
     if (was_clash) return is_deep ? pair : undecided(std::move(pair), between_nodes);
     if (pair.status == PairStatus::undecided) return pair.lower > 0 ? pair : undecided(pair, pair.reason);
     if (pair.status == PairStatus::violated ? pair.upper < minimum : pair.lower > 0 && pair.lower >= minimum) return pair;
@@ -121,8 +140,19 @@ base::Result<IdealJoints> ideal_joints(const model::Model& model, const std::vec
     return std::move(gathering.joints);
 }
 
+std::vector<int> jointed_bodies(const model::Model& model, const std::vector<std::string>& held) {
+    const Gathering gathering(model.mechanism);
+    const auto is_held = [&](int i) { return std::count(held.begin(), held.end(), model.bodies[static_cast<std::size_t>(i)].name) > 0; };
+    std::set<int> out;
+    for (const constraint::Row& row : model.mechanism.rows)
+        for (const int i : gathering.bodies_of(row))
+            if (!is_wholly(model.bodies[static_cast<std::size_t>(i)], false) && !is_held(i)) out.insert(i);
+    return {out.begin(), out.end()};
+}
+
 JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion& motion) {
     JointedPath out;
+    out.bodies = jointed_bodies(model, motion.held);
     auto joints = ideal_joints(model, motion.held);
     if (!joints) {
         out.refusal = joints.errors().front().message;
@@ -152,11 +182,23 @@ std::vector<PairClearance> certify_jointed(const model::Model& model, const step
         pair.far += charge;
     }
     std::vector<PairClearance> results = certify_clearance(model, trajectory, asked, options);
+    const auto is_unproven = [&](int a, int b) {
+        const auto has = [&](int body) { return std::binary_search(path.bodies.begin(), path.bodies.end(), body); };
+        return !path.joints && (has(a) || has(b));
+    };
     for (std::size_t i = 0; i < results.size(); ++i) {
-        results[i] = charged(std::move(results[i]), pairs[i].minimum, charge_of(pairs[i]));
-        if (!path.joints) results[i] = undecided(std::move(results[i]), "of joints between the nodes of the path: " + path.refusal);
+        if (is_unproven(pairs[i].a, pairs[i].b)) {
+            results[i] =
+                unbounded(std::move(results[i]), pairs[i].minimum,
+                          "where joints met at all times have the bodies between the nodes of the path is not proven: " + path.refusal);
+        } else {
+            results[i] = charged(std::move(results[i]), pairs[i].minimum, charge_of(pairs[i]));
+        }
     }
-    if (options.certificate != nullptr) options.certificate->joints = path.joints;
+    if (options.certificate == nullptr) return results;
+    options.certificate->joints = path.joints;
+    options.certificate->is_of_path = !path.joints;
+    std::erase_if(options.certificate->pairs, [&](const certificate::PairCertificate& pair) { return is_unproven(pair.a, pair.b); });
     return results;
 }
 

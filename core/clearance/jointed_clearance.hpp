@@ -18,14 +18,21 @@ namespace fettle::core::clearance {
 /// do not determine it.
 base::Result<certificate::IdealJoints> ideal_joints(const model::Model& model, const std::vector<std::string>& held);
 
+/// Bodies that the joints have somewhere, which need not be where a path has them between its nodes: those of a row that are not held, and
+/// that scripts do not move wholly. Increasing.
+std::vector<int> jointed_bodies(const model::Model& model, const std::vector<std::string>& held);
+
 struct JointedPath {
     std::optional<certificate::IdealJoints> joints;  ///< with deviations that are proven for the path; nothing where there are none
     std::string refusal;                             ///< why there are none; empty: there are
+    std::vector<int> bodies;                         ///< jointed_bodies
 };
 JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion& motion);
 
 /// As certify_clearance, of the bodies where the joints have them: of each pair lower less its charge, upper more; clear or violated only
-/// where that is proven of these, too. A recorded certificate has the path's own bounds, and the joints beside them.
+/// where that is proven of these, too. Where it is not proven where the joints have a body, a pair of it has no bounds and is undecided;
+/// other pairs do not depend on joints. A recorded certificate has the path's own bounds, and the joints beside them; nothing of pairs
+/// without bounds.
 std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options, const JointedPath& path);
 

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/crossing.hpp"
+#include "fettle/core/clearance/touching.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -62,7 +63,7 @@ class PairCertification {
 public:
     PairCertification(const PairMotion& pair, const PairRequest& request, const ClearanceOptions& options,
                       const std::optional<PairRecord>& record)
-        : pair_(pair), options_(options), record_(record) {
+        : pair_(pair), request_(request), options_(options), record_(record) {
         result_.a = request.a;
         result_.b = request.b;
         result_.minimum = request.minimum;
@@ -76,6 +77,7 @@ public:
         if (found_.lower == 0 && found_.complete) {
             look_closer();
             settle();
+            look_for_touch();
         } else {
             decide_solids();
         }
@@ -99,21 +101,31 @@ private:
     // Closer than the tolerance, which need not mean that they touch: a finer one may prove that they do not.
     void look_closer() {
         if (found_.intersecting || !(found_.upper > 64 * most_slack(pair_)) || !(found_.upper <= 10 * options_.tolerance)) return;
+        search_to(1e-2 * found_.upper, search_.max_evaluations / 20);
+    }
+
+    // Of two proofs the better one counts, and beside it whatever was found nearest by any search.
+    void search_to(double tolerance, long max_evaluations) {
         ClearanceOptions finer = options_;
         SearchOptions search = search_;
         finer.sample_nodes = false;
-        finer.tolerance = search.tolerance = 1e-2 * found_.upper;
-        search.max_evaluations /= 20;
+        finer.tolerance = search.tolerance = tolerance;
+        search.max_evaluations = max_evaluations;
         const certificate::PairCertificate before = record_ ? record_->certificate : certificate::PairCertificate{};
         SearchResult closer = certified_search(pair_, finer, search, record_);
-        if (closer.lower > found_.lower && closer.upper <= found_.upper) {
+        if (closer.lower > found_.lower) {
+            if (found_.upper < closer.upper) {
+                closer.upper = found_.upper;
+                closer.nearest = found_.nearest;
+            }
             closer.sampled = found_.sampled;
             found_ = closer;
-        } else if (closer.intersecting) {
-            found_.intersecting = true;
-            found_.nearest = closer.nearest;
+            return;
         }
-        if (record_ && !(found_.lower > 0)) record_->certificate = before;
+        if (record_) record_->certificate = before;
+        if (!closer.intersecting) return;
+        found_.intersecting = true;
+        found_.nearest = closer.nearest;
     }
 
     void settle() {
@@ -124,9 +136,12 @@ private:
             if (crossing.crossing) {
                 result_.intersecting = true;
                 known_ = *crossing.crossing;
-            } else if (crossing.lower > 0 && !record_) {  // a certificate's claim stays what it is
-                found_.lower = std::min(crossing.lower, found_.upper);
-                return decide_solids();
+            } else if (crossing.lower > 0) {
+                if (record_)  // this proof is none that a certificate can tell
+                    search_to(0.5 * crossing.lower, search_.max_evaluations);
+                else
+                    found_.lower = std::min(crossing.lower, found_.upper);
+                if (found_.lower > 0) return decide_solids();
             }
         } else {
             known_ = found_.nearest;
@@ -134,11 +149,35 @@ private:
         if (!result_.intersecting && shares_a_ball()) result_.intersecting = true;
     }
 
+    certificate::PairStart pair_start() const {
+        const PairSegment& first = pair_.segments.front();
+        certificate::PairStart start{pair_.trajectory, first.step, first.segment, result_.a, result_.b};
+        if (ask_for_path(pair_.solid_a, pair_.solid_b))
+            for (const PairSegment& segment : pair_.segments) start.path.push_back({segment.step, segment.segment});
+        return start;
+    }
+
+    // Neither apart nor, so far as is known, deep in each other.
+    void look_for_touch() {
+        if (!options_.measure_overlap || found_.lower > 0) return;
+        const double depth = request_.touch_depth > 0 ? request_.touch_depth : default_touch_depth(pair_);
+        if (!(found_.upper <= depth)) return;
+        const auto room = proven_touch(pair_, pair_start(), depth, search_);
+        if (!room) return;
+        Touch touch{0, time_of(pair_, found_.nearest.segment, found_.nearest.s), depth, *room};
+        for (const Instant& at : instants()) {
+            const double area = touching_area(pair_, at.segment, at.s, depth);
+            if (area > touch.area) touch = {area, time_of(pair_, at.segment, at.s), depth, *room};
+        }
+        result_.touch = touch;
+        crosses_ = result_.intersecting;
+        result_.intersecting = false;
+        result_.solids = Solids::unproven;
+    }
+
     // Surfaces that never meet leave one thing to ask, whose answer never changes.
     void decide_solids() {
-        const PairSegment& first = pair_.segments.front();
-        result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b,
-                                                {pair_.trajectory, first.step, first.segment, result_.a, result_.b}, found_.lower);
+        result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b, pair_start(), found_.lower);
         if (!record_ || result_.solids != Solids::overlap) return;
         record_->certificate.lower = 0;
         record_->certificate.segments.clear();
@@ -223,9 +262,13 @@ private:
     }
 
     void judge(double contact_distance) {
-        const bool told = result_.lower > 0 && result_.solids != Solids::unproven;  // what is not closed is told as that
+        const bool told = result_.lower > 0 && certificate::are_apart(result_.solids);
         if (result_.is_clash()) {
             result_.status = PairStatus::violated;
+        } else if (result_.touch) {
+            result_.status = request_.may_touch                            ? PairStatus::contact
+                             : crosses_ || result_.upper < result_.minimum ? PairStatus::violated
+                                                                           : PairStatus::undecided;
         } else if (result_.minimum > 0) {
             result_.status = told && result_.lower >= result_.minimum ? PairStatus::clear
                              : result_.upper < result_.minimum        ? PairStatus::violated
@@ -238,19 +281,24 @@ private:
             result_.status = result_.complete || result_.lower >= contact_distance ? PairStatus::clear : PairStatus::undecided;
         }
         if (result_.status != PairStatus::undecided) return;
-        result_.reason = !result_.complete ? "the search was cut short, by a stop or its budget"
+        result_.reason = result_.touch       ? "they touch: neither a gap nor a clash"
+                         : !result_.complete ? "the search was cut short, by a stop or its budget"
+                         : request_.may_touch && !(result_.lower > 0)
+                             ? "they may touch, but it is not proven that they are nowhere deeper in each other than that"
                          : !(result_.lower > 0)
                              ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
-                         : !told ? "whether one lies inside the other is a matter of rounding"
+                         : !told ? why_not_apart(result_.solids)
                                  : "the minimum lies between the bounds: a smaller tolerance tells";
     }
 
     const PairMotion& pair_;
+    const PairRequest& request_;
     const ClearanceOptions& options_;
     const std::optional<PairRecord>& record_;
     SearchOptions search_;
     SearchResult found_;
-    Encounter known_;  // in each other at its instant; segment -1: not known
+    bool crosses_ = false;  // of bodies that touch: it was found that they are in each other
+    Encounter known_;       // in each other at its instant; segment -1: not known
     PairClearance result_;
 };
 

@@ -3,6 +3,7 @@
 /// 1. bounds of the distance of the surfaces (pair_search.hpp), with a finer tolerance where the lower bound is 0 but need not be;
 /// 2. where it stays 0: do the surfaces cross somewhere along the path, or can that be refuted (crossing.hpp)? do the solids share a ball
 ///    at one of some instants (overlap.hpp)? since when?
+///    Are they no deeper in each other than bodies that touch (touching.hpp)? Then that is said, and they are no clash.
 /// 3. where it is greater than 0: do the solids lie apart, or one inside the other (certificate/disjoint_solids.hpp)?
 #pragma once
 

@@ -23,9 +23,12 @@ enum class PairStatus {
     violated,   ///< upper < minimum, or the bodies clash: they pass through each other, or one lies inside the other
     undecided,  ///< the minimum lies between the bounds, closer than the tolerance (or the budget ran out, or the search was stopped); or
                 ///< neither a clash nor lower > 0 is proven. `reason` says which
-    contact     ///< minimum is 0 and the bodies come within the activation distance, 0 < lower: reported, not judged
+    contact  ///< minimum is 0 and the bodies come within the activation distance, 0 < lower: reported, not judged; or they touch, and may
 };
 const char* to_string(PairStatus status);
+
+/// Of solids that are not certificate::are_apart, though their surfaces are: why not, and what helps.
+const char* why_not_apart(Solids solids);
 
 /// Which two primitives are closest, when, and where. Edge against edge or vertex against triangle; of codimensional parts also vertex
 /// against edge and vertex against vertex.
@@ -58,6 +61,18 @@ struct PairRequest {
     /// A pair that is proven to stay at least so far apart is left at that, unmeasured: PairClearance::is_far. Contract: > 0, >= minimum
     /// [m]
     double far = std::numeric_limits<double>::infinity();
+    bool may_touch = false;  ///< that they touch (Touch) is accepted
+    /// How deep they may be in each other and still touch [m]; 0: a hundred-thousandth of the larger body's size (touching.hpp)
+    double touch_depth = 0;
+};
+
+/// Two bodies whose surfaces meet, and of which it is proven that they are nowhere deeper in each other than faces are that lie on each
+/// other to within rounding.
+struct Touch {
+    double area = 0;   ///< of the faces that do, the most at up to 32 instants looked at [m^2]; 0: none, they meet in edges and points
+    double time = 0;   ///< of that instant [s]
+    double depth = 0;  ///< at no time a ball of this diameter is in both [m]
+    double room = 0;   ///< by how much places may be off without undoing that proof [m]
 };
 
 struct ClearanceOptions {
@@ -68,7 +83,7 @@ struct ClearanceOptions {
     bool margin_curve = false;                      ///< fill PairClearance::margin: costs a search per path segment
     double witness_tolerance = 0;                   ///< greater than 0: fill PairClearance::witnesses with all within it of the least [m]
     int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
-    bool measure_overlap = true;                    ///< fill PairClearance::overlap of a clash: a fraction of a second each
+    bool measure_overlap = true;                    ///< fill PairClearance::overlap of a clash, ::touch: a fraction of a second each
     bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
     double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
     certificate::Certificate* certificate = nullptr;          ///< optional: the proofs are recorded here; `lower` is what they claim
@@ -80,13 +95,15 @@ struct PairClearance {
     int a = 0, b = 0;
     double minimum = 0;
     double lower = 0, upper = 0;  ///< [m]
-    bool is_far = false;          ///< clear: lower >= PairRequest::far. Not measured: `upper`, `sampled` are infinite, there is no witness
+    bool is_bounded = true;  ///< false: undecided, and `lower` 0, `upper` infinite for want of anything proven; the witness is the path's
+    bool is_far = false;     ///< clear: lower >= PairRequest::far. Not measured: `upper`, `sampled` are infinite, there is no witness
     PairStatus status = PairStatus::undecided;
     Witness witness;       ///< attains `upper`; of a clash of surfaces, where they meet first; of one inside the other, nearest surfaces
     bool complete = true;  ///< false: budget or should_stop ended the search before the tolerance was reached
     bool intersecting = false;         ///< the surfaces were found passing through each other, or the solids to share a ball: a clash
     Solids solids = Solids::unproven;  ///< `overlap`: one lies inside the other's material (bounds are then 0), or shares a ball with it
     std::optional<Overlap> overlap;    ///< of a clash of closed bodies: how deep, the deepest of up to 32 instants looked at
+    std::optional<Touch> touch;        ///< of bodies that touch: then they are no clash
     double clash_not_before = 0;       ///< of a clash: proven, there is none before this time [s]
     double clash_time = 0;             ///< of a clash: when it was found first, to within the tolerance over the speed [s]
     std::string reason;                ///< why it is undecided; empty: it is not

@@ -190,7 +190,7 @@ private:
     }
 
     static void judge(RangeClearance& out) {
-        const bool told = out.lower > 0 && out.solids != Solids::unproven;  // what is not closed is told as that
+        const bool told = out.lower > 0 && certificate::are_apart(out.solids);
         if (out.is_clash() || (out.minimum > 0 && out.upper < out.minimum)) {
             out.status = PairStatus::violated;
         } else if (told && out.lower >= out.minimum) {
@@ -200,7 +200,7 @@ private:
             out.reason = !out.complete      ? "the search was cut short, by a stop or its budget"
                          : !(out.lower > 0) ? "the surfaces come within rounding of each other: neither that they cross nor that they "
                                               "stay apart is proven"
-                         : !told            ? "whether one lies inside the other is a matter of rounding"
+                         : !told            ? why_not_apart(out.solids)
                                             : "the minimum lies between the bounds: a smaller tolerance tells";
         }
     }
@@ -215,6 +215,15 @@ private:
 };
 
 }  // namespace
+
+RangeClearanceOptions usual_options(const std::vector<PairRequest>& pairs) {
+    RangeClearanceOptions options;
+    options.tolerance = 1e-5;
+    options.coarse = 0.01;
+    for (const PairRequest& pair : pairs)
+        if (pair.minimum > 0) options.tolerance = std::min(options.tolerance, 0.01 * pair.minimum);
+    return options;
+}
 
 std::vector<RangeClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                            const RangeClearanceOptions& options) {

@@ -22,6 +22,9 @@ struct RangeClearanceOptions {
     certificate::RangeCertificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
 };
 
+/// Where nothing is asked for: 10 um, or 1% of the least minimum that is required; with more than two coordinates 1% of the bodies' radii.
+RangeClearanceOptions usual_options(const std::vector<PairRequest>& pairs);
+
 /// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
 struct RangeClearance {
     int a = 0, b = 0;

@@ -10,6 +10,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_text.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/warning_groups.hpp"
 
@@ -46,7 +47,10 @@ void append_escaped(std::string_view key, std::string& to) {
     }
 }
 
-std::string shortest(double number) { return json(number).dump(); }
+std::string shortest(double number) {
+    const std::string text = json(number).dump();
+    return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
 
 struct Place {
     std::size_t line = 1, column = 1;
@@ -129,9 +133,10 @@ public:
     bool end_array() { return close(); }
     bool key(std::string& key) {
         const auto [entry, fresh] = open_.back()->get_ref<json::object_t&>().try_emplace(std::move(key));
+        keys_.back() = &entry->first;
         if (!fresh)
-            errors.push_back(
-                {ErrorCode::inconsistent, name_, "the key `" + entry->first + "` stands twice in one object; keep one of them"});
+            errors.push_back({ErrorCode::inconsistent, here(open_.size()),
+                              "the key `" + entry->first + "` stands twice in one object; keep one of them"});
         member_ = &entry->second;
         return true;
     }
@@ -155,19 +160,36 @@ private:
         return true;
     }
     bool open(json&& value) {
+        if (open_.size() >= deepest_json) {
+            errors = {{ErrorCode::out_of_range, here(3) + "/...",
+                       "lists and objects are nested deeper than " + std::to_string(deepest_json) + "; nothing that is read needs that"}};
+            return false;
+        }
         open_.push_back(&put(std::move(value)));
+        keys_.push_back(nullptr);
         return true;
     }
     bool close() {
         open_.pop_back();
+        keys_.pop_back();
         return true;
+    }
+    /// The file, and what is being read in the outermost `levels` as a JSON pointer.
+    std::string here(std::size_t levels) const {
+        std::string out = name_ + "#";
+        for (std::size_t i = 0; i < std::min(levels, open_.size()); ++i) {
+            const std::string index = open_[i]->is_array() && !open_[i]->empty() ? std::to_string(open_[i]->size() - 1) : "0";
+            append_escaped(keys_[i] != nullptr ? *keys_[i] : index, out += '/');
+        }
+        return out;
     }
 
     const std::string& text_;
     const std::string& name_;
     json& root_;
-    std::vector<json*> open_;  // objects and arrays, outermost first
-    json* member_ = nullptr;   // of the last object, whose value comes next
+    std::vector<json*> open_;               // objects and arrays, outermost first
+    std::vector<const std::string*> keys_;  // of each, the key that was read last; null in an array
+    json* member_ = nullptr;                // of the last object, whose value comes next
 };
 
 }  // namespace
@@ -441,6 +463,10 @@ base::Result<JsonDocument> JsonDocument::read(const std::string& path) {
 base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const std::string& name) {
     JsonDocument document;
     document.context_->path = name;
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        return Error{ErrorCode::parse, name, "is empty; JSON is wanted, which begins with {"};
+    if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
+        return Error{ErrorCode::parse, at(name, place_of(text, nul)), "not valid JSON: here stands a NUL; is the file damaged?"};
     TreeBuilder builder(text, name, document.context_->tree);
     json::sax_parse(text, &builder);
     if (!builder.errors.empty()) return builder.errors;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <limits>
 #include <string>
+
+#include "fettle/core/files/json_document.hpp"
 
 namespace fettle::core::files {
 namespace {
@@ -77,6 +80,14 @@ bool has_top_level_key(const std::filesystem::path& path, std::string_view key) 
         file.read(block.data(), static_cast<std::streamsize>(block.size()));
         if (!finder.take({block.data(), static_cast<std::size_t>(file.gcount())})) return finder.found();
     }
+    return false;
+}
+
+bool is_version(const JsonNode& node, int version) {
+    const auto found = node.integer(std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+    if (!found || *found == version) return found.has_value();
+    node.fail(ErrorCode::out_of_range, "a file of version " + std::to_string(*found) + " is not read: this program reads version " +
+                                           std::to_string(version) + (*found > version ? "; was it written for a newer fettle?" : ""));
     return false;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Which kind of JSON file is this? By a key of its outermost object, in whatever order its keys stand, without reading it as a document:
-/// trajectories and certificates may be large.
+/// trajectories and certificates may be large. The key's value is the version of its format.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,13 @@
 
 namespace fettle::core::files {
 
+class JsonNode;
+
 /// Has the file's outermost object this key? Reads up to where it stands. False for what cannot be read or is no object; of a file that is
 /// not JSON the answer may be either, for its reader to say what is wrong. Contract: a key without characters that JSON escapes.
 bool has_top_level_key(const std::filesystem::path& path, std::string_view key);
+
+/// Is the value of such a key the version that is read here? Otherwise the node fails, with what is.
+bool is_version(const JsonNode& node, int version);
 
 }  // namespace fettle::core::files

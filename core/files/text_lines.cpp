@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/files/text_lines.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <string>
@@ -44,6 +45,23 @@ bool TextLines::next(std::vector<std::string_view>& words) {
         split(line, words);
     }
     return !words.empty();
+}
+
+std::string_view TextWords::next() {
+    for (; at_ < text_.size() && (is_blank(text_[at_]) || text_[at_] == '\n'); ++at_)
+        if (text_[at_] == '\n') ++line_number_;
+    const std::size_t first = at_;
+    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '\n') ++at_;
+    return text_.substr(first, at_ - first);
+}
+
+std::string_view TextWords::rest_of_line() {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view rest = text_.substr(at_, end - at_);
+    at_ = end;
+    while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+    while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
+    return rest;
 }
 
 std::optional<double> parsed_number(std::string_view word) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Lines of a text file as lists of words, and words as numbers: what the readers of OBJ and OFF share.
+/// Texts as lines of words or as one run of words, and words as numbers: what the readers of text formats share.
 #pragma once
 
 #include <optional>
@@ -23,6 +23,25 @@ private:
     std::string_view rest_;
     int line_number_ = 0;
     int lines_read_ = 0;
+};
+
+/// Walks over the words of a text, wherever its lines end. Nothing is a comment.
+class TextWords {
+public:
+    explicit TextWords(std::string_view text) : text_(text) {}
+
+    /// Empty at the end of the text. Valid as long as the text is.
+    std::string_view next();
+    /// What is left of the line that the last word stands on, without blanks round it; behind it the next line begins.
+    std::string_view rest_of_line();
+    /// Of the word read last, from 1.
+    int line_number() const { return line_number_; }
+    std::size_t bytes_left() const { return text_.size() - at_; }
+
+private:
+    std::string_view text_;
+    std::size_t at_ = 0;
+    int line_number_ = 1;
 };
 
 /// The nearest double, inf and nan included; nullopt unless the whole word is a number. Independent of the locale.

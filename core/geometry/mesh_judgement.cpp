@@ -14,6 +14,7 @@
 namespace fettle::core::geometry {
 namespace {
 
+constexpr const char* unbounded = "what it does to the mass could not be bounded: check the volume";
 constexpr int most_pairs = 20'000;  ///< of intersecting triangles: beyond it no bound is worked out
 
 std::string place(const Vector3& x) {
@@ -109,7 +110,7 @@ private:
             if (hole.area.norm() > largest->area.norm()) largest = &hole;
         }
         warn("it is open in " + std::to_string(holes.size()) + (holes.size() == 1 ? " place" : " places") + ", the largest near " +
-             place(largest->centre) + "; capped for the mass, " + share(bound));
+             place(largest->centre) + "; capped for the mass, " + share(bound, bound));
         closed_ = false;
     }
 
@@ -122,9 +123,12 @@ private:
         if (findings_.errors.empty()) refuse("mesh", "is open too far to be capped");
     }
 
-    std::string share(double volume) const {
+    /// Of the lesser of the mass as it is told and as it is meant, if the volume told is too much by `over` or too little by `under`.
+    std::string share(double over, double under) const {
+        if (!(over < volume_)) return unbounded;
         char text[96];
-        std::snprintf(text, sizeof text, "which changes its mass by at most %.2g%%", 100 * std::min(volume / volume_, 1e6));
+        std::snprintf(text, sizeof text, "which changes its mass by at most %.2g%%",
+                      100 * std::min(std::max(over / (volume_ - over), under / volume_), 1e6));
         return text;
     }
 
@@ -141,7 +145,7 @@ private:
                            "; a rigid body never touches itself";
         if (as_solid_) {
             const auto bound = all && bounds_a_solid(halves_) ? overlap_volume_bound(mesh_, pairs) : std::nullopt;
-            text += bound && *bound <= volume_ ? ", " + share(*bound) : ", what it does to the mass could not be bounded: check the volume";
+            text += std::string(", ") + (bound ? share(*bound, 0) : unbounded);
         }
         warn(text);
     }
@@ -152,11 +156,11 @@ private:
             if (shell.volume_sign == 0) warn(name + " encloses no volume; no effect on the mass");
             if (shell.volume_sign == 0 || shell.is_oriented()) continue;
             const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
+            const bool counts_as_hole = shell.depth % 2 == 0;
             warn(name +
-                 (shell.depth % 2 == 0
-                      ? " is inside out, so that it counts as a hole"
-                      : " is a solid within a solid, so that its volume counts twice; for a cavity reverse its triangles") +
-                 ", " + share((shell.depth % 2 == 0 ? 2 : 1) * volume));
+                 (counts_as_hole ? " is inside out, so that it counts as a hole"
+                                 : " is a solid within a solid, so that its volume counts twice; for a cavity reverse its triangles") +
+                 ", " + (counts_as_hole ? share(0, 2 * volume) : share(2 * volume, 0)));
         }
     }
 

@@ -147,8 +147,12 @@ std::vector<bool> turns_of_shells(const Mesh& mesh) {
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Shell& shell = shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
-        // A solid within a solid may be meant: it is told, not turned.
-        out[t] = shell.volume_sign < 0 && shell.depth % 2 == 0;
+        if (shell.depth % 2 == 0) {
+            out[t] = shell.volume_sign < 0;
+        } else {
+            // A cavity is turned with the solid that it is in. A solid within a sound solid may be meant: it is told, not turned.
+            out[t] = shell.volume_sign > 0 && shells[static_cast<std::size_t>(shell.around)].volume_sign < 0;
+        }
     }
     return out;
 }

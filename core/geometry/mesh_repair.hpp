@@ -13,8 +13,9 @@ namespace fettle::core::geometry {
 /// - A triangle that stands in the list again, with the same three vertices in the same direction, is dropped.
 /// - A shell whose edges are each in exactly two triangles, some of them the same way round, is oriented, if it is orientable: the fewer
 ///   triangles are turned.
-/// - Of a mesh that is closed then, a shell that is inside out (its volume is negative within an even number of others) is turned; where
-///   shells cross only the sum of volumes is judged, and all is turned.
+/// - Of a mesh that is closed then, a shell that is inside out (its volume is negative within an even number of others) is turned, and with
+///   it the shells right within it that bound its cavities: a hollow solid is turned as a whole. Where shells cross only the sum of volumes
+///   is judged, and all is turned.
 /// Connectivity is built anew where anything changed; shell names stay where their number stays.
 /// @return  What was done, one sentence each with number and place; empty: nothing, and `mesh` keeps its bits.
 /// Contract: vertex indices in range, coordinates finite, connectivity built.

@@ -53,7 +53,9 @@ private:
     // The boxes of nodes come from below, each box's once.
     int build(std::vector<Centre>& centres, int first, int last) {
         const int index = static_cast<int>(nodes_.size());
-        nodes_.push_back({{}, first, last});
+        nodes_.emplace_back();
+        nodes_[index].first = first;
+        nodes_[index].last = last;
         if (last - first <= leaf_size) {
             for (int i = first; i < last; ++i) order_[i] = centres[i].box;
             Box box = boxes_[order_[first]];

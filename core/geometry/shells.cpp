@@ -59,12 +59,20 @@ std::vector<Shell> shells_of(const Mesh& mesh) {
             shell.box.high = shell.box.high.cwiseMax(mesh.vertices.col(v));
         }
     }
+    std::vector<std::vector<int>> around(shells.size());
     for (Shell& shell : shells) {
         for (const Shell& other : shells) {
             if (other.index == shell.index || !lies_within(shell, other, mesh.vertices)) continue;
             ++shell.depth;
-            shell.around = other.index;
+            around[static_cast<std::size_t>(shell.index)].push_back(other.index);
         }
+    }
+    const auto is_deeper = [&](int x, int y) {
+        return shells[static_cast<std::size_t>(x)].depth < shells[static_cast<std::size_t>(y)].depth;
+    };
+    for (Shell& shell : shells) {
+        const std::vector<int>& list = around[static_cast<std::size_t>(shell.index)];
+        if (!list.empty()) shell.around = *std::max_element(list.begin(), list.end(), is_deeper);
     }
     return shells;
 }

@@ -16,7 +16,7 @@ struct Shell {
     Box box;
     int volume_sign = 0;  ///< of the signed volume, exactly
     int depth = 0;        ///< within how many other shells it lies
-    int around = -1;      ///< one of these, -1: none
+    int around = -1;      ///< the innermost of these, -1: none
 
     /// A solid turned outwards within an even number of others, or a cavity turned inwards within an odd one.
     bool is_oriented() const { return depth % 2 == 0 ? volume_sign > 0 : volume_sign < 0; }

@@ -2,11 +2,14 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
@@ -21,12 +24,40 @@ using geometry::Mesh;
 using geometry::Triangle;
 
 constexpr std::size_t max_listed = 5;
+constexpr int most_corners = 10'000;  // of a polygon: cutting it takes a tenth of a second
+
+constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 31;  // so that every count of what is in it is an int
+
+using Parse = Result<RawMesh> (*)(std::string_view bytes, const std::string& where);
+
+/// Without a parser of our own assimp reads it.
+struct Format {
+    std::string_view extension;
+    bool states_unit = false;
+    Parse parse = nullptr;
+};
+constexpr std::array<Format, 10> formats = {{{".stl", false, parse_stl},
+                                             {".obj", false, parse_obj},
+                                             {".off", false, parse_off},
+                                             {".ply", false, parse_ply},
+                                             {".3mf", true, parse_3mf},
+                                             {".dae", true},
+                                             {".gltf", true},
+                                             {".glb", true},
+                                             {".3ds", false},
+                                             {".amf", true}}};
 
 std::string lower_case_extension(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
+}
+
+const Format* format_of(const std::string& path) {
+    const std::string extension = lower_case_extension(path);
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& each) { return each.extension == extension; });
+    return found == formats.end() ? nullptr : &*found;
 }
 
 Errors checked_file(const std::string& path) {
@@ -38,22 +69,21 @@ Errors checked_file(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, code)) return {{ErrorCode::file_unreadable, path, "is not a file"}};
     std::ifstream file(path, std::ios::binary);
     if (!file) return {{ErrorCode::file_unreadable, path, "cannot be opened for reading"}};
+    if (std::filesystem::file_size(path, code) > largest_file)
+        return {{ErrorCode::out_of_range, path, "is larger than 2 GiB, which is the most that is read; export it in parts, or coarser"}};
     return {};
 }
 
 Result<RawMesh> read_raw(const std::string& path) {
-    const std::string extension = lower_case_extension(path);
-    const bool own = extension == ".obj" || extension == ".off" || extension == ".3mf",
-               foreign = extension == ".stl" || extension == ".ply";
-    if (!own && !foreign) {
-        return Error{ErrorCode::unsupported, path, "extension `" + extension + "` is not a mesh format; allowed: .stl .obj .off .ply .3mf"};
-    }
+    const Format* format = format_of(path);
+    if (format == nullptr)
+        return Error{ErrorCode::unsupported, path,
+                     "extension `" + lower_case_extension(path) + "` is not a mesh format; allowed: " + mesh_extensions()};
     if (Errors errors = checked_file(path); !errors.empty()) return errors;
-    if (foreign) return read_by_assimp(path);
+    if (format->parse == nullptr) return read_by_assimp(path, format->extension);
     const auto text = files::read_file(path);
     if (!text) return text.errors();
-    if (extension == ".3mf") return parse_3mf(*text, path);
-    return extension == ".obj" ? parse_obj(*text, path) : parse_off(*text, path);
+    return format->parse(*text, path);
 }
 
 Errors check_numbers(const RawMesh& raw, const std::string& path) {
@@ -97,6 +127,11 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
             add({corners[0], corners[1], corners[2]}, raw.polygon_group[p]);
             continue;
         }
+        if (count > most_corners)
+            return Error{ErrorCode::out_of_range, path,
+                         "face " + std::to_string(p) + " (counted from 0) is a polygon of " + std::to_string(count) +
+                             " vertices; at most " + std::to_string(most_corners) +
+                             " are cut into triangles; export the mesh as triangles"};
         const std::vector<Triangle> pieces = triangulated(raw.vertices, corners, count);
         if (pieces.empty()) {
             std::ostringstream text;
@@ -134,7 +169,6 @@ RawMesh item_of(const RawMesh& raw, std::size_t i) {
                       polygons_end = last ? raw.polygon_ends.size() : raw.items[i + 1].first_polygon;
     RawMesh out;
     out.metres_per_unit = raw.metres_per_unit;
-    out.groups = raw.groups;
     const auto from = [](const auto& list, std::size_t at) { return list.begin() + static_cast<std::ptrdiff_t>(at); };
     out.vertices.assign(from(raw.vertices, item.first_vertex), from(raw.vertices, vertices_end));
     std::size_t corner = item.first_polygon == 0 ? 0 : static_cast<std::size_t>(raw.polygon_ends[item.first_polygon - 1]);
@@ -142,7 +176,12 @@ RawMesh item_of(const RawMesh& raw, std::size_t i) {
         for (; corner < static_cast<std::size_t>(raw.polygon_ends[p]); ++corner)
             out.corners.push_back(raw.corners[corner] - static_cast<int>(item.first_vertex));
         out.polygon_ends.push_back(static_cast<int>(out.corners.size()));
-        out.polygon_group.push_back(raw.polygon_group[p]);
+        // The objects of an item follow one another: those of all items are copied once.
+        const int group = raw.polygon_group[p], first_group = raw.polygon_group[item.first_polygon];
+        if (static_cast<std::size_t>(group - first_group) >= out.groups.size())
+            out.groups.insert(out.groups.end(), from(raw.groups, static_cast<std::size_t>(first_group) + out.groups.size()),
+                              from(raw.groups, static_cast<std::size_t>(group) + 1));
+        out.polygon_group.push_back(group - first_group);
     }
     return out;
 }
@@ -173,6 +212,19 @@ Result<Mesh> mesh_of(RawMesh& raw, const std::string& name, const std::string& p
 }
 
 }  // namespace
+
+std::string mesh_extensions() {
+    std::string text;
+    for (const Format& format : formats) (text += text.empty() ? "" : " ") += format.extension;
+    return text;
+}
+
+bool has_mesh_extension(const std::string& path) { return format_of(path) != nullptr; }
+
+bool states_its_unit(const std::string& path) {
+    const Format* format = format_of(path);
+    return format != nullptr && format->states_unit;
+}
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
     FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// Reads a mesh file into a geometry::Mesh in metres: STL, OBJ, OFF, PLY, 3MF.
+/// Reads a mesh file into a geometry::Mesh in metres: STL, OBJ, OFF, PLY and 3MF by readers of our own; COLLADA, glTF, 3DS and AMF
+/// by assimp.
 ///
-/// Precision. OBJ, OFF and 3MF are read by own readers in full double precision: another program's design may have parts that touch, and
-/// rounding to float could make them intersect. STL (binary: float by definition) and PLY come through assimp, which keeps coordinates
-/// in float32: 100.123456789 becomes 100.123459. Where more is needed, export 3MF or OBJ.
+/// Precision. What is read by our own is read in full double precision (binary STL is float by definition): another program's design may
+/// have parts that touch, and rounding to float could make them intersect. assimp keeps coordinates in float32: 100.123456789 becomes
+/// 100.123459. Where more is needed, export 3MF or OBJ.
+///
+/// Files may come from anywhere. Every count and every index is checked before it is used; assimp runs in a process of its own, with limits
+/// of time (3 s of processor time and 1 s for each MiB of the file) and memory (1 GiB and 100 times the file), so that what it makes of a
+/// damaged file is an error here. Files beyond 2 GiB are refused.
+///
+/// Axes are those of the file: what is up in a glTF file is y.
 ///
 /// What is kept: positions, faces (polygons are cut into triangles), OBJ polylines and two-vertex faces as codimensional edges, vertices
 /// that nothing uses as codimensional points. What is dropped: normals, colours, texture coordinates, materials, STL attributes. All
@@ -23,17 +30,24 @@
 namespace fettle::core::mesh_files {
 
 struct MeshReadOptions {
-    /// Metres per unit of the file. Formats without a unit only: 3MF states its own (micron, millimeter, centimeter, inch, foot, meter;
-    /// default millimeter), which is used instead.
+    /// Metres per unit of the file. Formats without a unit only, which are STL, OBJ, OFF, PLY and 3DS: 3MF, AMF (both: millimeter if they
+    /// do not say) and COLLADA (metre) state their own, and glTF is in metres; that is used instead.
     double unit = 1;
     /// Merge vertices with exactly equal coordinates, and drop the triangles that become degenerate by it (geometry::weld_exactly). STL
     /// needs it.
     bool weld = true;
 };
 
-/// @param path  The extension decides the format, in any case: .stl .obj .off .ply .3mf.
-/// @return      The mesh in metres, named after the file ("gear.obj"), connectivity built. Errors, with `where` the path (and line, for OBJ
-///              and OFF): file_not_found (with the full path looked for), file_unreadable, unsupported (extension, free-form OBJ, binary
+/// The extensions of what is read, as messages list them: ".stl .obj .off ...".
+std::string mesh_extensions();
+/// In any case: "GEAR.STL".
+bool has_mesh_extension(const std::string& path);
+/// Is it of a format that has a unit of its own, so that MeshReadOptions::unit is not used?
+bool states_its_unit(const std::string& path);
+
+/// @param path  The extension decides the format, in any case.
+/// @return      The mesh in metres, named after the file ("gear.obj"), connectivity built. Errors, with `where` the path (and line, in
+///              text): file_not_found (with the full path looked for), file_unreadable, unsupported (extension, free-form OBJ, binary
 ///              OFF), parse, out_of_range (vertex index), not_finite (which vertices), mesh_invalid (nothing in it, or a polygon that
 ///              crosses itself).
 /// Contract: options.unit > 0.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
 
 namespace fettle::core::mesh_files {
@@ -26,7 +27,8 @@ void append_float3(std::string& out, const Vector3& x) {
     for (int k = 0; k < 3; ++k) append_word(out, std::bit_cast<std::uint32_t>(static_cast<float>(x[k])));
 }
 
-std::string obj_name(std::string name) {
+std::string obj_name(const std::string& text) {
+    std::string name = base::shown(text);
     for (char& c : name)
         if (static_cast<unsigned char>(c) <= ' ') c = '_';
     return name.empty() ? "part" : name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <unordered_map>
 
 #include "fettle/core/files/text_lines.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
@@ -106,9 +107,9 @@ private:
         // `o` before `g` (or the reverse) names one object twice: the later name holds for the faces that follow it.
         group_ = -1;
         if (name.empty() || name == "default") return;
-        const auto known = std::find(mesh_.groups.begin(), mesh_.groups.end(), name);
-        group_ = static_cast<int>(known - mesh_.groups.begin());
-        if (known == mesh_.groups.end()) mesh_.groups.push_back(name);
+        const auto [known, fresh] = group_of_.try_emplace(name, static_cast<int>(mesh_.groups.size()));
+        group_ = known->second;
+        if (fresh) mesh_.groups.push_back(name);
     }
 
     void check_forward_references() {
@@ -126,6 +127,7 @@ private:
     std::string where_;
     RawMesh mesh_;
     Errors errors_;
+    std::unordered_map<std::string, int> group_of_;
     int group_ = -1;
     int largest_index_ = 0;  ///< counted from 1
     int line_of_largest_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "fettle/core/geometry/predicates.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
@@ -14,21 +15,78 @@ using geometry::Triangle;
 /// A corner in the plane, counter-clockwise outline.
 struct Corner {
     Vector2 x;
-    int vertex;
+    int vertex = 0;
+    std::size_t before = 0, after = 0;  ///< in what is left of the outline
+    std::size_t next_to_test = 0;       ///< corners before this one are known not to block the triangle of this corner and its neighbours
+    bool there = true;
 };
 
-bool is_ear(const std::vector<Corner>& outline, std::size_t i) {
-    const std::size_t n = outline.size();
-    const Vector2 &a = outline[(i + n - 1) % n].x, &b = outline[i].x, &c = outline[(i + 1) % n].x;
-    if (orient2d(a, b, c) <= 0) return false;
-    for (const Corner& other : outline) {
-        const Vector2& p = other.x;
-        if (p == a || p == b || p == c) continue;
-        // Also a corner on the diagonal c a blocks: cutting there would leave a piece without area.
-        if (orient2d(a, b, p) >= 0 && orient2d(b, c, p) >= 0 && orient2d(c, a, p) >= 0) return false;
+/// Cuts ears off. What has been found of a corner's triangle is kept until a neighbour goes: all tests together are of the second order.
+class EarClipper {
+public:
+    explicit EarClipper(std::vector<Corner> outline) : corners_(std::move(outline)) {
+        const std::size_t n = corners_.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            corners_[i].before = (i + n - 1) % n;
+            corners_[i].after = (i + 1) % n;
+        }
     }
-    return true;
-}
+
+    /// Empty if the outline crosses itself.
+    std::vector<Triangle> triangles() {
+        std::vector<Triangle> out;
+        std::size_t first = 0;
+        for (std::size_t left = corners_.size(); left > 3; --left) {
+            // The second corner is tried first, and the first one last.
+            std::size_t ear = corners_[first].after;
+            while (!is_ear(ear)) {
+                if (ear == first) return {};
+                ear = corners_[ear].after;
+            }
+            out.push_back(triangle(ear));
+            if (ear == first) first = corners_[ear].after;
+            remove(ear);
+        }
+        out.push_back({corners_[first].vertex, corners_[corners_[first].after].vertex, corners_[corners_[first].before].vertex});
+        return out;
+    }
+
+private:
+    Triangle triangle(std::size_t i) const {
+        return {corners_[corners_[i].before].vertex, corners_[i].vertex, corners_[corners_[i].after].vertex};
+    }
+
+    bool is_ear(std::size_t i) {
+        Corner& corner = corners_[i];
+        if (corner.next_to_test == not_convex) return false;
+        const Vector2 &a = corners_[corner.before].x, &b = corner.x, &c = corners_[corner.after].x;
+        if (corner.next_to_test == 0 && orient2d(a, b, c) <= 0) {
+            corner.next_to_test = not_convex;
+            return false;
+        }
+        const Vector2 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+        for (; corner.next_to_test < corners_.size(); ++corner.next_to_test) {
+            const Corner& other = corners_[corner.next_to_test];
+            const Vector2& p = other.x;
+            if (!other.there || (p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
+            if (p == a || p == b || p == c) continue;
+            // Also a corner on the diagonal c a blocks: cutting there would leave a piece without area.
+            if (orient2d(a, b, p) >= 0 && orient2d(b, c, p) >= 0 && orient2d(c, a, p) >= 0) return false;
+        }
+        return true;
+    }
+
+    void remove(std::size_t i) {
+        Corner& gone = corners_[i];
+        gone.there = false;
+        corners_[gone.before].after = gone.after;
+        corners_[gone.after].before = gone.before;
+        corners_[gone.before].next_to_test = corners_[gone.after].next_to_test = 0;
+    }
+
+    static constexpr std::size_t not_convex = static_cast<std::size_t>(-1);
+    std::vector<Corner> corners_;
+};
 
 Vector3 newell_normal(const std::vector<Vector3>& vertices, const int* corners, int count) {
     Vector3 normal = Vector3::Zero();
@@ -46,23 +104,14 @@ std::vector<Triangle> triangulated(const std::vector<Vector3>& vertices, const i
     const Vector3 normal = newell_normal(vertices, corners, count);
     int axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
-    std::vector<Corner> outline;
+    std::vector<Corner> outline(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
         Vector2 x = geometry::projected(vertices[corners[i]], axis);
         if (normal(axis) < 0) x.x() = -x.x();
-        outline.push_back({x, corners[i]});
+        outline[static_cast<std::size_t>(i)].x = x;
+        outline[static_cast<std::size_t>(i)].vertex = corners[i];
     }
-    std::vector<Triangle> triangles;
-    while (outline.size() > 3) {
-        std::size_t ear = 1;
-        while (ear <= outline.size() && !is_ear(outline, ear % outline.size())) ++ear;
-        if (ear > outline.size()) return {};
-        const std::size_t n = outline.size(), i = ear % n;
-        triangles.push_back({outline[(i + n - 1) % n].vertex, outline[i].vertex, outline[(i + 1) % n].vertex});
-        outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-    triangles.push_back({outline[0].vertex, outline[1].vertex, outline[2].vertex});
-    return triangles;
+    return EarClipper(std::move(outline)).triangles();
 }
 
 }  // namespace fettle::core::mesh_files

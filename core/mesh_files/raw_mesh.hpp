@@ -35,12 +35,16 @@ Result<RawMesh> parse_off(std::string_view text, const std::string& where);
 /// `bytes`: the whole file. Sizes are bounded, and nothing that a file says about itself is taken on trust.
 Result<RawMesh> parse_3mf(std::string_view bytes, const std::string& where);
 
-/// STL and PLY through assimp.
-Result<RawMesh> read_by_assimp(const std::string& path);
+Result<RawMesh> parse_stl(std::string_view bytes, const std::string& where);
+Result<RawMesh> parse_ply(std::string_view bytes, const std::string& where);
+
+/// What assimp makes of a file, in a process of its own with limits of time and memory (import_process.hpp).
+/// @param extension  in lower case, with its dot: one of those that mesh_reader.hpp lists for assimp.
+Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension);
 
 /// Cuts a simple polygon into triangles with the same orientation (ear clipping, exact decisions in the projection along the largest
 /// component of its normal). A convex polygon becomes the fan round its first corner. Empty if the outline crosses itself in that
-/// projection.
+/// projection. Time: of the second order in the number of corners, at most.
 std::vector<geometry::Triangle> triangulated(const std::vector<Vector3>& vertices, const int* corners, int count);
 
 }  // namespace fettle::core::mesh_files

@@ -3,6 +3,7 @@
 // production extension, which puts objects into further model parts. In double precision; appearance is passed over.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,8 +17,12 @@
 namespace fettle::core::mesh_files {
 namespace {
 
-constexpr std::size_t most_placed = 10'000'000;  // of everything placed: components can place components a hundred times each
+// What real files stay far below: components can place components a hundred times each, and packed text can be a thousand times as long.
+constexpr std::size_t most_placed = 10'000'000;  // vertices and triangles, and each placing of an object as many as it takes the time of
+constexpr std::size_t of_a_placing = 10;
+constexpr std::size_t most_items = 10'000;
 constexpr int most_levels = 32;
+constexpr std::uint64_t unpacked_always = std::uint64_t{64} << 20, unpacked_at_most = std::uint64_t{1} << 30, unpacked_per_byte = 100;
 
 /// world = linear * x + shift.
 struct Placement {
@@ -51,7 +56,9 @@ struct Object {
 
 class ThreemfParser {
 public:
-    ThreemfParser(const ZipArchive& archive, const std::string& where) : archive_(archive), where_(where) {}
+    /// @param size  of the whole file.
+    ThreemfParser(const ZipArchive& archive, std::uint64_t size, const std::string& where)
+        : archive_(archive), where_(where), text_left_(std::min(unpacked_at_most, unpacked_always + unpacked_per_byte * size)) {}
 
     Result<RawMesh> parse() {
         const auto root = root_part();
@@ -74,10 +81,10 @@ public:
 
 private:
     /// What _rels/.rels calls the 3D model; "3D/3dmodel.model", as every program writes it, where that says nothing.
-    Result<std::string> root_part() const {
+    Result<std::string> root_part() {
         std::string found = "3D/3dmodel.model";
         if (archive_.has("_rels/.rels")) {
-            const auto text = archive_.unpacked("_rels/.rels");
+            const auto text = unpacked("_rels/.rels");
             if (!text) return text.errors();
             XmlReader xml(*text, where_ + "/_rels/.rels");
             while (xml.next()) {
@@ -90,10 +97,17 @@ private:
         return found;
     }
 
+    /// All parts together have a limit, by the size of the file.
+    Result<std::string> unpacked(const std::string& part) {
+        auto text = archive_.unpacked(part, text_left_);
+        if (text) text_left_ -= text->size();
+        return text;
+    }
+
     static std::string part_name(std::string_view path) { return std::string(path.substr(path.starts_with('/') ? 1 : 0)); }
 
     void read_part(const std::string& part, bool is_root) {
-        const auto text = archive_.unpacked(part);
+        const auto text = unpacked(part);
         if (!text) {
             errors_.insert(errors_.end(), text.errors().begin(), text.errors().end());
             return;
@@ -110,7 +124,9 @@ private:
             if (name == "vertex" && object != nullptr) object->vertices.push_back(vertex(xml));
             if (name == "triangle" && object != nullptr) object->triangles.push_back(triangle(xml));
             if (name == "component" && object != nullptr) object->components.push_back(component(xml, part));
-            if (name == "item" && is_root) build_.push_back(component(xml, part));
+            if (name != "item" || !is_root) continue;
+            build_.push_back(component(xml, part));
+            if (build_.size() > most_items) xml.fail(ErrorCode::out_of_range, "the build has more than 10,000 items; export in parts");
         }
         if (!seen_model && xml.errors().empty()) xml.fail(ErrorCode::parse, "has no <model>");
         errors_.insert(errors_.end(), xml.errors().begin(), xml.errors().end());
@@ -220,9 +236,12 @@ private:
         if (found == objects_.end()) return fail(ErrorCode::inconsistent, "there is no object of id \"" + component.object.second + "\"");
         if (level > most_levels) return fail(ErrorCode::inconsistent, "components hold one another, or are nested deeper than 32");
         const Object& object = found->second;
+        placed_ += of_a_placing;
+        if (!object.support) placed_ += object.triangles.size() + object.vertices.size();
+        if (placed_ > most_placed)
+            return fail(ErrorCode::out_of_range,
+                        "with this, its build places more than 10 million vertices and triangles, or a million objects");
         if (object.support) return;
-        placed_ += 1 + object.triangles.size() + object.vertices.size();
-        if (placed_ > most_placed) return fail(ErrorCode::out_of_range, "places more than 10 million vertices and triangles");
         const Placement placement = around.of(component.placement);
         for (const Component& inner : object.components) place(inner, placement, level + 1);
         if (!object.triangles.empty() || !object.vertices.empty()) append(object, placement);
@@ -257,6 +276,7 @@ private:
     std::set<std::string> parts_;
     std::vector<std::string> parts_to_read_;
     std::size_t placed_ = 0;
+    std::uint64_t text_left_;  ///< that may still be unpacked [bytes]
     RawMesh mesh_;
     Errors errors_;
 };
@@ -266,7 +286,7 @@ private:
 Result<RawMesh> parse_3mf(std::string_view bytes, const std::string& where) {
     const auto archive = ZipArchive::open(bytes, where);
     if (!archive) return Error{archive.errors().front().code, where, archive.errors().front().message + ", so not a 3MF file"};
-    return ThreemfParser(*archive, where).parse();
+    return ThreemfParser(*archive, bytes.size(), where).parse();
 }
 
 }  // namespace fettle::core::mesh_files

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
 #include "fettle/core/mesh_files/zip_writer.hpp"
@@ -20,29 +21,6 @@ constexpr const char* relationships =
     "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
     "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
     "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
-
-std::string xml_text(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no other control characters
-        }
-    }
-    return out;
-}
 
 std::string hex_colour(const Colour& colour) {
     char text[16];
@@ -65,7 +43,7 @@ bool is_closed(const geometry::Mesh& mesh) {
 std::string object_text(const MeshPart& part, std::size_t id, std::size_t colour) {
     const geometry::Mesh& mesh = *part.mesh;
     std::string out = "<object id=\"" + std::to_string(id) + "\" type=\"" + (is_closed(mesh) ? "model" : "surface") + "\" name=\"" +
-                      xml_text(part.name) + "\" pid=\"1\" pindex=\"" + std::to_string(colour) + "\"><mesh>\n<vertices>\n";
+                      base::xml_text(part.name) + "\" pid=\"1\" pindex=\"" + std::to_string(colour) + "\"><mesh>\n<vertices>\n";
     for (int i = 0; i < mesh.vertices.cols(); ++i)
         out += "<vertex x=\"" + millimetres(mesh.vertices(0, i)) + "\" y=\"" + millimetres(mesh.vertices(1, i)) + "\" z=\"" +
                millimetres(mesh.vertices(2, i)) + "\"/>\n";
@@ -94,7 +72,7 @@ Result<std::string> threemf_bytes(const std::vector<MeshPart>& parts) {
     std::size_t count = 0;
     for (const MeshPart& part : parts) {
         if (part.mesh->triangles.empty()) continue;
-        materials += "<base name=\"" + xml_text(part.name) + "\" displaycolor=\"" + hex_colour(part.colour) + "\"/>";
+        materials += "<base name=\"" + base::xml_text(part.name) + "\" displaycolor=\"" + hex_colour(part.colour) + "\"/>";
         objects += object_text(part, count + 2, count);
         items += item_text(part, count + 2);
         ++count;

@@ -6,12 +6,14 @@
 #include <charconv>
 #include <utility>
 
+#include "fettle/core/base/text.hpp"
+
 namespace fettle::core::mesh_files {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view after_name = " \t\r\n=/><\"'";
-constexpr std::size_t deepest = 100;
+constexpr std::size_t deepest = 100, most_attributes = 100;
 
 std::string_view without_prefix(std::string_view name) { return name.substr(name.find(':') + 1); }
 
@@ -39,7 +41,9 @@ std::string resolved(std::string_view entity) {
         const std::string_view digits = entity.substr(hexadecimal ? 2 : 1);
         unsigned long code = 0;
         const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), code, hexadecimal ? 16 : 10);
-        if (status == std::errc() && end == digits.data() + digits.size() && code > 0 && code < 0x110000) append_utf8(out, code);
+        if (status == std::errc() && end == digits.data() + digits.size() && code > 0 && code < 0x110000 &&
+            (code < 0xD800 || code >= 0xE000))
+            append_utf8(out, code);
     }
     return out.empty() ? "&" + std::string(entity) + ";" : out;
 }
@@ -48,6 +52,8 @@ std::string resolved(std::string_view entity) {
 
 bool XmlReader::next() {
     if (!errors_.empty()) return false;
+    if (!std::exchange(known_as_utf8_, true) && !base::is_utf8(text_)) return fault("the file is not UTF-8");
+    if (at_ == 0 && text_.find('\0') != std::string_view::npos) return fault("there is a NUL in it; is the file damaged?");
     if (std::exchange(closes_itself_, false)) {
         opens_ = false;
         attributes_.clear();
@@ -119,6 +125,7 @@ bool XmlReader::read_attributes() {
         const char quote = at_ < text_.size() ? text_[at_] : ' ';
         const std::size_t end = quote == '"' || quote == '\'' ? text_.find(quote, at_ + 1) : std::string_view::npos;
         if (end == std::string_view::npos) return fault("the value of `" + std::string(name.substr(0, 40)) + "` is not in quotes");
+        if (attributes_.size() >= most_attributes) return fault("a tag with more than 100 attributes");
         attributes_.push_back({name, text_.substr(at_ + 1, end - at_ - 1)});
         at_ = end + 1;
     }
@@ -163,8 +170,13 @@ std::vector<std::string_view> XmlReader::attribute_names() const {
 }
 
 std::string XmlReader::where() const {
-    return where_ + ":" +
-           std::to_string(1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(tag_, text_.size())), '\n'));
+    // Counted on from where it was asked last: a file may be asked for the line of every tag.
+    const std::size_t end = std::min(tag_, text_.size());
+    if (end < counted_to_) counted_to_ = lines_counted_ = 0;
+    const auto from = [&](std::size_t at) { return text_.begin() + static_cast<std::ptrdiff_t>(at); };
+    lines_counted_ += static_cast<std::size_t>(std::count(from(counted_to_), from(end), '\n'));
+    counted_to_ = end;
+    return where_ + ":" + std::to_string(1 + lines_counted_);
 }
 
 void XmlReader::fail(ErrorCode code, const std::string& message) { errors_.push_back({code, where(), message}); }

@@ -55,7 +55,8 @@ private:
     std::string_view text_;
     std::string where_;
     std::size_t at_ = 0, tag_ = 0;
-    bool opens_ = false, closes_itself_ = false;
+    bool opens_ = false, closes_itself_ = false, known_as_utf8_ = false;
+    mutable std::size_t counted_to_ = 0, lines_counted_ = 0;  ///< new lines before a place in the text
     int depth_ = 0;
     std::string_view name_;
     std::vector<std::string_view> open_;  ///< full names of the elements that are open

@@ -110,6 +110,7 @@ Result<ZipArchive> ZipArchive::open(std::string_view bytes, const std::string& w
             }
         }
         at += central_size + name + extra + comment;
+        archive.index_of_.try_emplace(entry.name, archive.entries_.size());
         archive.entries_.push_back(std::move(entry));
     }
     return archive;
@@ -121,9 +122,7 @@ std::vector<std::string> ZipArchive::names() const {
     return out;
 }
 
-bool ZipArchive::has(std::string_view name) const {
-    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.name == name; });
-}
+bool ZipArchive::has(std::string_view name) const { return index_of_.find(name) != index_of_.end(); }
 
 Result<std::string_view> ZipArchive::packed(const Entry& entry) const {
     const Fields fields(bytes_);
@@ -135,8 +134,9 @@ Result<std::string_view> ZipArchive::packed(const Entry& entry) const {
 }
 
 Result<std::string> ZipArchive::unpacked(std::string_view name, std::uint64_t largest) const {
-    const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == name; });
-    if (entry == entries_.end()) return Error{ErrorCode::file_not_found, where_, "has no part " + std::string(name)};
+    const auto found = index_of_.find(name);
+    if (found == index_of_.end()) return Error{ErrorCode::file_not_found, where_, "has no part " + std::string(name)};
+    const Entry* entry = &entries_[found->second];
     if (entry->flags & 1) return Error{ErrorCode::unsupported, where_, "its part " + entry->name + " is encrypted"};
     if (entry->method != 0 && entry->method != Z_DEFLATED)
         return Error{ErrorCode::unsupported, where_, "its part " + entry->name + " is packed by another method than deflate"};

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +27,7 @@ public:
 
     /// The contents of the entry of this name. Errors: file_not_found, unsupported (encrypted, another method), out_of_range (unpacks to
     /// more than `largest` bytes), parse (damaged: does not inflate to the size and checksum that the directory states).
-    Result<std::string> unpacked(std::string_view name, std::uint64_t largest = std::uint64_t{1} << 31) const;
+    Result<std::string> unpacked(std::string_view name, std::uint64_t largest) const;
 
 private:
     struct Entry {
@@ -39,6 +41,7 @@ private:
     std::string_view bytes_;
     std::string where_;
     std::vector<Entry> entries_;
+    std::map<std::string, std::size_t, std::less<>> index_of_;  ///< by name; of several the first
 };
 
 }  // namespace fettle::core::mesh_files

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "fettle/core/model/choose_kappa.hpp"
 #include "fettle/core/model/mechanism_start.hpp"
@@ -56,6 +58,9 @@ public:
         for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
             if (!has_rows_of_its_own(joint.kind)) add_coupling(joint);
         });
+        check_names(from.springs, "spring or damper");
+        check_names(from.motors, "motor");
+        check_names(from.loads, "load");
         for_each(from.springs, Origin::List::spring, [&](const scene::Spring& spring) { add_spring(spring); });
         for_each(from.motors, Origin::List::motor, [&](const scene::Motor& motor) { add_motor(motor); });
         for_each(from.loads, Origin::List::load, [&](const scene::PointLoad& load) { add_load(load); });
@@ -80,6 +85,16 @@ private:
     }
 
     void fail(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
+
+    // Those that have none are asked for by nobody.
+    template <class Part>
+    void check_names(const std::vector<Part>& list, const std::string& kind) {
+        std::set<std::string_view> names;
+        for (const Part& part : list) {
+            if (part.name.empty() || names.insert(part.name).second) continue;
+            fail(ErrorCode::inconsistent, part.where, "another " + kind + " is called `" + part.name + "` already; names are unique");
+        }
+    }
 
     std::optional<int> find_body(const std::string& name, const std::string& where) {
         if (name.empty()) return measure::world;

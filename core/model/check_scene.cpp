@@ -5,10 +5,13 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mesh_judgement.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 
@@ -89,9 +92,9 @@ Errors check_mass(const scene::Body& body, const BodyMeasure& measure, bool clos
     const double amount = measure.amount();
     if (amount > 0 && std::isfinite(amount)) return {};
     if (body.mass_kind == MassKind::volume) {
-        return {
-            {ErrorCode::mesh_invalid, where + "/mesh",
-             name + "its mesh encloses a volume of " + std::to_string(amount) + " m^3; triangles are counter-clockwise seen from outside"}};
+        return {{ErrorCode::mesh_invalid, where + "/mesh",
+                 name + "its mesh encloses a volume of " + base::format_quantity(amount, "mm^3", 4) +
+                     "; triangles are counter-clockwise seen from outside"}};
     }
     return {{ErrorCode::mesh_invalid, where + "/mesh",
              name + "its mesh has nothing for a density in " + unit + ": no " +
@@ -184,6 +187,32 @@ Errors check_motion(const scene::Body& body, const std::string& where) {
     return found;
 }
 
+/// Names stand in messages, tables, drawings and files of other programs.
+Errors check_names(const scene::Scene& scene) {
+    Errors errors;
+    const auto want = [&](const std::string& name, const std::string& where, const char* what) {
+        const std::string fault = base::name_fault(name);
+        if (fault.empty()) return;
+        errors.push_back({ErrorCode::out_of_range, where,
+                          std::string("the name of ") + what + ", \"" + base::shown_on_one_line(name) + "\", " + fault +
+                              "; a name is text on one line"});
+    };
+    std::set<std::string_view> names;  // pairs, joints and files find bodies by them
+    for (const scene::Body& body : scene.bodies) {
+        want(body.name, place_of(scene, body), "a body");
+        if (names.insert(body.name).second) continue;
+        errors.push_back(
+            {ErrorCode::inconsistent, place_of(scene, body), "another body is called `" + body.name + "` already; names are unique"});
+    }
+    for (const auto& [name, mu] : scene.friction.materials) want(name, scene.path, "a material");
+    const scene::Mechanism& mechanism = scene.mechanism;
+    for (const scene::Joint& joint : mechanism.joints) want(joint.name, joint.where, "a joint");
+    for (const scene::Spring& spring : mechanism.springs) want(spring.name, spring.where, "a spring");
+    for (const scene::Motor& motor : mechanism.motors) want(motor.name, motor.where, "a motor");
+    for (const scene::PointLoad& load : mechanism.loads) want(load.name, load.where, "a load");
+    return errors;
+}
+
 /// Copies of a part are looked at and measured once.
 class BodyChecks {
 public:
@@ -225,19 +254,71 @@ private:
     std::map<std::pair<std::size_t, MassKind>, BodyMeasure> measures_;
 };
 
+double longest_side(const scene::Body& body) {
+    const Matrix3X& x = body.mesh.vertices;
+    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+}
+
+std::string in_metres(double length) {
+    return length < 1e-3 ? base::format_length(length, "um", 3)
+           : length < 1  ? base::format_length(length, "mm", 3)
+                         : base::format_length(length, "m", 3);
+}
+
+/// How many times as large as the others a body is: as the one in the middle of those that are not fixed. 1 where there is none.
+double times_the_others(const std::vector<scene::Body>& bodies, std::size_t body) {
+    std::vector<double> others;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (i != body && bodies[i].type != BodyType::static_body && bodies[i].mesh.vertices.cols() > 0)
+            others.push_back(longest_side(bodies[i]));
+    if (others.empty()) return 1;
+    const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
+    std::nth_element(others.begin(), middle, others.end());
+    return *middle > 0 ? longest_side(bodies[body]) / *middle : 1;
+}
+
+/// A size or a density that is possible, but hardly meant: a unit that is another one than was thought makes a factor of 1000. Scenes of
+/// the source paper are taken as they are.
+void doubt_units(const scene::Scene& scene, SceneCheck& check) {
+    constexpr double largest = 10, smallest = 10e-6;    // [m]
+    constexpr double mistaken = 250;                    // times as large or small as the others: nearer to 1000 than to them
+    constexpr double lightest = 10, heaviest = 30'000;  // [kg/m^3]
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        const scene::Body& body = scene.bodies[i];
+        if (body.mesh_policy == MeshPolicy::lenient) continue;
+        const std::string name = place_of(scene, body) + ": body `" + body.name + "`: ";
+        const bool moves = body.type == BodyType::dynamic_body, solid = moves && !body.inertial && body.mass_kind == MassKind::volume;
+        const double size = longest_side(body), times = times_the_others(scene.bodies, i);
+        const bool stranger = times > mistaken ? body.type != BodyType::static_body : times < 1 / mistaken && scene.bodies.size() > 2;
+        if (size > largest || size < smallest || stranger) {
+            std::string what = "its size is " + in_metres(size);
+            if (solid && check.measures[i].amount() > 0)
+                what += " and its mass " + base::format_quantity(body.density * check.measures[i].amount(), "kg", 3);
+            if (stranger) what += ", where others are about " + in_metres(size / times);
+            check.warnings.push_back(name + what +
+                                     ", which is hardly meant; is the unit of its lengths right? (`units` of a scene, `mesh_unit` of a "
+                                     "body's mesh, --unit of mesh files; a wrong one makes a factor of 1000)");
+        }
+        if (solid && (body.density < lightest || body.density > heaviest))
+            check.warnings.push_back(name + "a density of " + base::format_quantity(body.density, "kg/m^3", 4) +
+                                     " is hardly meant (plastics have about 1000, steel 7850); 1.24 g/cm^3 are 1240 kg/m^3");
+    }
+}
+
 }  // namespace
 
 SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
     SceneCheck check;
     check.errors = check_numbers(scene);
-    const Errors friction = check_friction(scene);
-    check.errors.insert(check.errors.end(), friction.begin(), friction.end());
+    for (const Errors& more : {check_names(scene), check_friction(scene)})
+        check.errors.insert(check.errors.end(), more.begin(), more.end());
     BodyChecks bodies(check_meshes);
     std::vector<const geometry::Mesh*> meshes;
     meshes.reserve(scene.bodies.size());
     for (const scene::Body& body : scene.bodies) meshes.push_back(&body.mesh);
     check.shapes = geometry::first_of_shape(meshes);
     for (std::size_t i = 0; i < meshes.size(); ++i) bodies.add(scene.bodies[i], check.shapes[i], place_of(scene, scene.bodies[i]), check);
+    if (check_meshes && check.errors.empty()) doubt_units(scene, check);
     return check;
 }
 

@@ -5,6 +5,8 @@
 #include <set>
 #include <sstream>
 
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/constraint/assembly.hpp"
 
 namespace fettle::core::model {
@@ -42,8 +44,8 @@ Errors describe_gaps(const scene::Scene& scene, const Model& model, const Assemb
     for (const constraint::DependentRow& d : found.dependent) {
         if (!(found.gaps[d.row] > close)) continue;
         std::ostringstream message;
-        message << names_of(model.mechanism, {d.row}) << " contradicts " << names_of(model.mechanism, d.on) << ": " << found.gaps[d.row]
-                << " m remain between what it asks for and what they leave";
+        message << names_of(model.mechanism, {d.row}) << " contradicts " << names_of(model.mechanism, d.on) << ": "
+                << base::length_text(found.gaps[d.row], model.length_unit) << " remain between what it asks for and what they leave";
         errors.push_back({ErrorCode::inconsistent, where, message.str()});
         break;
     }
@@ -52,9 +54,9 @@ Errors describe_gaps(const scene::Scene& scene, const Model& model, const Assemb
     for (Eigen::Index i = 0; i < found.gaps.size(); ++i)
         if (found.gaps[i] > close) open.push_back(static_cast<int>(i));
     std::ostringstream message;
-    message << "the joints cannot be met: at " << names_of(model.mechanism, open) << " " << found.gaps.maxCoeff()
-            << " m remain where the bodies come closest to it; are the lengths of a loop too short, or a limit of a motor's curve out of "
-               "reach?";
+    message << "the joints cannot be met: at " << names_of(model.mechanism, open) << " "
+            << base::length_text(found.gaps.maxCoeff(), model.length_unit)
+            << " remain where the bodies come closest to it; are the lengths of a loop too short, or is a motor's curve out of reach?";
     return {{ErrorCode::inconsistent, where, message.str()}};
 }
 
@@ -87,7 +89,8 @@ void move_bodies(const Assembly& found, Model& model) {
         const double turn = kinematics::rotation_vector(to.rotation * from.rotation.transpose()).norm();
         if (way + turn * body.radius > 1e-9 * model.diagonal) {
             std::ostringstream message;
-            message << "body `" << body.name << "` was moved by " << way << " m and turned by " << turn << " rad to meet its joints";
+            message << "body `" << body.name << "` was moved by " << base::length_text(way, model.length_unit) << " and turned by "
+                    << base::format_quantity(turn, "deg", 3) << " to meet its joints";
             model.warnings.push_back(message.str());
         }
         const Vector3 omega = axial(body.velocity_start.leftCols<3>() * from.rotation.transpose());

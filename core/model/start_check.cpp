@@ -14,8 +14,8 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
+#include "fettle/core/geometry/closure.hpp"
 #include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
@@ -48,7 +48,8 @@ private:
     T value_{};
 };
 struct MeshFacts {
-    Fact<bool> bounds_a_solid, nearly_closed;
+    Fact<bool> bounds_a_solid;
+    Fact<std::optional<geometry::Closure>> closure;
     Fact<std::vector<int>> samples;
 };
 
@@ -94,9 +95,11 @@ bool bounds_a_solid(const PlacedBody& placed) {
     return placed.facts->bounds_a_solid.get([&] { return geometry::bounds_a_solid(placed.body->mesh); });
 }
 
-bool is_nearly_closed(const PlacedBody& placed) {
-    const geometry::Mesh& mesh = placed.body->mesh;
-    return placed.facts->nearly_closed.get([&] { return geometry::is_nearly_closed(mesh.vertices, mesh.triangles); });
+/// Of an open mesh that may be meant as a solid: what it bounds if it is closed, in the body's frame.
+const std::optional<geometry::Closure>& closure(const PlacedBody& placed) {
+    static const std::optional<geometry::Closure> none;
+    if (placed.body->mass_kind != scene::MassKind::volume) return none;
+    return placed.facts->closure.get([&] { return geometry::closure_of(placed.body->mesh); });
 }
 
 /// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
@@ -273,19 +276,23 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
     return std::nullopt;
 }
 
-/// Might one lie inside the other, where "inside" is not defined? Only of meshes that are meant to be closed: a sheet has no inside.
+/// Might one lie inside the other, where "inside" is not defined? As certificate/disjoint_solids.hpp decides it of a motion.
 std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBody& b) {
     if (gap_squared(a.box, b.box) > 0) return std::nullopt;
     for (const bool swapped : {false, true}) {
         const PlacedBody &inner = swapped ? b : a, &outer = swapped ? a : b;
-        const geometry::Mesh& mesh = outer.body->mesh;
-        if (mesh.triangles.empty()) continue;
-        const auto within = [&](int v) { return ((inner.vertices.col(v) - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() <= 0; };
+        if (outer.body->mesh.triangles.empty()) continue;
+        const auto in_box = [&](int v) { return ((inner.vertices.col(v) - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() <= 0; };
         const std::vector<int>& tried = samples(inner);
-        if (std::none_of(tried.begin(), tried.end(), within)) continue;
-        if (bounds_a_solid(outer) || !is_nearly_closed(outer)) continue;
+        if (std::none_of(tried.begin(), tried.end(), in_box) || bounds_a_solid(outer) || !closure(outer)) continue;
+        const kinematics::Pose& pose = outer.body->pose_start;
+        const auto is_within = [&](int v) {
+            const Vector3 x = pose.rotation.transpose() * (inner.vertices.col(v) - pose.position);
+            return geometry::winding_number(x, closure(outer)->vertices, closure(outer)->triangles).value_or(1) != 0;
+        };
+        if (std::none_of(tried.begin(), tried.end(), is_within)) continue;
         return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +
-               outer.body->name + "` is not closed";
+               outer.body->name + "` is not closed; close it, or say \"mass_per\": \"area\" if it is meant as a sheet";
     }
     return std::nullopt;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/text_lines.hpp"
@@ -190,7 +191,7 @@ private:
             return;
         }
         const auto time = number(time_);
-        const auto body = body_by_name(model_, row_[body_], where(), errors_);
+        const auto body = body_by_name(model_, base::csv_word(row_[body_]), where(), errors_);
         kinematics::Pose pose;
         bool good = true;
         for (int k = 0; k < 3; ++k) {

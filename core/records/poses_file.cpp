@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_document.hpp"
@@ -59,7 +60,7 @@ base::Result<PosesTable> read_poses_json(const std::string& path, const model::M
     if (!document) return document.errors();
     const JsonNode root = document->root();
     root.allow_keys({"fettle_poses", "units", "rotation", "times", "bodies"});
-    root.require("fettle_poses").integer(1, 1);
+    files::is_version(root.require("fettle_poses"), 1);
     const JsonNode units = root.require("units");
     const auto unit_name = units.choice({"um", "mm", "cm", "m", "in", "ft"});
     const auto form_name = root.require("rotation").choice(rotation_form_names());
@@ -166,12 +167,6 @@ std::string shortest(double x) {
     return {buffer, end};
 }
 
-std::string quoted_for_csv(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
-
 // px py pz and the matrix row by row, with commas between.
 std::string pose_numbers(const Pose& pose, const model::Body& body, double unit) {
     const Vector3 position = kinematics::world_position(pose, -body.reference_point) / unit;
@@ -205,30 +200,41 @@ base::Errors write_poses(const std::filesystem::path& path, const stepper::Traje
                   "a trajectory of the model's bodies");
     const double metres = base::metres_per_unit(unit).value();
     const std::size_t count = trajectory.poses.size();
-    std::string text;
+    files::NewFile file(path);
+    const auto put = [&file](std::string& text) {
+        if (text.size() < files::write_size) return;
+        file.write(text);
+        text.clear();
+    };
+    files::JsonWriter out;
     if (!is_json(path)) {
-        text = "time,body";
-        for (const char* column : {"px", "py", "pz"}) text += std::string(",") + column + "[" + unit + "]";
-        text += ",r11,r12,r13,r21,r22,r23,r31,r32,r33\n";
+        out.text = "time,body";
+        for (const char* column : {"px", "py", "pz"}) out.text += std::string(",") + column + "[" + unit + "]";
+        out.text += ",r11,r12,r13,r21,r22,r23,r31,r32,r33\n";
         for (std::size_t t = 0; t < count; ++t) {
             for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-                text += shortest(stepper::time_at(trajectory, static_cast<int>(t))) + "," + quoted_for_csv(model.bodies[b].name) + "," +
-                        pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "\n";
+                out.text += shortest(stepper::time_at(trajectory, static_cast<int>(t))) + "," + base::csv_cell(model.bodies[b].name) + "," +
+                            pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "\n";
+                put(out.text);
             }
         }
-        return files::write_file_atomically(path, text);
+    } else {
+        out.text = "{\"fettle_poses\": 1, \"units\": \"" + unit + "\", \"rotation\": \"matrix\",\n \"times\": ";
+        out.list(count, ",", [&](std::size_t t) { out.text += shortest(stepper::time_at(trajectory, static_cast<int>(t))); });
+        out.text += ",\n \"bodies\": {";
+        for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+            out.key(model.bodies[b].name);
+            out.list(count, ",\n    ", [&](std::size_t t) {
+                out.text += "[" + pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "]";
+                put(out.text);
+            });
+        }
+        out.text += "}}\n";
     }
-    files::JsonWriter out;
-    out.text = "{\"fettle_poses\": 1, \"units\": \"" + unit + "\", \"rotation\": \"matrix\",\n \"times\": ";
-    out.list(count, ",", [&](std::size_t t) { out.text += shortest(stepper::time_at(trajectory, static_cast<int>(t))); });
-    out.text += ",\n \"bodies\": {";
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        out.key(model.bodies[b].name);
-        out.list(count, ",\n    ",
-                 [&](std::size_t t) { out.text += "[" + pose_numbers(trajectory.poses[t][b], model.bodies[b], metres) + "]"; });
-    }
-    out.text += "}}\n";
-    return files::write_file_atomically(path, out.text);
+    file.write(out.text);
+    files::FilesTogether alone;
+    base::Errors errors = alone.add(std::move(file));
+    return errors.empty() ? alone.take_names() : errors;
 }
 
 bool is_poses_file(const std::filesystem::path& path) { return files::has_top_level_key(path, "fettle_poses"); }

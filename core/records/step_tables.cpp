@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
 
 namespace fettle::core::records {
 namespace {
@@ -30,16 +31,9 @@ public:
         return *this;
     }
     Row& add(const Vector3& v) { return add(v.x()).add(v.y()).add(v.z()); }
-    /// Quoted where it must be.
     Row& add(const std::string& word) {
         separate();
-        if (word.find_first_of(",\"\n\r") == std::string::npos) {
-            text_ += word;
-            return *this;
-        }
-        text_ += '"';
-        for (const char c : word) text_ += c == '"' ? std::string("\"\"") : std::string(1, c);
-        text_ += '"';
+        text_ += base::csv_cell(word);
         return *this;
     }
 

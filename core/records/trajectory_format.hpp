@@ -16,4 +16,10 @@ inline const std::vector<std::string_view>& body_type_names() {
     return names;
 }
 
+/// In the order of scene::MassKind.
+inline const std::vector<std::string_view>& mass_kind_names() {
+    static const std::vector<std::string_view> names{"volume", "area", "length", "vertex"};
+    return names;
+}
+
 }  // namespace fettle::core::records

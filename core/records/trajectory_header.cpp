@@ -8,7 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/trajectory_format.hpp"
 
@@ -68,11 +70,16 @@ void read_vertices(const JsonNode& node, geometry::Mesh& mesh) {
 
 model::Body read_body(const JsonNode& node) {
     model::Body body;
-    node.allow_keys({"name", "type", "group", "reference_point", "mesh"});
+    node.allow_keys({"name", "type", "group", "reference_point", "mass_per", "mesh"});
     body.name = node.require("name").string().value_or("");
+    if (const std::string fault = base::name_fault(body.name); !fault.empty())
+        node["name"].fail(ErrorCode::out_of_range, "a name is text on one line; this one " + fault);
     const std::string type = node.require("type").choice(body_type_names()).value_or("dynamic");
     const auto& names = body_type_names();
     body.type = static_cast<scene::BodyType>(std::find(names.begin(), names.end(), type) - names.begin());
+    const std::string kind = node["mass_per"].choice(mass_kind_names()).value_or("volume");
+    const auto& kinds = mass_kind_names();
+    body.mass_kind = static_cast<scene::MassKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
     body.group = node.require("group").integer(-1).value_or(-1);
     const auto reference = read_row(node.require("reference_point"), 3, "x y z");
     if (!reference.empty()) body.reference_point = Vector3(reference[0], reference[1], reference[2]);
@@ -140,10 +147,7 @@ std::vector<Pose> read_pose_list(const JsonNode& node, std::size_t count) {
 void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
     root.allow_keys({format_key, "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies", "joined",
                      "time", "poses"});
-    const auto version = root.require(format_key).integer(1, format_version);
-    if (version && *version != format_version)
-        root[format_key].fail(ErrorCode::out_of_range, "version " + std::to_string(format_version) + " is wanted");
-    if (version != format_version) return;
+    if (!files::is_version(root.require(format_key), format_version)) return;
     read_settings(root, out);
     const JsonNode bodies = root.require("bodies");
     for (const JsonNode& node : bodies.elements()) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/records/trajectory_io.hpp"
 
+#include <utility>
+
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/records/trajectory_format.hpp"
 #include "fettle/core/records/trajectory_lines.hpp"
@@ -10,14 +11,29 @@
 
 namespace fettle::core::records {
 
-base::Errors write_trajectory(const std::filesystem::path& path, const stepper::Trajectory& trajectory, const model::Model& model,
-                              const std::string& scene_path, const stepper::Checkpoint* checkpoint) {
+base::Errors add_trajectory(files::FilesTogether& files, const std::filesystem::path& path, const stepper::Trajectory& trajectory,
+                            const model::Model& model, const std::string& scene_path, const stepper::Checkpoint* checkpoint) {
     FETTLE_ASSERT(trajectory.poses.size() == trajectory.steps.size() + 1, "one step between each two poses");
     TrajectoryLines lines(trajectory, model);
+    files::NewFile file(path);
     std::string text = lines.header(scene_path);
-    for (std::size_t t = 0; t < trajectory.steps.size(); ++t) text += lines.next_step();
+    for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
+        if (text.size() >= files::write_size) {
+            file.write(text);
+            text.clear();
+        }
+        text += lines.next_step();
+    }
     if (checkpoint) text += lines.checkpoint(*checkpoint);
-    return files::write_file_atomically(path, text);
+    file.write(text);
+    return files.add(std::move(file));
+}
+
+base::Errors write_trajectory(const std::filesystem::path& path, const stepper::Trajectory& trajectory, const model::Model& model,
+                              const std::string& scene_path, const stepper::Checkpoint* checkpoint) {
+    files::FilesTogether file;
+    base::Errors errors = add_trajectory(file, path, trajectory, model, scene_path, checkpoint);
+    return errors.empty() ? file.take_names() : errors;
 }
 
 bool is_trajectory_file(const std::filesystem::path& path) { return files::has_top_level_key(path, format_key); }

@@ -7,12 +7,13 @@
 /// angles in radians. The first line:
 ///   fettle_trajectory  2, the version of this format (version 1 was one object over many lines; it is refused)
 ///   scene              path of the scene as it was given, "" if there was none
-///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names and meshes (geometry_hash.hpp): tells whether a scene's meshes are those
+///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names, meshes and mass_per (geometry_hash.hpp): tells whether a scene's meshes
+///   are those
 ///                      that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep
-///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mesh { name, vertices, triangles, edges }
-///   },
+///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mass_per (of a scene, where it is not
+///           "volume": then an open mesh is meant to have no inside), mesh { name, vertices, triangles, edges } },
 ///           vertices x y z after x y z, relative to the reference point; triangles three indices after three; edges those of no triangle
 ///   time    only where the steps are not even: at the start; timestep is then their mean
 ///   poses   [body], at the start: 12 numbers, rotation matrix row by row, then the position of the reference point
@@ -35,6 +36,7 @@
 #include <string>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
@@ -49,6 +51,11 @@ namespace fettle::core::records {
 [[nodiscard]] base::Errors write_trajectory(const std::filesystem::path& path, const stepper::Trajectory& trajectory,
                                             const model::Model& model, const std::string& scene_path = {},
                                             const stepper::Checkpoint* checkpoint = nullptr);
+
+/// The same as one of a set of files, line by line as it is made.
+[[nodiscard]] base::Errors add_trajectory(files::FilesTogether& files, const std::filesystem::path& path,
+                                          const stepper::Trajectory& trajectory, const model::Model& model,
+                                          const std::string& scene_path = {}, const stepper::Checkpoint* checkpoint = nullptr);
 
 /// Is this file a trajectory, as far as its keys tell? False for anything that cannot be read.
 bool is_trajectory_file(const std::filesystem::path& path);

@@ -36,6 +36,10 @@ void write_body(JsonWriter& out, const model::Body& body) {
     out.number(body.group);
     out.key("reference_point");
     out.numbers(body.reference_point);
+    if (body.mass_kind != scene::MassKind::volume) {
+        out.key("mass_per");
+        out.string(mass_kind_names()[static_cast<std::size_t>(body.mass_kind)]);
+    }
     out.key("mesh");
     out.text += '{';
     out.key("name");

@@ -282,6 +282,7 @@ private:
         const auto amount = [&](const JsonNode& n) { return unit.read(n); };
         const auto effort = [&](const JsonNode& n) { return n.number(); };
         const char *motion = unit.is_angle ? "angle" : "travel", *push = unit.is_angle ? "torque" : "force";
+        if (motor.joint.empty()) return;  // which is told
         int given = 0;
         for (const char* key : {"angle", "travel", "speed", "torque", "force"}) given += node[key].exists() ? 1 : 0;
         const bool fits = node[motion].exists() || node["speed"].exists() || node[push].exists();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/scene/fixture_reader.hpp"
 #include "fettle/core/scene/mechanism_reader.hpp"
 #include "fettle/core/scene/scene_body.hpp"
@@ -24,7 +25,7 @@ public:
                          "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
         root["$schema"].string();
         root["description"].string();
-        root["fettle_scene"].integer(1, 1);
+        files::is_version(root["fettle_scene"], 1);
         if (const auto name = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"}))
             unit_ = base::metres_per_unit(*name).value();
         scene_.path = document_.path();

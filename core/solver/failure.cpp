@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 
 namespace fettle::core::solver {
@@ -76,6 +78,7 @@ void describe_stop(const FailedStep& step, std::ostringstream& out) {
 
 // The joint or motor that is farthest from where it should be, and what it pushes with.
 void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
+    const double unit = step.problem.model->length_unit;
     const model::Mechanism& mechanism = step.problem.model->mechanism;
     const VectorX& unmet = step.rows->unmet();
     Eigen::Index worst = -1;
@@ -89,19 +92,32 @@ void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
     if (worst < 0) return;
     const model::Joint& joint = mechanism.joints[static_cast<std::size_t>(mechanism.rows[static_cast<std::size_t>(worst)].owner)];
     if (!joint.is_motor) {
-        out << "joint '" << joint.name << "' is not met (" << most << " m short): ";
+        out << "joint '" << joint.name << "' is not met (" << base::length_text(most, unit) << " short): ";
         return;
     }
     const bool turns = mechanism.set.measures[static_cast<std::size_t>(joint.coordinate)].kind == measure::MeasureKind::angle;
-    out << "motor '" << joint.name << "' cannot follow its curve (" << std::abs(unmet[worst]) << (turns ? " rad" : " m") << " short, with ";
+    const double short_by = std::abs(unmet[worst]);
+    out << "motor '" << joint.name << "' cannot follow its curve ("
+        << (turns ? base::format_quantity(short_by, "deg", 3) : base::length_text(short_by, unit)) << " short, with ";
     out << std::abs(holding_multipliers(step)[worst]) / step.problem.weight << (turns ? " N m): " : " N): ");
+}
+
+// What would keep the closest pair farther apart, if it is nearer than half the contact distance.
+void describe_stiffness(const FailedStep& step, std::ostringstream& out) {
+    const double wanted = sufficient_kappa(step);
+    if (!(wanted > step.problem.kappa)) return;
+    const char* unit = step.problem.model->area_weighted ? " N/m^3" : " N/m";
+    out << "; contact is soft for these forces: with `contact.kappa` at " << wanted << unit << " in place of " << step.problem.kappa << unit
+        << " they would leave half of the contact distance";
 }
 
 }  // namespace
 
 std::string describe_failure(const FailedStep& step) {
     const std::vector<model::Body>& bodies = step.problem.model->bodies;
+    const double unit = step.problem.model->length_unit;
     std::ostringstream out;
+    out.precision(4);
     int held = -1;
     double most = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -111,7 +127,7 @@ std::string describe_failure(const FailedStep& step) {
         most = left;
         held = static_cast<int>(i);
     }
-    if (held >= 0) out << "body '" << bodies[held].name << "' cannot follow its script (" << most << " m short): ";
+    if (held >= 0) out << "body '" << bodies[held].name << "' cannot follow its script (" << base::length_text(most, unit) << " short): ";
     if (held < 0 && step.rows) describe_unmet_row(step, out);
     out << step.cause;
     if (step.limiting.limiting_a >= 0)
@@ -119,13 +135,9 @@ std::string describe_failure(const FailedStep& step) {
     describe_stop(step, out);
     if (const Closest closest = closest_of(step.contacts); closest.pair)
         out << "; closest pair '" << bodies[closest.pair->first].name << "' and '" << bodies[closest.pair->second].name << "' at "
-            << std::sqrt(closest.distance_squared) << " m";
-    const char* unit = step.problem.model->area_weighted ? " N/m^3" : " N/m";
-    out << "; residual " << step.residual;
-    if (step.shift > 0) out << ", Hessian shifted by " << step.shift << " times the inertia";
-    out << ", kappa " << step.problem.kappa << unit;
-    const double wanted = sufficient_kappa(step);
-    if (wanted > step.problem.kappa) out << " (with kappa " << wanted << unit << " the same forces would leave half of dhat)";
+            << base::length_text(std::sqrt(closest.distance_squared), unit);
+    out << "; out of balance by " << 100 * step.residual << "% of the forces that act";
+    describe_stiffness(step, out);
     return out.str();
 }
 

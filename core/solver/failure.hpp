@@ -16,8 +16,7 @@ struct FailedStep {
     const contact::ContactSet& contacts;    ///< where the solver gave up
     const std::vector<Vector6>& remaining;  ///< of the prescribed coordinates, per body
     const contact::SafeStep& limiting;      ///< of the last search
-    double residual = 0;
-    double shift = 0;  ///< of the last Hessian (newton_direction.hpp)
+    double residual = 0;                    ///< NewtonResult::residual
     const std::string& cause;
     const RowSystem* rows = nullptr;                              ///< of a model with joints; then the next two as well
     const std::vector<kinematics::ChartPoint>* points = nullptr;  ///< where the solver gave up

@@ -285,7 +285,8 @@ private:
             return stop(NewtonStatus::converged);
         const char* too_rough = "rounding stops the solve before it is accurate enough for a gradient";
         if (result_.iterations >= options_.max_iterations)  // solved, in numbers that jump by more than such accuracy at each step
-            return stop(failure(*direction), failure_message(*direction, solved ? too_rough : "too many Newton iterations"));
+            return stop(failure(*direction),
+                        failure_message(*direction, solved ? too_rough : "not solved within `max_newton_iterations` iterations"));
         if (solved && is_stagnant(*direction)) {
             if (direction->residual <= usable_residual || is_as_near_as_numbers(*direction)) return stop(NewtonStatus::converged);
             if (direction->residual <= saddle_growth * least_residual_)
@@ -366,7 +367,7 @@ private:
             return true;
         }
         if (is_near_enough(direction) && is_slow(direction) && is_accurate_enough(direction.residual)) return stop(NewtonStatus::converged);
-        return stop(failure(direction), failure_message(direction, "no step decreases the potential"));
+        return stop(failure(direction), failure_message(direction, "no move brings the forces nearer to balance"));
     }
 
     bool go_on_from_step(const Direction& direction, double fraction) {
@@ -535,7 +536,7 @@ private:
     }
 
     std::string failure_message(const Direction& direction, const std::string& cause) const {
-        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, direction.shift, cause,
+        return describe_failure({problem_, at_.contacts, direction.remaining, limiting_, direction.residual, cause,
                                  workspace_.rows ? &*workspace_.rows : nullptr, &at_.points, &at_.poses});
     }
 

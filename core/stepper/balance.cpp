@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace fettle::core::stepper {
 namespace {
@@ -19,30 +20,30 @@ std::string percent(double share) {
 
 }  // namespace
 
-std::optional<Balance> balance_of(const model::Model& model, const Simulation& simulation) {
-    if (simulation.outputs.empty() || !simulation.start || model.integrator == scene::Integrator::quasi_static) return std::nullopt;
-    const double h = model.timestep;
-    Balance out;
-    const energy::TermReport* before = &*simulation.start;
-    out.energy_start = energy_of(*before);
-    Vector3 defect = Vector3::Zero(), angular_defect = Vector3::Zero();
-    double stored_most = stored_energy(*before) + before->kinetic_energy;
-    for (std::size_t t = 0; t < simulation.outputs.size(); ++t) {
-        const StepOutputs& at = simulation.outputs[t];
-        const StepOutputs& earlier = simulation.outputs[t > 0 ? t - 1 : 0];  // what acts at the very start is known at its end only
-        out.work += 0.5 * h * (earlier.supplied_power + at.supplied_power);
-        out.dissipated += 0.5 * h * (earlier.dissipated_power + at.dissipated_power);
-        defect += at.momentum_defect;
-        angular_defect += at.angular_momentum_defect;
-        stored_most = std::max(stored_most, stored_energy(at) + at.kinetic_energy);
-        out.angular_momentum_scale = std::max(out.angular_momentum_scale, at.angular_momentum.norm());
+BalanceSum::BalanceSum(const energy::TermReport& start, double h) : h_(h), most_stored_(stored_energy(start) + start.kinetic_energy) {
+    sum_.energy_start = sum_.energy_end = energy_of(start);
+    sum_.energy_scale = most_stored_;
+    sum_.angular_momentum_scale = start.angular_momentum.norm();
+}
+
+void BalanceSum::add(const StepOutputs& step) {
+    if (!std::exchange(has_steps_, true)) {  // what acts at the very start is known at the first step's end only
+        supplied_ = step.supplied_power;
+        dissipated_ = step.dissipated_power;
     }
-    out.energy_end = energy_of(simulation.outputs.back());
-    out.energy_error = out.energy_end - out.energy_start - out.work + out.dissipated;
-    out.energy_scale = std::max({stored_most, std::abs(out.work), out.dissipated});
-    out.momentum_error = defect.norm();
-    out.angular_momentum_error = angular_defect.norm();
-    return out;
+    sum_.work += 0.5 * h_ * (supplied_ + step.supplied_power);
+    sum_.dissipated += 0.5 * h_ * (dissipated_ + step.dissipated_power);
+    supplied_ = step.supplied_power;
+    dissipated_ = step.dissipated_power;
+    most_stored_ = std::max(most_stored_, stored_energy(step) + step.kinetic_energy);
+    sum_.energy_end = energy_of(step);
+    sum_.energy_error = sum_.energy_end - sum_.energy_start - sum_.work + sum_.dissipated;
+    sum_.energy_scale = std::max({most_stored_, std::abs(sum_.work), sum_.dissipated});
+    defect_ += step.momentum_defect;
+    angular_defect_ += step.angular_momentum_defect;
+    sum_.momentum_error = defect_.norm();
+    sum_.angular_momentum_error = angular_defect_.norm();
+    sum_.angular_momentum_scale = std::max(sum_.angular_momentum_scale, step.angular_momentum.norm());
 }
 
 std::string balance_warning(const model::Model& model, const Balance& balance) {

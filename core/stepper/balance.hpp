@@ -3,15 +3,14 @@
 /// integration and of the solver together. docs/method.md section 3.
 #pragma once
 
-#include <optional>
 #include <string>
 
-#include "fettle/core/stepper/simulation.hpp"
+#include "fettle/core/stepper/step_outputs.hpp"
 
 namespace fettle::core::stepper {
 
-/// Over the steps that a simulation has outputs of. Work and dissipation are sums by the trapezoidal rule of the powers at the ends of
-/// steps, right to second order in the step.
+/// Over steps that have outputs. Work and dissipation are sums by the trapezoidal rule of the powers at the ends of steps, right to second
+/// order in the step.
 struct Balance {
     double energy_start = 0, energy_end = 0;  ///< kinetic, of gravity and constant forces, of springs, stops and contacts [J]
     double work = 0;                          ///< by motors, prescribed coordinates, torques and forces that have no potential [J]
@@ -23,12 +22,26 @@ struct Balance {
     double angular_momentum_scale = 0;        ///< largest |angular momentum| about the world's origin [kg m^2/s]
 };
 
-/// @return nullopt: no outputs, or a quasi-static model, which knows no kinetic energy.
-std::optional<Balance> balance_of(const model::Model& model, const Simulation& simulation);
+/// The balance of steps that are added one by one.
+class BalanceSum {
+public:
+    /// @param start  energies and momenta where the first step begins (start_report).
+    /// @param h      time step [s].
+    BalanceSum(const energy::TermReport& start, double h);
+    void add(const StepOutputs& step);
+    const Balance& balance() const { return sum_; }
 
-/// What a user should know of it, with a remedy; empty: nothing. Energy that comes from nowhere is always told, from 1% of the scale on;
-/// what implicit Euler or BDF2 lose only where the balance is asked for, for both stop what collides by losing its energy; angular
-/// momentum from 5% on.
+private:
+    double h_ = 0;
+    bool has_steps_ = false;
+    double supplied_ = 0, dissipated_ = 0;  // powers at the end of the step before [W]
+    double most_stored_ = 0;                // or in motion [J]
+    Vector3 defect_ = Vector3::Zero(), angular_defect_ = Vector3::Zero();
+    Balance sum_;
+};
+
+/// What a user should know of it, with a remedy; empty: nothing. Energy that comes from nowhere is told from 1% of the scale on, angular
+/// momentum from 5% on. Energy that is lost is not: implicit Euler and BDF2 stop what collides by losing it.
 std::string balance_warning(const model::Model& model, const Balance& balance);
 
 }  // namespace fettle::core::stepper

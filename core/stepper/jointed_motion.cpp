@@ -10,8 +10,10 @@
 #include <set>
 #include <sstream>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/constraint/assembly.hpp"
+#include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/stepper/joint_outputs.hpp"
 #include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
@@ -27,6 +29,7 @@ using kinematics::Pose;
 
 constexpr int most_parts = 256;
 constexpr double followed_gap = 1e-9;  // of the scene's size, by rows that follow from others
+constexpr double default_gap = 1e-5;   // of the smallest mechanism's size
 constexpr double widest_turn = 0.5;    // of a body between two nodes, so that angles can be counted with room [rad]
 
 // Of what no script moves.
@@ -79,6 +82,25 @@ public:
     }
 
     std::set<std::string> held, open;
+
+    /// Of the smallest group that rows connect [m]; infinity if there is none.
+    double least_size() const {
+        std::map<int, geometry::Box> boxes;
+        for (const auto& [root_body, count] : counts_) {
+            if (count.rows > 0) boxes[root_body] = {Vector3::Constant(base::infinity), Vector3::Constant(-base::infinity)};
+        }
+        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
+            const model::Body& body = model_.bodies[static_cast<std::size_t>(i)];
+            const auto box = boxes.find(root(i));
+            if (box == boxes.end() || is_scripted(body)) continue;
+            const Matrix3X x = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
+            box->second.low = box->second.low.cwiseMin(x.rowwise().minCoeff());
+            box->second.high = box->second.high.cwiseMax(x.rowwise().maxCoeff());
+        }
+        double size = base::infinity;
+        for (const auto& [root_body, box] : boxes) size = std::min(size, (box.high - box.low).norm());
+        return size;
+    }
 
     void judge() {
         for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
@@ -266,8 +288,9 @@ private:
             const double gap = std::abs(values[static_cast<Eigen::Index>(i)] - target_at(row, time)) * row.length;
             if (gap <= followed_gap * model_.diagonal) continue;
             std::ostringstream message;
-            message << "at " << time << " s `" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "` is " << gap
-                    << " m from being met: at the start it followed from the others, here it does not";
+            message << "at " << time << " s `" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "` is "
+                    << base::length_text(gap, model_.length_unit)
+                    << " from being met: at the start it followed from the others, here it does not";
             return message.str();
         }
         return std::nullopt;
@@ -280,8 +303,8 @@ private:
             if (gaps_[static_cast<Eigen::Index>(i)] > constraint::assembled_gap * model_.diagonal)
                 names.insert("`" + model_.mechanism.joints[static_cast<std::size_t>(rows_[i].owner)].name + "`");
         std::ostringstream message;
-        message << "at " << time << " s the joints cannot be met: " << base::joined(names) << ", by " << worst
-                << " m; is a motor's curve out of reach, or the loop at a dead centre?";
+        message << "at " << time << " s the joints cannot be met: " << base::joined(names) << ", by "
+                << base::length_text(worst, model_.length_unit) << "; is a motor's curve out of reach, or the loop at a dead centre?";
         return message.str();
     }
 
@@ -294,6 +317,11 @@ private:
 };
 
 }  // namespace
+
+double default_joint_gap(const model::Model& model) {
+    const double size = Groups(model).least_size();
+    return default_gap * (std::isfinite(size) && size > 0 ? size : model.diagonal);
+}
 
 std::vector<std::string> undriven_bodies(const model::Model& model) {
     Groups groups(model);

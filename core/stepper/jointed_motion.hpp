@@ -29,6 +29,10 @@ struct JointedMotion {
 /// Bodies that could move, but that no motor and no script drives: follow_joints holds them.
 std::vector<std::string> undriven_bodies(const model::Model& model);
 
+/// What joints may part by between nodes unless someone asks for less or more: a hundred-thousandth of the smallest mechanism, which is
+/// the diagonal of the box round the bodies that joints connect and nothing else moves, where they start [m].
+double default_joint_gap(const model::Model& model);
+
 /// @param steps        of the model; negative: its end_time, or 1000 steps if it has none.
 /// @param allowed_gap  [m] > 0
 /// Errors: what is not determined; a time at which the joints cannot be met (a dead centre that is not passed, a motor out of reach).

@@ -68,7 +68,8 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     StepState state = out.checkpoint.state;
     solver::NewtonWorkspace workspace(model);
     const int steps = step_count(model, options);
-    if (options.outputs) out.start = start_report(model, state);
+    std::optional<BalanceSum> balance;
+    if (options.outputs && model.integrator != scene::Integrator::quasi_static) balance.emplace(start_report(model, state), model.timestep);
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {
@@ -86,6 +87,11 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         }
         out.report.steps.push_back(result.report);
         out.trajectory.steps.push_back(std::move(result.path));
+        if (balance) {
+            balance->add(result.outputs);
+            out.balance = balance->balance();
+        }
+        if (options.last_outputs_only) out.outputs.clear();
         if (options.outputs) out.outputs.push_back(std::move(result.outputs));
         state = std::move(result.state);
         out.trajectory.poses.push_back(state.history.poses);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fettle/core/solver/newton_workspace.hpp"
+#include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/step_outputs.hpp"
 #include "fettle/core/stepper/step_state.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
@@ -42,6 +43,7 @@ struct SimulationOptions {
     int steps = -1;                                ///< in all; negative: the model's end_time (1000 steps if that is not given)
     bool for_gradient = false;                     ///< solve each step to rounding level with the true Hessian (what the adjoint needs)
     bool outputs = false;                          ///< energies, momenta and forces of each step too
+    bool last_outputs_only = false;                ///< they are kept of the last step alone: for an on_step that writes them as they come
     const struct Simulation* resume = nullptr;     ///< an earlier run of this model: goes on from its checkpoint, ends as one run would
     std::function<void(const Progress&)> on_step;  ///< optional
     std::function<bool()> should_stop;             ///< optional, asked after each Newton iteration
@@ -72,9 +74,9 @@ struct SimulationReport {
 struct Simulation {
     Trajectory trajectory;
     SimulationReport report;
-    std::vector<StepOutputs> outputs;         ///< per step, if asked for
-    std::optional<energy::TermReport> start;  ///< the same where they begin: energies and momenta, no powers and no forces
-    Checkpoint checkpoint;                    ///< the last one passed
+    std::vector<StepOutputs> outputs;  ///< per step, or of the last one alone, if asked for
+    std::optional<Balance> balance;    ///< of these steps' energy and momentum, if outputs are asked for; none in quasi-statics
+    Checkpoint checkpoint;             ///< the last one passed
 };
 
 }  // namespace fettle::core::stepper

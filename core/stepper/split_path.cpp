@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/constraint/assembly.hpp"
 #include "fettle/core/contact/chord_deviation.hpp"
 
@@ -101,8 +102,8 @@ private:
         }
         if (gap.gap > allowed_ && refusal.empty()) {
             std::ostringstream message;
-            message << "joint '" << model_.mechanism.joints[static_cast<std::size_t>(gap.joint)].name << "' parts by up to " << gap.gap
-                    << " m between nodes of step " << step_number_ + 1
+            message << "joint '" << model_.mechanism.joints[static_cast<std::size_t>(gap.joint)].name << "' parts by up to "
+                    << base::length_text(gap.gap, model_.length_unit) << " between nodes of step " << step_number_ + 1
                     << (halvings > 0 ? ", where the bodies cannot be moved onto their joints" : ", however often it is split")
                     << "; a shorter time step helps";
             refusal = message.str();

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/contact/safe_step.hpp"
 #include "fettle/core/energy/proximal_share.hpp"
 #include "fettle/core/energy/start_history.hpp"
@@ -193,8 +194,9 @@ bool judge_joints(const energy::StepProblem& problem, const solver::NewtonResult
         result.report.joint_gap = std::max(result.report.joint_gap, gap);
         if (gap <= largest_gap * model.diagonal) continue;
         std::ostringstream message;
-        message << "joint '" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "' is " << gap
-                << " m from being met: at the start it followed from the others, here it does not";
+        message << "joint '" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "' is "
+                << base::length_text(gap, model.length_unit)
+                << " from being met: at the start it followed from the others, here it does not";
         result.status = SimulationStatus::not_converged;
         result.message = message.str();
         return false;

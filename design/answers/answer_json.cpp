@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/model/model.hpp"
 
@@ -98,10 +99,8 @@ std::vector<std::string> body_names(const core::model::Model& model) {
 }
 
 std::string unit_name(double length_unit) {
-    for (const char* name : {"um", "mm", "cm", "m", "in", "ft"}) {
-        if (core::base::metres_per_unit(name).value() == length_unit) return name;
-    }
-    return "m";
+    const std::string name = core::base::unit_name(core::base::Dimension::length, length_unit);
+    return name.empty() ? "m" : name;
 }
 
 }  // namespace fettle::design::answers

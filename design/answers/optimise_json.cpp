@@ -50,7 +50,9 @@ Json by_models_json(const Design& design, const OptimiseOutcome& outcome) {
     for (size_t k = 0; k < own.terms.size(); ++k) terms.push_back(measured_json(design.objective[k].name, own.terms[k], other.terms[k]));
     for (size_t i = 0; i < own.constraints.size(); ++i)
         constraints.push_back(measured_json(design.constraints[i].name, own.constraints[i], other.constraints[i]));
-    return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}};
+    Json in_doubt = Json::array();
+    for (const size_t i : outcome.in_doubt) in_doubt.push_back(design.constraints[i].name);
+    return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}, {"in_doubt", in_doubt}};
 }
 
 Json stages_json(const optimisers::OptimiserReport& report) {
@@ -121,7 +123,7 @@ std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o
     std::vector<Cost> costs;
     for (size_t i = 0; i < design.constraints.size() && o.step.size() > 0; ++i) {
         const double y = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
-        if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({design.constraints[i].name, y});
+        if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({i, design.constraints[i].name, y});
     }
     std::stable_sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return std::abs(a.per_unit) > std::abs(b.per_unit); });
     return costs;

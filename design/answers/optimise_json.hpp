@@ -26,6 +26,7 @@ nlohmann::ordered_json outcome_json(const problem::DesignProblem& problem, const
 nlohmann::ordered_json objective_json(const studies::OptimiseOutcome& outcome, const RunFacts& run);
 
 struct Cost {
+    std::size_t constraint;  ///< of the design's
     std::string requirement;
     double per_unit;  ///< in the objective; > 0: a lower bound that is raised costs, < 0: an upper one that is lowered
 };

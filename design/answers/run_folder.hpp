@@ -1,27 +1,34 @@
 // SPDX-License-Identifier: MIT
 /// What a run leaves in its folder beside its own files: the answer and the animated parts. The report is made of them (report/).
+/// All of it takes its place together, the answer last (core/files/atomic_file.hpp).
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::design::answers {
 
-/// Writes FOLDER/result.json: `answer`, and `program` (the version) and `command` (that made it).
-[[nodiscard]] Errors write_result(const std::string& folder, nlohmann::ordered_json answer, const std::string& command);
+/// FOLDER/result.json: `answer`, and `program` (the version) and `command` (that made it). The last file of the set.
+[[nodiscard]] Errors add_result(core::files::FilesTogether& files, const std::string& folder, nlohmann::ordered_json answer,
+                                const std::string& command);
 
-/// Takes away what an earlier run left in FOLDER of its answer: result.json, report.html.
-void forget_answer(const std::string& folder);
+/// Takes away what an earlier run left in FOLDER of its answer: report.html, and result.json if no other is added.
+void replace_answer(core::files::FilesTogether& files, const std::string& folder);
 
-/// The same of its motion, before another one is written there: also motion.glb, trajectory.start.json and the tables of the steps.
-void forget_motion(const std::string& folder);
+/// The same of its motion, where another one takes its place: also motion.glb, trajectory.start.json and the tables of the steps.
+void replace_motion(core::files::FilesTogether& files, const std::string& folder);
 
-/// Writes FOLDER/motion.glb, the animated parts.
-[[nodiscard]] Errors write_animation(const std::string& folder, const core::model::Model& model,
-                                     const core::stepper::Trajectory& trajectory);
+/// FOLDER/motion.glb, the animated parts.
+[[nodiscard]] Errors add_animation(core::files::FilesTogether& files, const std::string& folder, const core::model::Model& model,
+                                   const core::stepper::Trajectory& trajectory);
+
+/// Is FOLDER/report.html, or FOLDER/result.json, of another program? It is not to be replaced. Errors: inconsistent, with what to do.
+[[nodiscard]] Errors others_files(const std::filesystem::path& folder);
 
 }  // namespace fettle::design::answers

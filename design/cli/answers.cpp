@@ -7,6 +7,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "fettle/design/description/requirement_text.hpp"
+
 namespace fettle::design::cli {
 
 std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console) {
@@ -15,8 +17,8 @@ std::string relations_text(const description::Design& design, const optimisers::
         const description::Relation& relation = design.relations[static_cast<size_t>(i)];
         const description::Bounds& bounds = relation.bounds;
         const bool met = description::violation(relation, relations.values[i]) <= 0;
-        text += formatted("  %-40s is %.9g, required [%g, %g]: ", relation.name.c_str(), relations.values[i] / bounds.unit,
-                          bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
+        text += formatted("  %-40s is %.9g, required %s: ", relation.name.c_str(), relations.values[i] / bounds.unit,
+                          description::required_text(bounds, "").c_str()) +
                 console.coloured(met ? "met" : "VIOLATED", met) + "\n";
     }
     return text;
@@ -26,13 +28,6 @@ long peak_memory_bytes() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
     return usage.ru_maxrss * 1024L;
-}
-
-std::string csv_word(const std::string& name) {
-    if (name.find_first_of(",\"\n") == std::string::npos) return name;
-    std::string text = "\"";
-    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return text + "\"";
 }
 
 std::string formatted(const char* format, ...) {

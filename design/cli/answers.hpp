@@ -16,9 +16,6 @@ std::string relations_text(const description::Design& design, const optimisers::
 /// Largest resident memory of this process so far [bytes].
 long peak_memory_bytes();
 
-/// In quotes where a table's row would be cut by it.
-std::string csv_word(const std::string& name);
-
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 

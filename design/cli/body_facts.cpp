@@ -98,26 +98,4 @@ std::string parts_text(const core::model::Model& model) {
     return text;
 }
 
-std::vector<std::string> doubts_of(const core::model::Model& model) {
-    constexpr double lightest = 10, heaviest = 30'000, largest = 10, smallest = 10e-6;
-    std::vector<std::string> doubts;
-    const std::vector<std::optional<double>> volumes = volumes_of(model);
-    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        const Body& body = model.bodies[i];
-        const std::optional<double>&volume = volumes[i], mass = mass_of(body);
-        const double density = volume && mass && *volume > 0 ? *mass / *volume : 0;
-        // A shell, a wire or points have another mass than density times volume.
-        const bool solid = density > 0 && std::abs(density - body.density) <= 1e-9 * density;
-        if (solid && (density < lightest || density > heaviest)) {
-            doubts.push_back("body `" + body.name + "`: a density of " + formatted("%.4g", density) +
-                             " kg/m^3 is hardly meant (plastics have about 1000, steel 7850); 1.24 g/cm^3 are 1240 kg/m^3");
-        }
-        const double size = size_of(body).maxCoeff();
-        if (model.length_unit != 1 || (size <= largest && size >= smallest)) continue;
-        doubts.push_back("body `" + body.name + "`: its size is " + formatted("%.4g", size) +
-                         " m; are its lengths in millimetres? then write \"units\": \"mm\" (or \"mesh_unit\": \"mm\")");
-    }
-    return doubts;
-}
-
 }  // namespace fettle::design::cli

@@ -17,8 +17,4 @@ nlohmann::ordered_json parts_json(const core::model::Model& model);
 /// The same as a table in the file's unit of length; masses in kg, or g below 1 kg.
 std::string parts_text(const core::model::Model& model);
 
-/// Per body what is possible, but hardly meant: a density below 10 or above 30000 kg/m^3 (dynamic solids), and, where the file's unit is
-/// the metre, a size above 10 m or below 10 um.
-std::vector<std::string> doubts_of(const core::model::Model& model);
-
 }  // namespace fettle::design::cli

@@ -24,7 +24,7 @@ constexpr int could_not_start = 127;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(could_not_start);
     setpgid(0, 0);  // Ctrl-C reaches the parent alone, who passes it on once
-    const int in = open("/dev/null", O_RDWR), out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    const int in = open("/dev/null", O_RDWR), out = open(log, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, 0644);
     if (in < 0 || out < 0 || dup2(in, 0) < 0 || dup2(in, 1) < 0 || dup2(out, 2) < 0) _exit(could_not_start);
     execv("/proc/self/exe", arguments);
     _exit(could_not_start);
@@ -40,6 +40,7 @@ ChildProcess ChildProcess::start(const std::vector<std::string>& arguments, cons
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     const std::string log_name = log.string();
+    unlink(log_name.c_str());  // a file of its own: what a link there points at is left alone
     const pid_t parent = getpid();
     const pid_t process = fork();
     if (process == 0) become(pointers.data(), log_name.c_str(), parent);

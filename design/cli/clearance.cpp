@@ -49,7 +49,11 @@ constexpr std::size_t most_measured = 100;
 std::vector<core::clearance::PairRequest> requests_of(const PairSelection& selection, bool all_measured) {
     std::vector<core::clearance::PairRequest> requests;
     for (const PairSpec& pair : selection.pairs) {
-        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, pair.minimum});
+        for (const auto& [a, b] : pair.body_pairs) {
+            requests.push_back({a, b, pair.minimum});
+            requests.back().may_touch = pair.may_touch;
+            requests.back().touch_depth = pair.touch_depth;
+        }
     }
     if (all_measured || requests.size() <= most_measured) return requests;
     auto request = requests.begin();
@@ -79,10 +83,6 @@ Result<Lengths> read_lengths(const ClearanceArguments& options) {
     if (lengths.minimum && *lengths.minimum < 0) errors.push_back({ErrorCode::out_of_range, "--minimum", "a clearance is not negative"});
     if (lengths.tolerance && !(*lengths.tolerance > 0))
         errors.push_back({ErrorCode::out_of_range, "--tolerance", "a tolerance is greater than 0"});
-    if (!options.pairs.process.empty()) {
-        const auto preset = quantities::process_preset(options.pairs.process, "--process");
-        errors.insert(errors.end(), preset.errors().begin(), preset.errors().end());
-    }
     if (!errors.empty()) return errors;
     return lengths;
 }
@@ -121,6 +121,15 @@ std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& s
     return clashes;
 }
 
+// That two touch, which is accepted, is not what a certificate can say: its bounds would call it too close.
+void leave_out_touching(const std::vector<core::clearance::PairClearance>& results, core::certificate::Certificate& certificate) {
+    std::erase_if(certificate.pairs, [&](const core::certificate::PairCertificate& pair) {
+        return std::any_of(results.begin(), results.end(), [&](const core::clearance::PairClearance& each) {
+            return each.a == pair.a && each.b == pair.b && each.touch && each.status == PairStatus::contact;
+        });
+    });
+}
+
 // The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
 Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
@@ -147,7 +156,7 @@ Errors try_files(const ClearanceArguments& options) {
         if (Errors errors = try_output_file(file); !errors.empty()) return errors;
     }
     if (!options.out.empty()) {
-        if (Errors errors = try_output_folder(options.out); !errors.empty()) return errors;
+        if (Errors errors = try_run_folder(options.out); !errors.empty()) return errors;
     }
     return {};
 }
@@ -177,6 +186,10 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (options.ranges) return run_ranges(options, *lengths, std::move(baseline), common, console);
     Result<Subject> subject = load_subject(options.subject, common, console);
     if (!subject) return console.input_errors(subject.errors());
+    if (!subject->files.empty() && subject->model.bodies.size() < 2)
+        return console.input_errors({{ErrorCode::inconsistent, options.subject.path,
+                                      "is one part, and a clearance is between two: name a second mesh, a folder of them, or a 3MF with "
+                                      "several parts"}});
     PairOptions pair_options = options.pairs;
     pair_options.minimum = lengths->minimum;
     pair_options.motion = subject->motion();
@@ -195,6 +208,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     core::certificate::Certificate certificate;
     if (!options.certificate.empty()) certify.certificate = &certificate;
     auto results = certified(*subject, requests_of(*selection, certify.margin_curve), certify);
+    leave_out_touching(results, certificate);
     const auto clashes = clashes_of_left_out(*subject, certify, *selection);
     results.insert(results.end(), clashes.begin(), clashes.end());
     if (subject->source != SubjectSource::trajectory && subject->files.empty() && !options.certificate.empty())
@@ -202,22 +216,33 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     ClearanceReport report = make_report(*subject, *selection, results, certify.tolerance, interrupted());
     if (baseline) compare_with(*std::move(baseline), report);
     const std::string unit = answers::unit_name(subject->model.length_unit);
-    Errors errors;
-    if (!options.csv.empty()) errors = core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit));
-    if (errors.empty() && !options.certificate.empty()) errors = write_proof(options.certificate, certificate, *subject);
-    if (!errors.empty()) return console.input_errors(errors);
+    Errors errors;  // of files: the verdict is told all the same
+    if (!options.csv.empty()) console.unwritten(core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit)));
+    const bool is_proof = !options.certificate.empty() && !certificate.pairs.empty();  // there is something to certify
+    if (is_proof) errors = write_proof(options.certificate, certificate, *subject);
+    console.unwritten(errors);
     Json json = report_json(report, *subject);
     std::string text = report_text(report, *subject, unit, options.explain, console);
-    if (!options.certificate.empty()) {
+    if (!options.certificate.empty() && !is_proof) {
+        json["certificate"] = Json();
+        text += "certificate: not written, for nothing is proven\n";
+    } else if (is_proof && errors.empty()) {
         json["certificate"] = proof_json(options, *subject);
         text += "certificate: " + options.certificate + ", of the path in " + json["certificate"]["trajectory"].get<std::string>() +
                 "; check it with fettle validate " + options.certificate +
                 (subject->source == SubjectSource::trajectory ? " --trajectory " + options.subject.path : "") + "\n";
     }
-    errors = write_folder(folder_of(options), {subject->model, subject->trajectory, subject->scene_path}, common, console, json, text);
-    if (!errors.empty()) return console.input_errors(errors);
+    console.unwritten(
+        write_folder(folder_of(options), {subject->model, subject->trajectory, subject->scene_path}, common, console, json, text));
+    for (Check& check : report_checks(report, *subject, unit, options.subject.path)) console.found(std::move(check));
     console.result(json, text);
     return exit_code(report.status);
+}
+
+std::vector<std::string> process_names() {
+    std::vector<std::string> names;
+    for (const quantities::ProcessPreset& preset : quantities::process_presets()) names.emplace_back(preset.name);
+    return names;
 }
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
@@ -226,11 +251,15 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--unit", options.subject.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum,
                "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
-    app.option("--process", options.pairs.process, "Required clearance by process and size of the parts: fdm, sla, sls, mjf (below)");
+    app.option("--process", options.pairs.process, "Required clearance by process and size of the parts (below)").one_of(process_names());
     app.option("--pairs", options.pairs.pairs,
                "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
                "as assembled, every pair that may collide over a motion)");
     app.option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
+    Option touch = app.option("--allow-touch", options.pairs.touches,
+                              "A:B that may touch, face on face, but not be in each other; A:B=0.02mm: no deeper than that (can be given "
+                              "several times)")
+                       .one_value_each();
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
     app.option("--tolerance", options.tolerance, "How far the two bounds may be apart (default: 0.001mm or 0.1% of the minimum, the less)");
     Option motion =
@@ -259,6 +288,7 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
         .excludes(motion)
         .excludes(kinematic)
         .excludes(poses)
+        .excludes(touch)
         .excludes(steps)
         .excludes(time);
 }

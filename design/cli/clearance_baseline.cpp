@@ -27,7 +27,8 @@ Result<Baseline> Baseline::read(const std::string& path) {
     for (const core::files::JsonNode& node : list.elements()) {
         const auto a = node.require("a").string(), b = node.require("b").string();
         const auto status = node.require("status").choice({"clear", "violated", "undecided", "contact"});
-        const auto lower = node.require("lower").number();
+        const core::files::JsonNode lower_node = node.require("lower");
+        const auto lower = lower_node.is_null() ? std::numeric_limits<double>::quiet_NaN() : lower_node.number();
         const core::files::JsonNode upper_node = node.require("upper");
         const auto upper = upper_node.is_null() ? std::numeric_limits<double>::infinity() : upper_node.number();
         if (!a || !b || !status || !lower || !upper) continue;

@@ -32,19 +32,24 @@ Errors write_folder(const ClearanceFolder& folder, report::Motion motion, const 
     if (!is_finite(motion.trajectory))
         return {{ErrorCode::not_finite, folder.out, "the path has numbers that are not finite: nothing is written"}};
     const std::filesystem::path file = std::filesystem::path(folder.out) / "trajectory.json";
+    core::files::FilesTogether files;
     std::error_code ignored;
     if (std::filesystem::equivalent(folder.judged, file, ignored)) {
-        answers::forget_answer(folder.out);
+        answers::replace_answer(files, folder.out);
     } else {
-        const Result<std::string> kept = keep_longer_run(file, motion.trajectory.steps.size());
-        if (!kept) return kept.errors();
-        if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-        answers::forget_motion(folder.out);
-        const Errors errors = core::records::write_trajectory(file, motion.trajectory, motion.model, motion.scene_path);
+        const std::string kept = name_for_longer_run(file, motion.trajectory.steps.size());
+        if (!kept.empty()) {
+            console.narrate("warning: a longer run was there, which is kept as " + kept);
+            files.keep_as(file, kept);
+        }
+        answers::replace_motion(files, folder.out);
+        Errors errors = core::records::add_trajectory(files, file, motion.trajectory, motion.model, motion.scene_path);
         if (!errors.empty()) return errors;
     }
     answer["out"] = folder.out;
-    if (const Errors errors = answers::write_result(folder.out, answer, common.command); !errors.empty()) return errors;
+    Errors errors = answers::add_result(files, folder.out, answer, common.command);
+    if (errors.empty()) errors = files.take_names();
+    if (!errors.empty()) return errors;
     if (!folder.no_report) leave_report(folder.out, common, console, answer, told, std::move(motion));
     return {};
 }

@@ -48,6 +48,7 @@ public:
         } else {
             for (const std::string& token : split(options_.pairs, ',')) add_token(token);
         }
+        for (const std::string& token : options_.touches) allow_touch(token);
         for (const std::string& token : split(options_.ignore, ',')) ignore(token);
         if (!errors_.empty()) return errors_;
         require();
@@ -127,7 +128,8 @@ private:
         const size_t colon = names.find(':');
         if (colon == std::string::npos || names.find(':', colon + 1) != std::string::npos) {
             fail(option, ErrorCode::parse,
-                 "\"" + text + "\" is no pair; write A:B,C:D with names of bodies" + (with_minimum ? ", or A:B=0.4mm" : ""));
+                 "\"" + text + "\" is no pair; write " + (option == std::string_view("--allow-touch") ? "A:B" : "A:B,C:D") +
+                     " with names of bodies" + (with_minimum ? ", or A:B=0.4mm" : ""));
             return token;
         }
         const size_t errors_before = errors_.size();
@@ -137,7 +139,7 @@ private:
             const Result<double> minimum = core::base::parse_length(text.substr(equals + 1), option);
             errors_.insert(errors_.end(), minimum.errors().begin(), minimum.errors().end());
             if (minimum) token.minimum = *minimum;
-            if (minimum && *minimum < 0) fail(option, ErrorCode::out_of_range, "\"" + text + "\": a clearance is not negative");
+            if (minimum && *minimum < 0) fail(option, ErrorCode::out_of_range, "\"" + text + "\": a length is not negative");
         }
         token.good = errors_.size() == errors_before;
         return token;
@@ -171,7 +173,7 @@ private:
 
     // Later tokens make earlier ones more precise: `*:*,pin:plate=0.4mm`.
     void add(const Unit& a, const Unit& b, bool named, std::optional<double> minimum) {
-        PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", named, {}};
+        PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", false, 0, named, {}};
         for (const int i : a.bodies) {
             for (const int j : b.bodies) {
                 if (named || is_judged(i, j)) pair.body_pairs.emplace_back(i, j);
@@ -221,16 +223,44 @@ private:
         return judged_by_default(model_, i, j);
     }
 
-    void ignore(const std::string& text) {
-        const Token token = read_token(text, "--ignore", false);
+    // Wildcards stand for the pairs that there are; a pair of names becomes one.
+    void allow_touch(const std::string& text) {
+        const Token token = read_token(text, "--allow-touch", true);
         if (!token.good) return;
+        if (token.minimum && !(*token.minimum > 0))
+            return fail("--allow-touch", ErrorCode::out_of_range, "\"" + text + "\": a depth is greater than 0");
+        if (!token.a.wildcard && !token.b.wildcard) {
+            const Unit &a = token.a.units[0], &b = token.b.units[0];
+            if (overlap(a, b)) return fail("--allow-touch", ErrorCode::inconsistent, "\"" + text + "\" pairs a body with itself");
+            add(a, b, true, std::nullopt);
+        }
+        bool found = false;
+        for (PairSpec& pair : selection_.pairs) {
+            if (!is_of(pair, token)) continue;
+            found = true;
+            if (pair.minimum > 0 && pair.required_by == "--pairs") {
+                fail("--allow-touch", ErrorCode::inconsistent,
+                     "\"" + text + "\": --pairs requires a clearance of the same pair; give one of the two");
+                return;
+            }
+            pair.may_touch = true;
+            pair.touch_depth = token.minimum.value_or(0);
+        }
+        if (!found) fail("--allow-touch", ErrorCode::out_of_range, "no pair that is judged matches \"" + text + "\"");
+    }
+
+    static bool is_of(const PairSpec& pair, const Token& token) {
         const auto among = [](const Unit& unit, const Named& named) {
             return std::any_of(named.units.begin(), named.units.end(), [&](const Unit& u) { return same(u, unit); });
         };
+        return (among(pair.a, token.a) && among(pair.b, token.b)) || (among(pair.a, token.b) && among(pair.b, token.a));
+    }
+
+    void ignore(const std::string& text) {
+        const Token token = read_token(text, "--ignore", false);
+        if (!token.good) return;
         auto& pairs = selection_.pairs;
-        const auto hit = [&](const PairSpec& p) {
-            return (among(p.a, token.a) && among(p.b, token.b)) || (among(p.a, token.b) && among(p.b, token.a));
-        };
+        const auto hit = [&](const PairSpec& p) { return is_of(p, token); };
         for (const PairSpec& pair : pairs) {
             if (hit(pair)) selection_.ignored.push_back(pair.a.name + ":" + pair.b.name);
         }
@@ -262,6 +292,7 @@ private:
         for (PairSpec& pair : selection_.pairs) {
             if (!pair.required_by.empty()) continue;
             pair.minimum = 0;
+            if (pair.may_touch) continue;
             const std::string name = pair.a.name + ":" + pair.b.name;
             if (options_.minimum) {
                 pair.minimum = *options_.minimum;

@@ -5,6 +5,8 @@
 ///   clash only
 ///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own
 ///   --ignore A:B,...     the same without minimum; order of the two does not matter
+///   --allow-touch A:B    they may touch: no minimum applies to them, and what is deeper than rounding is still a clash; A:B=0.02mm: up to
+///                        that depth. A pair that is named so is judged
 ///   --group name=a,b,c   bodies that are one rigid set: not judged against each other, one row of the report against others
 #pragma once
 
@@ -19,7 +21,7 @@ namespace fettle::design::cli {
 
 struct PairOptions {
     std::string pairs, ignore;
-    std::vector<std::string> groups;
+    std::vector<std::string> groups, touches;
     std::optional<double> minimum;  ///< [m], per side
     std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it, which the report says
     bool motion = false;            ///< over a motion
@@ -36,6 +38,8 @@ struct PairSpec {
     Unit a, b;
     double minimum = 0;                           ///< [m]
     std::string required_by;                      ///< "--minimum", "--process fdm" or "--pairs"; empty: only its distance is wanted
+    bool may_touch = false;                       ///< that the two touch is accepted
+    double touch_depth = 0;                       ///< how deep they may be in each other for that [m]; 0: the default
     bool named = false;                           ///< by name, not by default or by `*`: judged even if dynamics makes them touch
     std::vector<std::pair<int, int>> body_pairs;  ///< to measure; first of a, second of b
 };
@@ -47,7 +51,8 @@ struct PairSelection {
 };
 
 /// Without any minimum only distances are wanted, and no pair has one.
-/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one.
+/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one,
+/// a pair that may touch and is not there, or has a minimum of its own.
 Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options);
 
 /// "A:B" of each.

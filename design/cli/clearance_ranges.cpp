@@ -32,7 +32,6 @@ using core::clearance::RangeClearance;
 using core::model::Model;
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr double coarse_share = 0.01;  // of the bodies' size, with more than two coordinates
 
 struct RangeRow {
     PairSpec spec;
@@ -225,11 +224,11 @@ std::string ranges_csv(const RangeReport& report, const JointRanges& ranges, con
     for (const LinkageCoordinate& c : ranges.linkage.coordinates)
         for (const auto& joint : c.joints) joints.emplace_back(joint.joint, joint.is_angle);
     std::string text = "a,b,required[" + unit + "],lower[" + unit + "],upper[" + unit + "],finding";
-    for (const auto& [name, is_angle] : joints) text += "," + csv_word(name + (is_angle ? "[deg]" : "[" + unit + "]"));
+    for (const auto& [name, is_angle] : joints) text += "," + core::base::csv_cell(name + (is_angle ? "[deg]" : "[" + unit + "]"));
     text += "\n";
     for (const RangeRow& row : report.rows) {
         const RangeClearance& least = row.least;
-        text += csv_word(row.spec.a.name) + "," + csv_word(row.spec.b.name) + "," +
+        text += core::base::csv_cell(row.spec.a.name) + "," + core::base::csv_cell(row.spec.b.name) + "," +
                 (row.spec.required_by.empty() ? "" : formatted("%.9g", least.minimum / lengths.metres())) + "," +
                 lengths.shortest(least.lower, Towards::down) + "," +
                 (std::isfinite(least.upper) ? lengths.shortest(least.upper, Towards::up) : "") + "," + finding_word(least);
@@ -301,19 +300,30 @@ std::string ranges_text(const RangeReport& report, const Model& model, const Joi
             text += "undecided: " + row.spec.a.name + ":" + row.spec.b.name + ": " + row.least.reason + "\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     if (!report.left_out.empty()) text += "not judged, as these may not collide: " + joined(report.left_out) + "; name them with --pairs\n";
-    if (!report.uncovered.empty()) text += formatted("%zu without a row: ", report.uncovered.size()) + joined(report.uncovered) + "\n";
+    if (!report.uncovered.empty())
+        text += "not looked at: " + core::base::counted(report.uncovered.size(), "pair") + " of bodies: " + joined(report.uncovered) + "\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
     if (report.baseline) text += report.baseline->text();
     if (!report.message.empty()) text += report.message + "\n";
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
 
-double tolerance_of(const RangeQuestion& question, const PairSelection& selection) {
-    if (question.tolerance) return *question.tolerance;
-    double tolerance = 1e-5;
-    for (const PairSpec& pair : selection.pairs)
-        if (pair.minimum > 0) tolerance = std::min(tolerance, 0.01 * pair.minimum);
-    return tolerance;
+std::vector<Check> range_checks(const RangeReport& report, const JointRanges& ranges, const std::string& unit, const std::string& file) {
+    const RoundedLengths lengths(unit);
+    std::vector<Check> checks;
+    for (const RangeRow& row : report.rows) {
+        const RangeClearance& least = row.least;
+        Check check{row.spec.a.name + ":" + row.spec.b.name, CheckOutcome::passed, finding_word(least), "", file};
+        if (least.status == PairStatus::violated) check.outcome = CheckOutcome::failed;
+        if (least.status == PairStatus::undecided) check.outcome = CheckOutcome::undecided;
+        check.message = "at least " + lengths.fixed(least.lower, Towards::down) + " " + unit + " apart over all positions of the joints";
+        if (!row.spec.required_by.empty()) check.message += formatted("; required %.6g ", least.minimum / lengths.metres()) + unit;
+        check.message += "; worst at " + combination(ranges, least, lengths);
+        if (least.status == PairStatus::undecided) check.message += "; undecided: " + least.reason;
+        checks.push_back(std::move(check));
+    }
+    if (!report.message.empty()) checks.push_back({"every pair is judged", CheckOutcome::undecided, "not judged", report.message, file});
+    return checks;
 }
 
 Errors write_range_proof(const RangeQuestion& question, core::certificate::RangeCertificate& certificate, const LoadedModel& loaded) {
@@ -345,9 +355,11 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
     std::vector<core::clearance::PairRequest> requests;
     for (const PairSpec& pair : selection->pairs)
         for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, pair.minimum});
-    core::clearance::RangeClearanceOptions certify;
-    certify.tolerance = tolerance_of(question, *selection);
-    certify.coarse = question.tolerance ? 0 : coarse_share;
+    core::clearance::RangeClearanceOptions certify = core::clearance::usual_options(requests);
+    if (question.tolerance) {
+        certify.tolerance = *question.tolerance;
+        certify.coarse = 0;
+    }
     certify.on_pair = [&](int done, int of) { console.progress("certifying", done, of); };
     certify.should_stop = interrupted;
     core::certificate::RangeCertificate certificate;
@@ -358,19 +370,21 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
     if (question.baseline) compare_with(*std::move(question.baseline), report);
     if (!question.csv.empty()) {
         const std::string table = ranges_csv(report, *ranges, answers::unit_name(loaded->model.length_unit));
-        if (const Errors errors = core::files::write_file_atomically(question.csv, table); !errors.empty())
-            return console.input_errors(errors);
+        console.unwritten(core::files::write_file_atomically(question.csv, table));  // the verdict is told all the same
     }
     Json json = ranges_json(report, loaded->model, *ranges);
     std::string text = ranges_text(report, loaded->model, *ranges, question.explain, console);
-    if (!question.certificate.empty()) {
-        if (const Errors errors = write_range_proof(question, certificate, *loaded); !errors.empty()) return console.input_errors(errors);
+    Errors no_proof;
+    if (!question.certificate.empty()) no_proof = write_range_proof(question, certificate, *loaded);
+    console.unwritten(no_proof);
+    if (!question.certificate.empty() && no_proof.empty()) {
         json["certificate"] = {{"file", question.certificate}, {"trajectory", certificate_trajectory(question.certificate)}};
         text += "certificate: " + question.certificate + "; check it with fettle validate " + question.certificate + "\n";
     }
     report::Motion assembled{loaded->model, core::clearance::as_assembled(loaded->model), loaded->scene_path};
-    const Errors errors = write_folder(question.folder, std::move(assembled), common, console, json, text);
-    if (!errors.empty()) return console.input_errors(errors);
+    console.unwritten(write_folder(question.folder, std::move(assembled), common, console, json, text));
+    for (Check& check : range_checks(report, *ranges, answers::unit_name(loaded->model.length_unit), question.path))
+        console.found(std::move(check));
     console.result(json, text);
     return report.status == PairStatus::violated ? exit_violated : report.status == PairStatus::undecided ? exit_undecided : exit_done;
 }

@@ -40,25 +40,32 @@ bool is_worse(const PairClearance& x, const PairClearance& y) {
 }
 
 Solids worse_of(Solids x, Solids y) {
-    for (const Solids each : {Solids::overlap, Solids::unproven, Solids::not_closed})
+    for (const Solids each : {Solids::overlap, Solids::unproven, Solids::unverified, Solids::not_closed})
         if (x == each || y == each) return each;
     return Solids::disjoint;
+}
+
+std::optional<core::clearance::Touch> both(const std::optional<core::clearance::Touch>& x, const std::optional<core::clearance::Touch>& y) {
+    if (!x || !y) return x ? x : y;
+    return core::clearance::Touch{x->area + y->area, x->time, std::max(x->depth, y->depth), std::min(x->room, y->room)};
 }
 
 // The whole pair: the least of its members.
 PairClearance least_of(const std::vector<PairClearance>& members) {
     PairClearance least = members.front();
-    for (const PairClearance& member : members) {
-        const PairClearance before = least;
+    for (size_t i = 1; i < members.size(); ++i) {
+        const PairClearance &member = members[i], before = least;
         if (is_worse(member, before)) least = member;
         least.lower = std::min(before.lower, member.lower);
         least.upper = std::min(before.upper, member.upper);
         least.sampled = std::min(before.sampled, member.sampled);
         least.is_far = before.is_far && member.is_far;
+        least.is_bounded = before.is_bounded && member.is_bounded;
         least.complete = before.complete && member.complete;
         least.intersecting = before.intersecting || member.intersecting;
         least.solids = worse_of(before.solids, member.solids);
         least.reason = before.reason.empty() ? member.reason : before.reason;
+        least.touch = both(before.touch, member.touch);
         least.status = severity(member.status) < severity(before.status) ? member.status : before.status;
     }
     return least;
@@ -70,18 +77,24 @@ Finding finding_of(const Subject& subject, const ReportedPair& pair, bool stoppe
         std::any_of(pair.members.begin(), pair.members.end(), [&](const PairClearance& m) { return may_push(subject, m.a, m.b); });
     const bool near = !pair.spec.named && pushes && least.upper < subject.model.dhat + subject.model.dmin;
     if (least.is_clash()) return Finding::clash;
+    const bool is_worse_apart = std::any_of(pair.members.begin(), pair.members.end(), [](const PairClearance& m) {
+        return !m.touch && (m.status == PairStatus::violated || m.status == PairStatus::undecided);
+    });
+    if (least.touch && !is_worse_apart) return Finding::touching;
     if (least.status == PairStatus::clear) return Finding::clear;
-    if (least.lower > 0 && least.solids != Solids::unproven && (near || least.status == PairStatus::contact))
+    if (least.lower > 0 && core::certificate::are_apart(least.solids) && (near || least.status == PairStatus::contact))
         return pair.spec.required_by.empty() && !pushes ? Finding::clear : Finding::contact;
     if (near || (stopped && !least.complete)) return Finding::undecided;  // told apart from a clash neither way
     return least.status == PairStatus::violated ? Finding::below : Finding::undecided;
 }
 
-PairStatus status_of(Finding finding) {
-    switch (finding) {
+PairStatus status_of(const ReportedPair& pair) {
+    switch (pair.finding) {
         case Finding::clash:
         case Finding::below:
             return PairStatus::violated;
+        case Finding::touching:
+            return pair.least.status;
         case Finding::undecided:
             return PairStatus::undecided;
         case Finding::contact:
@@ -124,14 +137,20 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
     json["time"] = least.is_clash() ? least.clash_time : least.witness.time;
     json["point_a"] = answers::vector_json(least.witness.point_a);
     json["point_b"] = answers::vector_json(least.witness.point_b);
-    json["gap"] = least.upper - least.lower;
+    json["gap"] = least.is_bounded ? Json(least.upper - least.lower) : Json();
     if (subject.joints) json["joint_charge"] = subject.joints->joints ? Json(joint_charge(subject, least.a, least.b)) : Json();
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
     if (!pair.overlap.empty()) json["overlap"] = pair.overlap;
+    if (least.touch)
+        json["touching"] = {
+            {"area", least.touch->area}, {"depth", least.touch->depth}, {"time", least.touch->time}, {"allowed", pair.spec.may_touch}};
     if (least.is_clash()) json["clash_not_before"] = least.clash_not_before;
     if (least.overlap) {
-        json["depth"] = {{"lower", least.overlap->depth_lower}, {"upper", least.overlap->depth_upper}, {"time", least.overlap->time}};
+        json["depth"] = {{"lower", least.overlap->depth_lower},
+                         {"upper", least.overlap->depth_upper},
+                         {"time", least.overlap->time},
+                         {"point", least.overlap->depth_lower > 0 ? answers::vector_json(least.overlap->center) : Json()}};
         json["volume"] = {{"lower", least.overlap->volume_lower}, {"upper", least.overlap->volume_upper}};
     }
     if (pair.spec.a.is_group) json["body_a"] = names[static_cast<size_t>(least.a)];
@@ -159,12 +178,12 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     const bool required = !pair.spec.required_by.empty();
     json["minimum"] = required ? Json(least.minimum) : Json();
     json["required_by"] = required ? Json(pair.spec.required_by) : Json();
-    json["lower"] = least.lower;
-    json["upper"] = least.is_far ? Json() : Json(least.upper);
+    json["lower"] = least.is_bounded ? Json(least.lower) : Json();
+    json["upper"] = least.is_far || !least.is_bounded ? Json() : Json(least.upper);
     json["status"] = core::clearance::to_string(least.status);
     json["finding"] = to_string(pair.finding);
     json["solids"] = core::certificate::to_string(least.solids);
-    if (pair.finding == Finding::undecided && !least.reason.empty()) json["reason"] = least.reason;
+    if (least.status == PairStatus::undecided && !least.reason.empty()) json["reason"] = least.reason;
     if (least.is_far) {
         add_no_witness(json);
     } else {
@@ -215,6 +234,8 @@ const char* to_string(Finding finding) {
             return "clash";
         case Finding::below:
             return "below threshold";
+        case Finding::touching:
+            return "touching";
         case Finding::undecided:
             return "undecided";
         case Finding::contact:
@@ -245,7 +266,7 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
         pair.least = least_of(pair.members);
         if (pair.least.solids == Solids::overlap) pair.overlap = "one lies inside the material of the other";
         pair.finding = finding_of(subject, pair, stopped);
-        pair.least.status = status_of(pair.finding);
+        pair.least.status = status_of(pair);
         if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
         if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
         report.pairs.push_back(std::move(pair));
@@ -267,16 +288,18 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     double minimum = std::numeric_limits<double>::infinity(), least = minimum;
     Json list = Json::array();
     int unmeasured = 0;
+    bool is_bounded = true;
     for (const ReportedPair& pair : report.pairs) {
         if (!pair.spec.required_by.empty()) minimum = std::min(minimum, pair.least.minimum);
         least = std::min(least, pair.least.lower);
+        is_bounded = is_bounded && pair.least.is_bounded;
         unmeasured += pair.least.is_far ? 1 : 0;
         list.push_back(pair_json(pair, subject, names));
     }
     Json json;
     json["status"] = core::clearance::to_string(report.status);
     json["minimum"] = std::isfinite(minimum) ? Json(minimum) : Json();
-    json["least"] = report.pairs.empty() ? Json() : Json(least);
+    json["least"] = report.pairs.empty() || !is_bounded ? Json() : Json(least);
     json["tolerance"] = report.tolerance;
     json["motion"] = subject.motion();
     json["source"] = to_string(subject.source);

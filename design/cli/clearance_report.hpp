@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/design/cli/check_files.hpp"
 #include "fettle/design/cli/clearance_baseline.hpp"
 #include "fettle/design/cli/clearance_pairs.hpp"
 #include "fettle/design/cli/clearance_subject.hpp"
@@ -18,6 +19,7 @@ namespace fettle::design::cli {
 enum class Finding {
     clash,      ///< the bodies pass through each other, or one lies inside the other's material
     below,      ///< closer than required
+    touching,   ///< faces lie on each other: neither a gap nor a clash
     undecided,  ///< what is required lies between the bounds, or the search was cut short
     contact,    ///< bodies that dynamics lets push each other come close enough to do so; reported, not judged
     clear
@@ -61,6 +63,9 @@ nlohmann::ordered_json report_json(const ClearanceReport& report, const Subject&
 /// Lengths in `unit`, lower bounds rounded down and upper ones up. Explains the `explain` worst pairs.
 std::string report_text(const ClearanceReport& report, const Subject& subject, const std::string& unit, int explain,
                         const Console& console);
+
+/// Each pair as a check (check_files.hpp), and that all was judged.
+std::vector<Check> report_checks(const ClearanceReport& report, const Subject& subject, const std::string& unit, const std::string& file);
 
 /// One row per pair of bodies and path segment: a,b,step,segment,time_start[s],time_end[s],lower[unit],upper[unit].
 std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit);

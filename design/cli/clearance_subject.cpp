@@ -104,8 +104,7 @@ std::string joints_note(const Subject& subject, const core::stepper::JointedMoti
 
 // Where joints and motors have the bodies.
 Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
-    constexpr double allowed_gap = 1e-6;  // [m]
-    auto followed = core::stepper::follow_joints(subject.model, steps, allowed_gap);
+    auto followed = core::stepper::follow_joints(subject.model, steps, core::stepper::default_joint_gap(subject.model));
     if (!followed) {
         Errors errors = followed.errors();
         for (Error& error : errors) error.where = options.path + ": " + error.where;
@@ -145,6 +144,12 @@ std::vector<std::string> all_paths(const SubjectOptions& options) {
 Errors check_inputs(const SubjectOptions& options, bool meshes) {
     if (meshes && (options.motion || options.kinematic))
         return {{ErrorCode::inconsistent, options.path, "meshes do not move; --poses FILE moves them, or write a scene"}};
+    const bool makes_motion = options.motion || options.kinematic;
+    if ((options.steps >= 0 || options.time >= 0) && !makes_motion)
+        return {
+            {ErrorCode::inconsistent, options.steps >= 0 ? "--steps" : "--time",
+             "is of a motion that is made here: add --motion or --kinematic (as assembled nothing moves; a trajectory or poses are judged "
+             "whole)"}};
     if (meshes) return {};
     if (!options.more.empty())
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};

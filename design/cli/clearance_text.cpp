@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -47,6 +48,13 @@ private:
 
 std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" + pair.spec.b.name; }
 
+// "over 240 mm^2, accepted".
+std::string touched(const ReportedPair& pair, const Lengths& lengths) {
+    const double area = pair.least.touch->area / (lengths.metres() * lengths.metres());
+    return (area > 0 ? formatted("over %.4g ", area) + lengths.unit() + "^2" : std::string("in edges and points")) +
+           (pair.spec.may_touch ? ", accepted" : "");
+}
+
 std::string table(const ClearanceReport& report, const Subject& subject, const Lengths& lengths, const Console& console) {
     size_t width = 4;
     for (const ReportedPair& pair : report.pairs)
@@ -58,11 +66,13 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
         const PairClearance& least = pair.least;
         if (least.is_far) continue;
         const std::string status = formatted("%-16s", to_string(pair.finding));
-        const bool good = pair.finding == Finding::clear || pair.finding == Finding::contact;
+        const bool good = pair.finding == Finding::clear || pair.least.status == core::clearance::PairStatus::contact;
         text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(),
-                          pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), lengths.down(least.lower).c_str(),
-                          lengths.up(least.upper).c_str(), console.coloured(status, good).c_str());
+                          pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(),
+                          least.is_bounded ? lengths.down(least.lower).c_str() : "not proven",
+                          least.is_bounded ? lengths.up(least.upper).c_str() : "not proven", console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
+        if (least.touch) text += "  " + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
         text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
     }
@@ -107,14 +117,18 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     const std::string& a = subject.model.bodies[static_cast<size_t>(least.a)].name;
     const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
     std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
-    text += "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " + lengths.unit() +
-            " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)" +
+    text += (least.is_bounded ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
+                                    lengths.unit() + " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)"
+                              : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     if (const double charge = joint_charge(subject, least.a, least.b); charge > 0)
         text += "   each wider by " + lengths.rough(charge) + " " + lengths.unit() + ": what joints part by between the path's nodes\n";
-    if (pair.finding == Finding::undecided && !least.reason.empty()) text += "   undecided: " + least.reason + "\n";
+    if (least.status == core::clearance::PairStatus::undecided && !least.reason.empty()) text += "   undecided: " + least.reason + "\n";
     if (pair.finding == Finding::clash) text += clash(pair, subject, lengths);
+    if (least.touch)
+        text += "   they touch " + touched(pair, lengths) + ", and are nowhere deeper in each other than " +
+                lengths.up(least.touch->depth, 3) + " " + lengths.unit() + "\n";
     if (least.solids == core::clearance::Solids::overlap && !least.intersecting) return text;
     if (w.step >= 0) {
         text += formatted("   %s at %.9g s, in step %d", least.is_clash() ? "first" : "closest", w.time, w.step + 1);
@@ -147,7 +161,7 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", to_string(subject.source));
     if (subject.motion()) {
         const auto steps = static_cast<int>(subject.trajectory.steps.size());
-        text += formatted(" (%d steps, %.6g s)", steps,
+        text += formatted(" (%s, %.6g s)", core::base::counted(static_cast<size_t>(steps), "step").c_str(),
                           core::stepper::time_at(subject.trajectory, steps) - core::stepper::time_at(subject.trajectory, 0));
     }
     const char* before = ": ";
@@ -156,6 +170,19 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
         before = ", ";
     }
     return text + "\n";
+}
+
+CheckOutcome check_outcome(core::clearance::PairStatus status) {
+    using core::clearance::PairStatus;
+    if (status == PairStatus::violated) return CheckOutcome::failed;
+    return status == PairStatus::undecided ? CheckOutcome::undecided : CheckOutcome::passed;
+}
+
+// Of meshes, the file of that name; else what was judged.
+std::string file_of_part(const Subject& subject, const std::string& part, const std::string& otherwise) {
+    for (const std::string& file : subject.files)
+        if (std::filesystem::path(file).stem() == part) return file;
+    return otherwise;
 }
 
 std::string shortest(double x) {
@@ -179,12 +206,16 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)
         text += formatted(
-            "%d of them without a row stay at least twice as far apart as is required, and were not measured: name a pair with --pairs "
-            "to measure it\n",
+            "%d of them are not listed: they stay at least twice as far apart as is required, and were not measured; name a pair with "
+            "--pairs to measure it\n",
             static_cast<int>(far));
     std::map<std::string, int> reasons;
     for (const ReportedPair& pair : report.pairs)
-        if (pair.finding == Finding::undecided && !pair.least.reason.empty()) ++reasons[pair.least.reason];
+        if (pair.least.status == core::clearance::PairStatus::undecided && !pair.least.reason.empty()) ++reasons[pair.least.reason];
+    const auto touch = std::find_if(report.pairs.begin(), report.pairs.end(),
+                                    [](const ReportedPair& p) { return p.finding == Finding::touching && !p.spec.may_touch; });
+    if (touch != report.pairs.end())
+        text += "touching: faces lie on each other; if they are meant to, --allow-touch " + pair_name(*touch) + " accepts it\n";
     for (const auto& [reason, count] : reasons) text += formatted("undecided (%d): ", count) + reason + "\n";
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
@@ -193,8 +224,8 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
                 "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     if (!report.uncovered.empty())
-        text += formatted("%zu pair%s of bodies have no row: ", report.uncovered.size(), report.uncovered.size() == 1 ? "" : "s") +
-                joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
+        text += "not looked at: " + core::base::counted(report.uncovered.size(), "pair") +
+                " of bodies: " + joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
                 (report.uncovered.size() > 6 ? ", ...\n" : "\n");
     for (const std::string& note : subject.notes) text += "note: " + note + "\n";
     if (report.baseline) text += report.baseline->text();
@@ -202,13 +233,36 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
 
+std::vector<Check> report_checks(const ClearanceReport& report, const Subject& subject, const std::string& unit, const std::string& file) {
+    const Lengths lengths(unit, report.tolerance);
+    std::vector<Check> checks;
+    for (const ReportedPair& pair : report.pairs) {
+        const PairClearance& least = pair.least;
+        Check check{pair_name(pair), check_outcome(least.status), to_string(pair.finding), "",
+                    file_of_part(subject, pair.spec.a.name, file)};
+        check.message =
+            least.is_far ? "at least twice as far apart as is required"
+                         : "at least " + lengths.down(least.lower) + " " + unit + " apart, at most " + lengths.up(least.upper) + " " + unit;
+        if (!pair.spec.required_by.empty()) check.message += "; required " + lengths.plain(least.minimum) + " " + unit + " per side";
+        if (pair.finding == Finding::clash) check.message = "the parts share material; " + check.message;
+        if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
+        if (pair.finding == Finding::undecided && !least.reason.empty()) check.message += "; undecided: " + least.reason;
+        if (subject.motion() && !least.is_far)
+            check.message += formatted(", at %.6g s", least.is_clash() ? least.clash_time : least.witness.time);
+        if (!pair.change.word.empty()) check.message += " (" + pair.change.word + ")";
+        checks.push_back(std::move(check));
+    }
+    if (!report.message.empty()) checks.push_back({"every pair is judged", CheckOutcome::undecided, "not judged", report.message, file});
+    return checks;
+}
+
 std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit) {
     const RoundedLengths lengths(unit);
     std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
     for (const ReportedPair& pair : report.pairs) {
         for (const PairClearance& member : pair.members) {
-            const std::string names = csv_word(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
-                                      csv_word(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
+            const std::string names = core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
+                                      core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
             for (const core::clearance::MarginInterval& m : member.margin) {
                 const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
                 text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <limits>
+#include <sstream>
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 
 namespace fettle::design::cli {
 
@@ -34,6 +37,9 @@ std::string number_fault(const std::string& text) {
     const auto number = parsed<Number>(text);
     if (number && core::base::is_usable_number(static_cast<double>(*number))) return {};
     if (number) return text + " is out of range: a number of at most 1e30 in absolute value is wanted";
+    const bool digits = text.find_first_not_of("+-0123456789") == std::string::npos;
+    if (std::is_integral_v<Number> && digits && parsed<double>(text))
+        return text + " is out of range: a whole number of at most " + std::to_string(std::numeric_limits<int>::max()) + " is wanted";
     return std::string(std::is_integral_v<Number> ? "a whole number is wanted, found \"" : "a number is wanted, found \"") + text + "\"";
 }
 
@@ -82,6 +88,80 @@ OptionFacts facts_of(const CLI::Option& option) {
     return facts;
 }
 
+// A variable of a script that is not set must not pass for an option that was not given.
+CLI::Option* never_empty(CLI::Option* option) {
+    return option->check([](const std::string& text) { return text.empty() ? "a value is wanted, found an empty text" : std::string(); });
+}
+
+std::string joined_names(const std::vector<const CLI::Option*>& options) {
+    std::string names;
+    for (const CLI::Option* option : options) names += (names.empty() ? "" : " ") + option->get_name(true);
+    return names;
+}
+
+// What was typed that no option and no place takes: the first option of it, with what was probably meant; else the first word.
+std::string unexpected(const CLI::App& program, const CLI::App* command) {
+    std::vector<std::string> words = program.remaining(true);
+    if (words.empty()) return {};
+    std::vector<std::string> names;
+    std::vector<const CLI::Option*> places;
+    for (const CLI::App* app : {&program, command}) {
+        if (app == nullptr) continue;
+        for (const CLI::Option* option : app->get_options()) {
+            if (option->get_positional()) places.push_back(option);
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        }
+    }
+    const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with("-"); });
+    if (option == words.end()) {
+        if (command == nullptr) return "\"" + words.front() + "\" is one word too many";
+        const std::string taken = places.empty() ? "no file" : joined_names(places);
+        return "\"" + words.front() + "\" is one word too many: `" + command->get_name() + "` takes " + taken + " and options";
+    }
+    const std::string typed = option->substr(0, option->find('='));
+    const auto meant = core::files::nearest_word(typed, {names.begin(), names.end()});
+    return "there is no option " + typed + (meant ? "; did you mean " + *meant + "?" : "");
+}
+
+const CLI::Option* find_option(const CLI::App& app, const std::string& name) {
+    for (const CLI::Option* option : app.get_options())
+        if (option->get_name(true) == name || option->check_name(name)) return option;
+    return nullptr;
+}
+
+std::string missing(const CLI::App& program, const CLI::App* command, const std::string& told) {
+    const std::string name = told.substr(0, told.find(' '));
+    if (command == nullptr) return "no command was given";
+    const CLI::Option* option = find_option(*command, name);
+    if (option == nullptr) option = find_option(program, name);
+    return option == nullptr ? told : name + " is missing: " + option->get_description();
+}
+
+std::string value_missing(const std::string& told) {
+    const std::string name = told.substr(0, told.find(':'));
+    const char* wanted = told.find("INT") != std::string::npos     ? "a whole number"
+                         : told.find("FLOAT") != std::string::npos ? "a number"
+                                                                   : "a value";
+    return name + ": " + wanted + " is wanted after it";
+}
+
+// The two options of "A excludes B" and "A requires B".
+std::string two_options(const std::string& told, const std::string& verb, const std::string& between, const std::string& end) {
+    const std::size_t at = told.find(verb);
+    return at == std::string::npos ? told : told.substr(0, at) + between + told.substr(at + verb.size()) + end;
+}
+
+std::string fault_of(const CLI::ParseError& error, const CLI::App& program, const CLI::App* command) {
+    const std::string told = error.what();
+    if (const std::string word = unexpected(program, command); !word.empty()) return word;
+    if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return missing(program, command, told);
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return value_missing(told);
+    if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+        return two_options(told, " excludes ", " and ", " do not go together: give one of them");
+    if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) return two_options(told, " requires ", " is given together with ", "");
+    return told;
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -109,7 +189,8 @@ Option& Option::one_of(std::vector<std::string> words) {
     for (const std::string& word : words) listed += (listed.empty() ? "" : "|") + word;
     const auto check = [words = std::move(words)](const std::string& text) -> std::string {
         if (std::find(words.begin(), words.end(), text) != words.end()) return {};
-        return "\"" + text + "\" is not one of " + core::base::joined(words);
+        const auto meant = core::files::nearest_word(text, {words.begin(), words.end()});
+        return "\"" + text + "\" is not one of " + core::base::joined(words) + (meant ? "; did you mean \"" + *meant + "\"?" : "");
     };
     option_->type_name(listed);
     option_->check(check);
@@ -145,7 +226,7 @@ CommandLine CommandLine::command(const std::string& name, const std::string& des
 void CommandLine::also_called(const std::string& name) { app_->alias(name); }
 
 Option CommandLine::option(const std::string& names, std::string& value, const std::string& description) {
-    return Option(app_->add_option(names, value, description));
+    return Option(never_empty(app_->add_option(names, value, description)));
 }
 
 Option CommandLine::option(const std::string& names, int& value, const std::string& description) {
@@ -165,7 +246,7 @@ Option CommandLine::option(const std::string& names, std::optional<double>& valu
 }
 
 Option CommandLine::option(const std::string& names, std::vector<std::string>& values, const std::string& description) {
-    return Option(app_->add_option(names, values, description));
+    return Option(never_empty(app_->add_option(names, values, description)));
 }
 
 Option CommandLine::flag(const std::string& names, bool& value, const std::string& description) {
@@ -201,10 +282,16 @@ ParseOutcome ProgramLine::parse(int argc, char** argv) {
     try {
         app_->parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return {false, app_->exit(error), {}};
-        return {false, error.get_exit_code(), error.what()};
+        if (error.get_exit_code() == 0) {  // --help, --version
+            std::ostringstream text, none;
+            app_->exit(error, text, none);
+            return {false, 0, text.str(), {}};
+        }
+        const std::vector<CLI::App*> chosen = app_->get_subcommands();
+        const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
+        return {false, error.get_exit_code(), fault_of(error, *app_, command), command == nullptr ? "" : command->get_name()};
     }
-    return {true, 0, {}};
+    return {true, 0, {}, {}};
 }
 
 }  // namespace fettle::design::cli

@@ -89,8 +89,9 @@ private:
 /// What reading a command line comes to.
 struct ParseOutcome {
     bool run = false;     ///< a command was given, and all that it needs
-    int exit_code = 0;    ///< if not: 0 where help or the version has been printed
-    std::string message;  ///< if not: what is wrong; empty where help or the version has been printed
+    int exit_code = 0;    ///< if not: 0 where help or the version was asked for
+    std::string message;  ///< if not: what is wrong, or the help or version that was asked for
+    std::string command;  ///< if not: the one that was given; empty: none
 };
 
 /// The program's own command line.

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/console.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/text.hpp"
 
 namespace fettle::design::cli {
 
@@ -61,6 +66,36 @@ std::string dumped(const Json& json) {
     return out + "\n}";
 }
 
+constexpr const char* green = "\033[32m";
+constexpr const char* red = "\033[31m";
+constexpr const char* plain = "\033[0m";
+
+// Our colours are the only control characters that a terminal gets.
+std::string for_terminal(std::string_view text) {
+    std::string out;
+    std::size_t begin = 0;
+    for (std::size_t at = text.find('\033'); at != std::string_view::npos; at = text.find('\033', at + 1)) {
+        for (const std::string_view colour : {green, red, plain}) {
+            if (!text.substr(at).starts_with(colour)) continue;
+            out.append(core::base::shown(text.substr(begin, at - begin))).append(colour);
+            begin = at + colour.size();
+        }
+    }
+    return out + core::base::shown(text.substr(begin));
+}
+
+Json errors_json(const Errors& errors) {
+    Json list = Json::array();
+    for (const Error& error : errors) list.push_back({{"code", to_string(error.code)}, {"where", error.where}, {"message", error.message}});
+    return list;
+}
+
+void tell(const Error& error) {
+    const std::string line =
+        "error: " + error.where + (error.where.empty() ? "" : ": ") + error.message + " [" + to_string(error.code) + "]";
+    std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
+}
+
 bool no_color() {
     const char* value = std::getenv("NO_COLOR");
     return value != nullptr && *value != '\0';
@@ -72,20 +107,33 @@ Console::Console(const ConsoleOptions& options) : options_(options) {
     terminal_ = ::isatty(STDERR_FILENO) != 0;
     colours_ = ::isatty(STDOUT_FILENO) != 0 && !no_color();
     if (options.log.empty()) return;
-    if (std::FILE* file = std::fopen(options.log.c_str(), "w")) log_ = {file, std::fclose};
+    if (std::FILE* file = std::fopen(options.log.c_str(), "w")) {
+        log_ = {file, std::fclose};
+    } else {
+        log_failed();
+    }
+}
+
+// Told once; there is no log from here on.
+void Console::log_failed() {
+    const int code = errno;
+    log_.reset();
+    unwritten({{ErrorCode::file_unwritable, options_.log, "the log cannot be written: " + std::generic_category().message(code)}});
 }
 
 void Console::log(const std::string& line) {
     if (!log_) return;
-    std::fprintf(log_.get(), "%8.1f s  %s\n", std::chrono::duration<double>(Clock::now() - begun_).count(), line.c_str());
-    std::fflush(log_.get());
+    const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
+    const bool written = std::fprintf(log_.get(), "%8.1f s  %s\n", seconds, core::base::shown(line).c_str()) >= 0;
+    if (!written || std::fflush(log_.get()) != 0) log_failed();
 }
 
 void Console::narrate(const std::string& line) {
+    doing_ = line;
     log(line);
     if (options_.quiet) return;
     end_progress();
-    std::fprintf(stderr, "%s\n", line.c_str());
+    std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
 }
 
 std::string Console::pace(int done, int of) const {
@@ -103,6 +151,7 @@ std::string Console::pace(int done, int of) const {
 
 void Console::progress(const std::string& what, int done, int of) {
     if (of <= 0) return;
+    doing_ = what + " " + std::to_string(done) + "/" + std::to_string(of);
     const Clock::time_point now = Clock::now();
     if (what != progress_of_ || done < first_done_) {
         progress_of_ = what;
@@ -112,7 +161,7 @@ void Console::progress(const std::string& what, int done, int of) {
     constexpr std::chrono::seconds between_lines{10};
     const bool line_due = now - line_written_ >= between_lines;
     if (line_due) {
-        const std::string line = what + " " + std::to_string(done) + "/" + std::to_string(of) + pace(done, of);
+        const std::string line = doing_ + pace(done, of);
         line_written_ = now;
         log(line);
         if (!options_.quiet && !terminal_) std::fprintf(stderr, "%s\n", line.c_str());
@@ -136,48 +185,69 @@ void Console::end_progress() {
     bar_permille_ = -1;
 }
 
+void Console::put(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+    const int code = errno;
+    unwritten({{ErrorCode::file_unwritable, "standard output", "the answer cannot be written: " + std::generic_category().message(code)}});
+}
+
+void Console::print(const std::string& text) { put(for_terminal(text)); }
+
 void Console::result(const Json& json, const std::string& text) {
     end_progress();
-    const std::string out = options_.json ? dumped(json) + "\n" : text;
-    std::fwrite(out.data(), 1, out.size(), stdout);
-    std::fflush(stdout);
+    if (!options_.json) return print(text);
+    if (unwritten_.empty()) return put(dumped(json) + "\n");
+    Json with_faults = json;
+    with_faults["unwritten"] = errors_json(unwritten_);
+    put(dumped(with_faults) + "\n");
+}
+
+void Console::unwritten(const Errors& errors) {
+    if (!errors.empty()) end_progress();
+    for (const Error& error : errors) tell(error);
+    unwritten_.insert(unwritten_.end(), errors.begin(), errors.end());
 }
 
 int Console::input_errors(const Errors& errors) {
     end_progress();
+    for (const Error& error : errors)
+        found({error.where, CheckOutcome::fault, to_string(error.code), error.message, error.where.substr(0, error.where.find('#'))});
     if (options_.json) {
-        Json json;
-        json["status"] = "error";
-        json["errors"] = Json::array();
-        for (const Error& error : errors) {
-            json["errors"].push_back({{"code", to_string(error.code)}, {"where", error.where}, {"message", error.message}});
-        }
-        result(json, "");
+        result({{"status", "error"}, {"errors", errors_json(errors)}}, "");
     } else {
-        for (const Error& error : errors) {
-            std::fprintf(stderr, "error: %s%s%s [%s]\n", error.where.c_str(), error.where.empty() ? "" : ": ", error.message.c_str(),
-                         to_string(error.code));
-        }
+        for (const Error& error : errors) tell(error);
     }
     return exit_bad_input;
 }
 
 int Console::internal_error(const std::string& message) {
     end_progress();
+    found({"fettle", CheckOutcome::fault, "internal", message, ""});
     if (options_.json) {
-        Json json;
-        json["status"] = "error";
-        json["errors"] = Json::array({{{"code", "internal"}, {"where", ""}, {"message", message}}});
-        result(json, "");
+        result({{"status", "error"}, {"errors", Json::array({{{"code", "internal"}, {"where", ""}, {"message", message}}})}}, "");
     } else {
-        std::fprintf(stderr, "fettle: internal error, please report it: %s\n", message.c_str());
+        std::fprintf(stderr, "fettle: internal error, please report it: %s\n", core::base::shown(message).c_str());
     }
     return exit_internal;
 }
 
+int Console::out_of_memory() {
+    const std::string doing = doing_.empty() ? "while reading the input" : "last told: " + doing_;
+    return input_errors({{ErrorCode::out_of_memory, "memory",
+                          "what was asked for takes more memory than there is (" + doing +
+                              "); ask for less at a time (fewer steps, pairs or samples, coarser meshes), or give the program more"}});
+}
+
 std::string Console::coloured(const std::string& text, bool good) const {
     if (!colours_) return text;
-    return std::string(good ? "\033[32m" : "\033[31m") + text + "\033[0m";
+    return (good ? green : red) + text + plain;
+}
+
+void expect_failed_writes() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    // Opened the wrong way round: who writes to it is told.
+    for (const auto& [stream, way] : {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_RDONLY}})
+        if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", way));  // the lowest number that is free: this one
 }
 
 const char* to_string(ErrorCode code) {
@@ -186,6 +256,10 @@ const char* to_string(ErrorCode code) {
             return "file_not_found";
         case ErrorCode::file_unreadable:
             return "file_unreadable";
+        case ErrorCode::file_unwritable:
+            return "file_unwritable";
+        case ErrorCode::out_of_memory:
+            return "out_of_memory";
         case ErrorCode::parse:
             return "parse";
         case ErrorCode::unknown_key:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
 /// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
-/// NO_COLOR is set or stdout is no terminal.
+/// NO_COLOR is set or stdout is no terminal. Names and paths in what is told may come from anybody: on a terminal and in the log they are
+/// shown without control characters (core/base/text.hpp).
 #pragma once
 
 #include <chrono>
@@ -9,9 +10,12 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/design/cli/check_files.hpp"
 
 namespace fettle::design::cli {
 
@@ -19,7 +23,7 @@ enum ExitCode {
     exit_done = 0,       ///< done, and every requirement certified
     exit_violated = 1,   ///< a requirement is violated
     exit_undecided = 2,  ///< undecided or not converged
-    exit_bad_input = 3,  ///< bad input or usage
+    exit_bad_input = 3,  ///< bad input or usage; output that cannot be written
     exit_internal = 4    ///< our own fault
 };
 
@@ -41,14 +45,29 @@ public:
     void progress(const std::string& what, int done, int of);
     void end_progress();
 
-    /// The command's answer: the object with --json, else the text.
+    /// The command's answer: the object with --json, else the text. What could not be written by then stands in it, as `unwritten`.
     void result(const nlohmann::ordered_json& json, const std::string& text);
+
+    /// Text alone, as that of --help.
+    void print(const std::string& text);
+
+    /// Files that the answer should have left and did not: told on stderr and in the answer, which is given all the same.
+    void unwritten(const Errors& errors);
+
+    /// What the program ends with: `verdict`, or exit_bad_input where the answer, the log or a file could not be written.
+    int exit_code(int verdict) const { return unwritten_.empty() ? verdict : static_cast<int>(exit_bad_input); }
 
     /// Errors in the input. With --json: {"status": "error", "errors": [{code, where, message}]} on stdout; else lines on stderr.
     /// @return exit_bad_input
     int input_errors(const Errors& errors);
     /// The same for a fault of ours. @return exit_internal
     int internal_error(const std::string& message);
+    /// The same where there is not enough memory, with what was being done. @return exit_bad_input
+    int out_of_memory();
+
+    /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves.
+    void found(Check check) { checks_.push_back(std::move(check)); }
+    const std::vector<Check>& checks() const { return checks_; }
 
     /// "clear" in green and so on, if colours are wanted.
     std::string coloured(const std::string& text, bool good) const;
@@ -56,12 +75,17 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     void log(const std::string& line);
+    void log_failed();
+    void put(const std::string& text);
     /// ", 35/s, 25 s left"; empty where nothing can be said.
     std::string pace(int done, int of) const;
 
     ConsoleOptions options_;
+    std::vector<Check> checks_;
     std::shared_ptr<std::FILE> log_;
     Clock::time_point begun_ = Clock::now();
+    Errors unwritten_;
+    std::string doing_;        ///< what was told last
     std::string progress_of_;  ///< what the bar is about
     Clock::time_point progress_begun_, line_written_;
     int first_done_ = 0;
@@ -70,5 +94,9 @@ private:
 };
 
 const char* to_string(ErrorCode code);
+
+/// From now on a write that cannot be made is an error like any other: a file beyond the limit of its size raises no signal, and a standard
+/// stream that is closed does not become the next file that is opened.
+void expect_failed_writes();
 
 }  // namespace fettle::design::cli

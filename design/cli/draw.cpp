@@ -12,6 +12,7 @@
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/rounded_lengths.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/picture.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
@@ -81,6 +82,19 @@ const PairClearance* worst_of(const std::vector<PairClearance>& pairs) {
     return worst;
 }
 
+/// Of those that interfere, of which there is one: measured, up to so many.
+PairClearance deepest_of(const core::model::Model& model, const Trajectory& trajectory, const std::vector<PairClearance>& pairs,
+                         core::clearance::ClearanceOptions options) {
+    constexpr std::size_t most_measured = 32;
+    std::vector<core::clearance::PairRequest> clashes;
+    for (const PairClearance& pair : pairs)
+        if (pair.is_clash() && clashes.size() < most_measured) clashes.push_back({pair.a, pair.b});
+    options.measure_overlap = true;
+    const std::vector<PairClearance> measured = core::clearance::certify_clearance(model, trajectory, clashes, options);
+    const auto depth = [](const PairClearance& pair) { return pair.overlap ? pair.overlap->depth_upper : 0.0; };
+    return *std::max_element(measured.begin(), measured.end(), [&](const auto& x, const auto& y) { return depth(x) < depth(y); });
+}
+
 std::optional<PairClearance> find_worst(const core::model::Model& model, const Trajectory& trajectory, bool motion) {
     core::clearance::ClearanceOptions options;
     options.motion = motion;
@@ -89,8 +103,12 @@ std::optional<PairClearance> find_worst(const core::model::Model& model, const T
     options.should_stop = interrupted;
     const auto pairs = core::clearance::certify_clearance(model, trajectory, judged_pairs(model), options);
     const PairClearance* worst = worst_of(pairs);
-    return worst ? std::optional(*worst) : std::nullopt;
+    if (worst == nullptr) return std::nullopt;
+    return worst->is_clash() ? deepest_of(model, trajectory, pairs, options) : *worst;
 }
+
+/// When a pair is shown: where it is nearest, of an interference where it is deepest.
+double instant_of(const PairClearance& pair) { return pair.is_clash() && pair.overlap ? pair.overlap->time : pair.witness.time; }
 
 /// The poses to draw, and what is nearest in them, or over the whole motion (--worst).
 struct Instant {
@@ -114,7 +132,7 @@ Instant instant_of(const DrawArguments& options, const Subject& subject) {
     Instant out;
     if (options.worst && motion) {
         out.worst = find_worst(subject.model, path, true);
-        out.time = out.worst ? out.worst->witness.time : core::stepper::time_at(path, 0);
+        out.time = out.worst ? instant_of(*out.worst) : core::stepper::time_at(path, 0);
         out.poses = poses_at(path, out.time);
         return out;
     }
@@ -132,9 +150,14 @@ Instant instant_of(const DrawArguments& options, const Subject& subject) {
 
 exports::PictureMarker marker_of(const PairClearance& pair, const core::model::Model& model) {
     const auto name = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].name; };
-    const std::string distance =
-        pair.is_clash() ? "clash" : core::base::format_length(pair.upper, answers::unit_name(model.length_unit), 3);
-    return {pair.witness.point_a, pair.witness.point_b, name(pair.a) + ":" + name(pair.b) + " " + distance};
+    const std::string unit = answers::unit_name(model.length_unit), pair_name = name(pair.a) + ":" + name(pair.b) + " ";
+    if (!pair.is_clash()) return {pair.witness.point_a, pair.witness.point_b, pair_name + core::base::format_length(pair.upper, unit, 3)};
+    if (!pair.overlap || !(pair.overlap->depth_lower > 0))
+        return {pair.witness.point_a, pair.witness.point_b, pair_name + "interference", true};
+    const RoundedLengths lengths(unit, 2);
+    const std::string depth = lengths.fixed(pair.overlap->depth_lower, Towards::down) + " to " +
+                              lengths.fixed(pair.overlap->depth_upper, Towards::up) + " " + unit + " deep";
+    return {pair.overlap->center, pair.overlap->center, pair_name + "interference, " + depth, true, pair.overlap->depth_upper};
 }
 
 int run_draw(const DrawArguments& options, const CommonOptions& common, Console& console) {

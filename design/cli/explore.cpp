@@ -2,8 +2,10 @@
 /// `fettle explore`: hands over to the Python package (design/python/fettle/exploration.py), which has the worker processes and Dask.
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "fettle/design/cli/session.hpp"
 
@@ -20,8 +22,10 @@ struct ExploreOptions {
     std::optional<int> workers;
 };
 
+// -P: the current folder, which may be anyone's, is no place of modules; nor is it for the processes that Python starts.
 std::vector<std::string> python_words(const ExploreOptions& options, const CommonOptions& common) {
-    std::vector<std::string> words{"-m", "fettle", "explore", options.design, "--out", options.out, "--seed", std::to_string(options.seed)};
+    std::vector<std::string> words{
+        "-P", "-m", "fettle", "explore", options.design, "--out", options.out, "--seed", std::to_string(options.seed)};
     for (const std::string& sweep : options.sweeps) words.insert(words.end(), {"--sweep", sweep});
     const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
     if (options.samples > 0) add("--samples", std::to_string(options.samples));
@@ -43,14 +47,32 @@ std::string package_path(const fs::path& program) {
     return {};
 }
 
+// The package, and what PYTHONPATH says. An entry of it that is empty or relative is the current folder, or lies in it: it is left out.
+std::string module_path(const fs::path& program) {
+    std::string path = package_path(program);
+    const char* given = std::getenv("PYTHONPATH");
+    std::istringstream entries(given == nullptr ? "" : given);
+    for (std::string entry; std::getline(entries, entry, ':');)
+        if (fs::path(entry).is_absolute()) path += (path.empty() ? "" : ":") + entry;
+    return path;
+}
+
+// Ctrl-C and SIGTERM wait until Python's side has what answers them (fettle/__main__.py): while it starts they would be a traceback.
+void hold_back_interrupts() {
+    sigset_t interrupts;
+    sigemptyset(&interrupts);
+    sigaddset(&interrupts, SIGINT);
+    sigaddset(&interrupts, SIGTERM);
+    sigprocmask(SIG_BLOCK, &interrupts, nullptr);
+    if (interrupted()) raise(SIGINT);
+}
+
 // Only returns where there is no Python.
 Error become_python(const ExploreOptions& options, const CommonOptions& common) {
     std::error_code ignored;
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    if (const std::string path = package_path(program); !path.empty()) {
-        const char* before = std::getenv("PYTHONPATH");
-        setenv("PYTHONPATH", (path + (before != nullptr && *before != '\0' ? ":" + std::string(before) : "")).c_str(), 1);
-    }
+    setenv("PYTHONPATH", module_path(program).c_str(), 1);
+    hold_back_interrupts();
     std::vector<std::string> words = python_words(options, common);
     std::vector<std::string> interpreters{(program.parent_path() / "python3").string(), "/usr/bin/python3", "python3"};
     for (std::string& interpreter : interpreters) {
@@ -76,7 +98,8 @@ Command add_explore(CommandLine& program, const CommonOptions& common) {
     line.option("--starts", options->starts, "So many runs of the optimiser").at_least(0);
     line.option("--seed", options->seed, "Of samples and starts").at_least(0);
     line.option("--workers", options->workers, "Worker processes (default: the machine's processors)").at_least(1);
-    line.option("--dask", options->dask, "Address of a running Dask scheduler, whose workers are used instead");
+    line.option("--dask", options->dask,
+                "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust");
     line.closing_words("Example:  fettle explore hinge.design.json --out sweep.jsonl --sweep pin_radius=10 --sweep wall=1.6:3:8");
     return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); }};
 }

@@ -35,6 +35,9 @@ struct ExportArguments {
     ShownOptions shown;
     std::string to, formats, arrange = "assembled";
     int every = 1;
+    bool in_place = false;
+
+    bool separate() const { return arrange == "parts" || arrange == "separate"; }
 };
 
 /// Where the files go, which, and what they are called.
@@ -83,7 +86,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     }
     if (!options.formats.empty())
         return Error{ErrorCode::inconsistent, "--format", "the name given by --to says the format; --format goes with a folder"};
-    if (options.arrange == "parts" && name != "glb" && name != "vtu" && name != csv)
+    if (options.separate() && name != "glb" && name != "vtu" && name != csv)
         return Error{ErrorCode::inconsistent, "--arrange", "a file for each part needs a folder: --to FOLDER --format " + name};
     plan.folder = to.has_parent_path() ? to.parent_path() : ".";
     plan.stem = to.stem().string();
@@ -147,19 +150,24 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     tell_warnings(console, robot->warnings);
     Json files = Json::array();
     std::string text;
+    core::files::FilesTogether together;
+    Errors errors;
     for (const auto& [name, bytes] : robot->files) {
         const fs::path path = fs::path(options.to).parent_path() / name;
-        const Errors errors = core::files::write_file_atomically(path, bytes);
-        if (!errors.empty()) return console.input_errors(errors);
+        if (errors.empty()) errors = together.add(path, bytes);
         files.push_back({{"file", path.string()}, {"format", "urdf"}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
         text += path.string() + "\n";
     }
+    if (errors.empty()) errors = together.take_names();
+    if (!errors.empty()) return console.input_errors(errors);
     console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", robot->warnings}}, text);
     return exit_done;
 }
 
 int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
     if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
+    if (options.in_place && !options.separate())
+        return console.input_errors({{ErrorCode::inconsistent, "--in-place", "is of --arrange separate: a file for each part"}});
     Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
     const Result<Plan> plan = plan_of(options, shown->stem);
@@ -167,19 +175,22 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
     if (const Errors errors = try_output_folder(plan->folder); !errors.empty()) return console.input_errors(errors);
     exports::ExportOptions how;
     const auto& arrangements = exports::arrangement_names();
+    const std::string arrange = options.separate() ? "parts" : options.arrange;
     how.arrangement =
-        static_cast<exports::Arrangement>(std::find(arrangements.begin(), arrangements.end(), options.arrange) - arrangements.begin());
+        static_cast<exports::Arrangement>(std::find(arrangements.begin(), arrangements.end(), arrange) - arrangements.begin());
+    how.in_place = options.in_place;
     how.every = options.every;
     Json files = Json::array();
     std::vector<std::pair<std::string, double>> of_meshes;  // and their rounding
     std::string text, format;
     double rounding = 0;
+    core::files::FilesTogether together;
     const exports::FileSink sink = [&](const std::string& name, const std::string& bytes) -> Errors {
         const std::string path = (plan->folder / name).string();
         files.push_back({{"file", path}, {"format", format}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
         text += formatted("%s  %zu bytes\n", path.c_str(), bytes.size());
         if (has_meshes_alone(format) && !name.ends_with(".mtl")) of_meshes.emplace_back(path, rounding);
-        return core::files::write_file_atomically(plan->folder / name, bytes);
+        return together.add(plan->folder / name, bytes);
     };
     for (const std::string& each : plan->formats) {
         format = each;
@@ -194,6 +205,7 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
         }
         if (!errors.empty()) return console.input_errors(errors);
     }
+    if (const Errors errors = together.take_names(); !errors.empty()) return console.input_errors(errors);
     if (!shown->certificate.empty() && !of_meshes.empty()) {
         const Errors errors = name_in_certificate(*shown, of_meshes);
         if (!errors.empty()) return console.input_errors(errors);
@@ -215,14 +227,16 @@ Command add_export(CommandLine& program, const CommonOptions& common) {
         .required();
     app.option("--format", options->formats, "Into a folder: which, with commas (default: glb,3mf,stl,obj,vtu,csv)");
     app.option("--arrange", options->arrange,
-               "3mf, stl, obj: assembled (default), plate (side by side for printing), parts (a file each, in its own frame)")
-        .one_of(exports::arrangement_names());
+               "3mf, stl, obj: assembled (default), plate (side by side for printing), separate or parts (a file each, in its own frame)")
+        .one_of({"assembled", "plate", "parts", "separate"});
+    app.flag("--in-place", options->in_place, "With --arrange separate: each part where it stands in the assembly");
     app.option("--every", options->every, "vtu: a frame for every so many steps (default 1)").at_least(1);
     app.closing_words(
         "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. Of a certificate, it then names the files of\n"
         "meshes, and fettle validate says \"stale\" when one has changed.\n"
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
-        "          fettle export fit.certificate.json --to print.3mf --arrange plate");
+        "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
+        "          fettle export SCENE --to parts --format stl --arrange separate --in-place        for a check by fettle clearance parts");
     return {app, [options, &common](Console& console) { return run_export(*options, common, console); }};
 }
 

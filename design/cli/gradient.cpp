@@ -9,6 +9,7 @@
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/design_line.hpp"
@@ -334,8 +335,11 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = e.constraints[i];
-        text += formatted("%-40s %12.7g, at least %12.7g, required [%g, %g]\n", name.c_str(), measured.value / bounds.unit,
-                          measured.lower / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit);
+        const std::string unit = description::unit_name(design.constraints[i]);
+        text += formatted("%-40s %s, proven at least %s, required %s\n", name.c_str(),
+                          description::amount_text(measured.value, bounds.unit, unit).c_str(),
+                          description::amount_text(measured.lower, bounds.unit, unit).c_str(),
+                          description::required_text(bounds, unit).c_str());
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
         text += tie_text(design, tie_of(e, false, i), bounds.unit);
     }
@@ -364,6 +368,7 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     tell_warnings(console, read->warnings);
     const Result<DesignProblem> problem = DesignProblem::create(std::move(read->design));
     if (!problem) return console.input_errors(problem.errors());
+    tell_warnings(console, problem->warnings());
     const Design& design = problem->design();
     const VectorX values = description::values_of(design.parameters);
     problem::EvaluateOptions evaluate;

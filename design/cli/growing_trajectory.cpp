@@ -45,14 +45,13 @@ bool GrowingTrajectory::put(const std::string& text) {
 
 // What was there stays until all of it, as far as it is gone on with, is in the new file.
 Errors GrowingTrajectory::begin(const std::string& text) {
-    if (!replaces_) {
-        const Result<std::string> kept = keep_longer_run(file_, 0);
-        if (!kept) return kept.errors();
-    }
-    Errors errors = core::files::write_file_atomically(file_, lines_->header(scene_path_) + text);
+    core::files::FilesTogether files;
+    if (const std::string kept = replaces_ ? "" : name_for_longer_run(file_, 0); !kept.empty()) files.keep_as(file_, kept);
+    Errors errors = files.add(file_, lines_->header(scene_path_) + text);
+    if (errors.empty()) errors = files.take_names();
     if (!errors.empty()) return errors;
-    handle_ = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (handle_ < 0) return {{ErrorCode::file_unreadable, file_.string(), std::generic_category().message(errno)}};
+    handle_ = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
+    if (handle_ < 0) return {{ErrorCode::file_unwritable, file_.string(), std::generic_category().message(errno)}};
     return {};
 }
 

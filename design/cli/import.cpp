@@ -40,13 +40,16 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
     tell_warnings(console, scene->warnings);
     Json files = Json::array();
     std::string told;
+    core::files::FilesTogether together;
+    Errors errors;
     for (const auto& [file, contents] : scene->files) {
         const fs::path path = fs::path(arguments.to).parent_path() / file;
-        const Errors errors = core::files::write_file_atomically(path, contents);
-        if (!errors.empty()) return console.input_errors(errors);
+        if (errors.empty()) errors = together.add(path, contents);
         files.push_back(path.string());
         told += path.string() + "\n";
     }
+    if (errors.empty()) errors = together.take_names();
+    if (!errors.empty()) return console.input_errors(errors);
     console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", scene->warnings}}, told);
     return exit_done;
 }

@@ -10,6 +10,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -24,18 +25,14 @@ namespace fettle::design::cli {
 
 namespace {
 
-constexpr const char* read_here =
-    "scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf";
+std::string read_here() {
+    return "scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are " + core::mesh_files::mesh_extensions();
+}
 
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
     return extension;
-}
-
-bool is_mesh_extension(const std::string& extension) {
-    const auto meshes = {".stl", ".obj", ".off", ".ply", ".3mf"};
-    return std::find(meshes.begin(), meshes.end(), extension) != meshes.end();
 }
 
 /// A file that is no JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
@@ -49,10 +46,10 @@ bool is_foreign(const std::string& path) {
 
 Errors foreign_error(const std::string& path) {
     const std::string extension = extension_of(path);
-    const std::string what = is_mesh_extension(extension)
+    const std::string what = core::mesh_files::has_mesh_extension(path)
                                  ? "is a mesh, not a scene or design; write a scene that names it, or ask fettle validate"
                                  : "a file of kind `" + extension + "` is not read";
-    return {{ErrorCode::unsupported, path, what + "; " + read_here}};
+    return {{ErrorCode::unsupported, path, what + "; " + read_here()}};
 }
 
 /// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
@@ -116,7 +113,7 @@ reading::Programs programs_of(const CommonOptions& common) {
 }
 
 FileKind file_kind(const std::string& path) {
-    if (is_mesh_extension(extension_of(path))) return FileKind::mesh;
+    if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
     if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
     if (core::certificate::is_certificate_file(path) || core::certificate::is_range_certificate_file(path)) return FileKind::certificate;
     return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;

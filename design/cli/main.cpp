@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,13 +29,12 @@ bool asks_for_json(int argc, char** argv) {
 }
 
 // "fettle optmise x": says what was probably meant.
-std::string usage_message(const std::string& fault, const std::vector<Command>& commands, int argc, char** argv) {
-    const std::string otherwise = fault + "; see fettle --help";
-    const std::string word = argc > 1 ? argv[1] : "";
-    if (word.empty() || word[0] == '-') return otherwise;
-    std::vector<std::string_view> known{"optimize"};
+std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands, int argc, char** argv) {
+    const std::string help = parsed.command.empty() ? "fettle --help" : "fettle " + parsed.command + " --help";
+    const std::string otherwise = parsed.message + "; see " + help, word = argc > 1 ? argv[1] : "";
+    if (!parsed.command.empty() || word.empty() || word[0] == '-') return otherwise;
+    std::vector<std::string_view> known;
     for (const Command& command : commands) known.push_back(command.line.name());
-    if (std::find(known.begin(), known.end(), word) != known.end()) return otherwise;
     return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
 }
 
@@ -68,6 +68,37 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 
+void add_check_options(CommandLine program, CheckFiles& files) {
+    program.option("--junit", files.junit, "Write what was found as JUnit XML too, for the tests of a CI; undecided is a failure");
+    program.option("--sarif", files.sarif, "Write what was found as SARIF 2.1.0 too, for code scanning");
+    program.option("--markdown", files.markdown, "Write what was found as a table in Markdown too (of GitHub's job summary: added to it)");
+    program.flag("--annotations", files.annotations, "Tell what was found on stderr as GitHub Actions shows it beside the files");
+}
+
+// What was found, where it is wanted. Of a command that tells nothing of its own its end is told. @return the exit code
+int leave_check_files(const CheckFiles& files, const std::string& command, int exit_code, Console& console) {
+    if (!files.wanted()) return exit_code;
+    const CheckOutcome outcomes[] = {CheckOutcome::passed, CheckOutcome::failed, CheckOutcome::undecided};
+    const CheckOutcome verdict = exit_code <= exit_undecided ? outcomes[exit_code] : CheckOutcome::fault;
+    if (console.checks().empty()) console.found({command, verdict, command, "ended with exit code " + std::to_string(exit_code), ""});
+    const Errors errors = write_check_files(files, {command, exit_code, verdict, console.checks()});
+    if (errors.empty()) return exit_code;
+    console.input_errors(errors);
+    return exit_code == exit_done ? static_cast<int>(exit_bad_input) : exit_code;
+}
+
+int run_command(const Command& command, Console& console) {
+    try {
+        return console.exit_code(command.run(console));
+    } catch (const core::base::MissingLibrary& missing) {
+        return console.input_errors({{ErrorCode::file_not_found, "libraries", missing.what()}});
+    } catch (const std::bad_alloc&) {
+        return console.out_of_memory();
+    } catch (const std::exception& error) {
+        return console.internal_error(error.what());
+    }
+}
+
 // By what people want to do.
 std::vector<Command> add_commands(CommandLine& program, const CommonOptions& common) {
     std::vector<Command> all;
@@ -93,33 +124,34 @@ int run(int argc, char** argv) {
     CommonOptions common;
     common.command = typed(argc, argv);
     add_common_options(program, common);
+    add_check_options(program, common.check_files);
     const std::vector<Command> commands = add_commands(program, common);
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
         "Exit codes: 0 done, requirements certified; 1 a requirement is violated; 2 undecided or not converged;\n"
-        "            3 bad input or usage; 4 a fault of this program");
+        "            3 bad input or usage, or output that cannot be written; 4 a fault of this program");
     const ParseOutcome parsed = line.parse(argc, argv);
     if (!parsed.run) {
-        if (parsed.message.empty()) return parsed.exit_code;  // --help, --version
         Console console({asks_for_json(argc, argv), false, {}});
-        return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed.message, commands, argc, argv)}});
+        if (parsed.exit_code == 0) {  // --help, --version
+            console.print(parsed.message);
+            return console.exit_code(exit_done);
+        }
+        return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands, argc, argv)}});
     }
     if (!common.log.empty()) {
         const Errors errors = try_output_file(common.log);
         if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
     }
+    if (const Errors errors = prepare_check_files(common.check_files); !errors.empty())
+        return Console({common.json, false, {}}).input_errors(errors);
     Console console({common.json, common.quiet, common.log});
-    try {
-        std::optional<core::base::ThreadLimit> limit;
-        if (common.threads > 0) limit.emplace(common.threads);
-        catch_interrupts();
-        for (const Command& command : commands) {
-            if (command.line.is_chosen()) return command.run(console);
-        }
-    } catch (const core::base::MissingLibrary& missing) {
-        return console.input_errors({{ErrorCode::file_not_found, "libraries", missing.what()}});
-    } catch (const std::exception& error) {
-        return console.internal_error(error.what());
+    std::optional<core::base::ThreadLimit> limit;
+    if (common.threads > 0) limit.emplace(common.threads);
+    catch_interrupts();
+    for (const Command& command : commands) {
+        if (!command.line.is_chosen()) continue;
+        return leave_check_files(common.check_files, command.line.name(), run_command(command, console), console);
     }
     return console.internal_error("no command ran");
 }
@@ -127,9 +159,13 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    expect_failed_writes();
     keep_freed_memory();
+    expect_out_of_memory(asks_for_json(argc, argv));
     try {
         return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        end_out_of_memory();
     } catch (const std::exception& error) {
         std::fprintf(stderr, "fettle: internal error: %s\n", error.what());
         return exit_internal;

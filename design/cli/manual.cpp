@@ -86,12 +86,15 @@ Command add_manual(CommandLine& program) {
                 for (const CommandFacts& command : facts.commands)
                     pages.emplace_back("fettle-" + command.name + ".1", command_page(command));
                 std::vector<std::string> written;
+                core::files::FilesTogether files;
+                Errors errors;
                 for (const auto& [name, text] : pages) {
                     const std::filesystem::path path = std::filesystem::path(*folder) / name;
-                    const Errors errors = core::files::write_file_atomically(path, text);
-                    if (!errors.empty()) return console.input_errors(errors);
+                    if (errors.empty()) errors = files.add(path, text);
                     written.push_back(path.string());
                 }
+                if (errors.empty()) errors = files.take_names();
+                if (!errors.empty()) return console.input_errors(errors);
                 console.result({{"status", "ok"}, {"files", written}}, std::to_string(written.size()) + " pages in " + *folder + "\n");
                 return static_cast<int>(exit_done);
             }};

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -40,11 +41,6 @@ std::vector<std::string> folders_left_out(const fs::path& folder) {
     return folders;
 }
 
-bool is_3mf(const std::string& path) {
-    const std::string extension = fs::path(path).extension().string();
-    return extension == ".3mf" || extension == ".3MF";
-}
-
 Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& paths, std::vector<std::string>& warnings) {
     std::vector<std::string> files;
     Errors errors;
@@ -55,8 +51,8 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
             files.insert(files.end(), found.begin(), found.end());
             if (found.empty())
                 errors.push_back({ErrorCode::file_not_found, path,
-                                  "this folder has no mesh (.stl, .obj, .off, .ply, .3mf) and no trajectory.json; folders below it are not "
-                                  "looked into"});
+                                  "this folder has no mesh (" + core::mesh_files::mesh_extensions() +
+                                      ") and no trajectory.json; folders below it are not looked into"});
             for (const std::string& below : folders_left_out(path))
                 warnings.push_back(below + ": the meshes in this folder are left out; name it too if they belong together");
         } else if (file_kind(path) == FileKind::mesh) {
@@ -65,24 +61,30 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
             errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
         }
     }
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const bool again = std::any_of(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(i), [&](const std::string& other) {
+            std::error_code ignored;
+            return fs::equivalent(other, files[i], ignored);
+        });
+        if (again) errors.push_back({ErrorCode::inconsistent, files[i], "is named twice, and would be judged against itself"});
+    }
     if (!errors.empty()) return errors;
     return files;
 }
 
 /// What lists of pairs can name, and no other body has.
-std::string body_name(std::string name, std::set<std::string>& taken) {
+std::string body_name(const std::string& of_file, core::files::UniqueNames& names) {
+    std::string name = core::base::shown_on_one_line(of_file);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == ':' || c == ',' || c == '*'; }, '_');
     if (name.empty()) name = "part";
-    std::string unique = name;
-    for (int count = 2; !taken.insert(unique).second; ++count) unique = name + " " + std::to_string(count);
-    return unique;
+    return names.unique(name);
 }
 
-core::scene::Body body_of(Mesh mesh, const std::string& path, const CommonOptions& common, std::set<std::string>& taken,
+core::scene::Body body_of(Mesh mesh, const std::string& path, const CommonOptions& common, core::files::UniqueNames& names,
                           std::vector<std::string>& warnings) {
     core::scene::Body body;
-    body.name = body_name(mesh.name, taken);
+    body.name = body_name(mesh.name, names);
     body.where = path;
     body.type = core::scene::BodyType::static_body;
     body.density_given = false;
@@ -124,16 +126,16 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
         scene.length_unit = *metres;
     }
     subject.files = *files;
-    std::set<std::string> taken;
+    core::files::UniqueNames names(" ");
     for (const std::string& path : *files) {
-        if (unit.empty() && !is_3mf(path)) {
+        if (unit.empty() && !core::mesh_files::states_its_unit(path)) {
             errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
             continue;
         }
         Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true});
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
-        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, common, taken, subject.warnings));
+        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, common, names, subject.warnings));
     }
     if (!errors.empty()) return errors;
     core::model::BuildOptions options;

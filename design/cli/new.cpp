@@ -62,12 +62,14 @@ int run_new(const NewArguments& options, Console& console) {
     }
     if (!errors.empty()) return console.input_errors(errors);
     std::vector<std::string> written;
+    core::files::FilesTogether files;
     for (const auto& [name, text] : found->files) {
         const fs::path path = (fs::path(options.folder) / name).lexically_normal();
-        errors = core::files::write_file_atomically(path, text);
-        if (!errors.empty()) return console.input_errors(errors);
+        if (errors.empty()) errors = files.add(path, text);
         written.push_back(path.string());
     }
+    if (errors.empty()) errors = files.take_names();
+    if (!errors.empty()) return console.input_errors(errors);
     std::string text;
     for (const std::string& path : written) text += path + "\n";
     console.result({{"status", "ok"}, {"files", written}}, text + next_commands(written));

@@ -61,7 +61,16 @@ struct Run {
 // One run, told. @param rows  the runs from all starts, of which this one is the best, replayed; empty: there is no other.
 int run_one(const Run& run, const std::vector<StartResult>& rows) {
     Console& console = run.console;
-    const studies::RunFolder folder{run.facts.out, run.options.resume || !rows.empty()};
+    Json json;
+    studies::RunFolder folder{run.facts.out, run.options.resume || !rows.empty()};
+    folder.add_files = [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
+        json = answers::outcome_json(run.problem, outcome, run.facts);
+        if (!rows.empty()) json["starts"] = starts_json(rows);
+        answers::replace_motion(files, folder.directory);
+        const core::stepper::Trajectory& trajectory = outcome.final.simulation.trajectory;
+        Errors errors = outcome.final.usable ? answers::add_animation(files, folder.directory, *outcome.final.model, trajectory) : Errors{};
+        return errors.empty() ? answers::add_result(files, folder.directory, json, run.common.command) : errors;
+    };
     studies::OptimiseOptions optimise;
     optimise.optimiser = run.options.optimiser;
     optimise.seed = run.facts.seed;
@@ -73,23 +82,19 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
     if (!done) return console.input_errors(done.errors());
     const OptimiseOutcome& outcome = done->outcome;
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
-    answers::forget_motion(folder.directory);
-    if (outcome.final.usable) {
-        const Errors unwritten = answers::write_animation(folder.directory, *outcome.final.model, outcome.final.simulation.trajectory);
-        if (!unwritten.empty()) return console.input_errors(unwritten);
-    }
-    Json json = answers::outcome_json(run.problem, outcome, run.facts);
+    console.unwritten(done->unwritten);
+    if (json.is_null()) json = answers::outcome_json(run.problem, outcome, run.facts);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
+    if (outcome.report.best.usable && done->unwritten.empty()) told += written_text(run.facts);
     if (!rows.empty()) {
         json["starts"] = starts_json(rows);
         told = "best of " + std::to_string(rows.size()) + " starts, seed " + std::to_string(run.facts.seed) + ":\n" + told +
                "all starts:\n" + starts_text(rows);
     }
-    const Errors errors = answers::write_result(folder.directory, json, run.common.command);
-    if (!errors.empty()) return console.input_errors(errors);
-    if (!run.options.no_report) leave_report(folder.directory, run.common, console, json, told);
+    if (!run.options.no_report && done->unwritten.empty()) leave_report(folder.directory, run.common, console, json, told);
     if (outcome.report.status == OptimiserStatus::interrupted)
         told += "go on where it stopped: " + resume_command(run.options, folder.directory) + "\n";
+    for (Check& check : outcome_checks(run.problem.design(), outcome, run.options.path)) console.found(std::move(check));
     console.result(json, told);
     return exit_code(outcome.report.status);
 }
@@ -103,9 +108,18 @@ int tell_interrupted(const Run& run, const std::vector<StartResult>& rows) {
     json["out"] = run.facts.out;
     std::string told = run.console.coloured("interrupted", false) + ": not all starts have been run\n" + starts_text(rows);
     if (best) told += "the best so far is in " + rows[*best].out + "\n";
+    run.console.found(
+        {"no better design is near", CheckOutcome::undecided, "interrupted", "not all starts have been run", run.options.path});
     told += "go on where it stopped: " + resume_command(run.options, run.facts.out) + "\n";
     run.console.result(json, told);
     return exit_undecided;
+}
+
+// Not one run got as far as a result: they all say why.
+int tell_failed(const Run& run, const std::vector<StartResult>& rows, const StartResult& first) {
+    Json json{{"status", first.status}, {"message", first.message}, {"starts", starts_json(rows)}, {"out", run.facts.out}};
+    run.console.result(json, run.console.coloured(first.status, false) + ": no run left a result\n" + starts_text(rows));
+    return first.exit_code == exit_internal ? exit_internal : exit_bad_input;
 }
 
 // The best run's history becomes the folder's; one of other runs that is there is kept under another name.
@@ -130,6 +144,7 @@ int run_all(Run run) {
     const std::vector<StartResult> rows = run_starts(request, run.common, run.console);
     if (interrupted()) return tell_interrupted(run, rows);
     const size_t best = best_start(rows).value_or(0);
+    if (!rows[best].result.is_object()) return tell_failed(run, rows, rows[best]);
     run.facts.seed = rows[best].seed;
     const Errors errors = adopt_history(run.facts.out, rows[best].out, run.console);
     if (!errors.empty()) return run.console.input_errors(errors);
@@ -142,8 +157,9 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     tell_warnings(console, file->warnings);
     const Result<DesignProblem> problem = DesignProblem::create(file->design);
     if (!problem) return console.input_errors(problem.errors());
+    tell_warnings(console, problem->warnings());
     const std::string out = output_folder(options, *file);
-    const Errors errors = try_output_folder(out);
+    const Errors errors = try_run_folder(out);
     if (!errors.empty()) return console.input_errors(errors);
     const Run run{options, *file, *problem, common, console, {out, 0, options.repair}};
     if (options.starts > 0) return run_all(run);

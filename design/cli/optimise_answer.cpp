@@ -5,7 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::cli {
 
@@ -16,40 +18,94 @@ using optimisers::OptimiserStatus;
 using studies::OptimiseOutcome;
 
 // Where the two tell different things, by more than a ten thousandth.
-std::string by_models_text(const Design& design, const OptimiseOutcome& outcome) {
+std::string by_models_text(const Design& design, const OptimiseOutcome& outcome, const Console& console) {
+    if (!outcome.play_taken_up.usable) return {};
     std::string text;
-    for (size_t i = 0; outcome.play_taken_up.usable && i < outcome.final.constraints.size(); ++i) {
-        const double unit = design.constraints[i].bounds.unit, own = outcome.final.constraints[i].value / unit;
-        const double other = outcome.play_taken_up.constraints[i].value / unit;
+    for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
+        const auto& [name, bounds, quantity] = design.constraints[i];
+        const double own = outcome.final.constraints[i].value, other = outcome.play_taken_up.constraints[i].value;
         if (std::abs(own - other) <= 1e-4 * std::abs(own)) continue;
-        text += formatted("  %-40s %.7g as written, %.7g with the play taken up\n", design.constraints[i].name.c_str(), own, other);
+        const std::string unit = description::unit_name(design.constraints[i]);
+        const bool doubtful = std::count(outcome.in_doubt.begin(), outcome.in_doubt.end(), i) > 0;
+        text += formatted("  %-40s %s, as written %s", name.c_str(), description::amount_text(other, bounds.unit, unit).c_str(),
+                          description::amount_text(own, bounds.unit, unit).c_str());
+        if (doubtful) text += ", required " + description::required_text(bounds, unit) + ": " + console.coloured("NOT MET", false);
+        text += "\n";
     }
-    if (!text.empty()) text = "where the motion within the play matters (play taken up: " + outcome.play_taken_up_by + "):\n" + text;
-    return text;
+    if (text.empty()) return {};
+    return "with the play of the fits taken up (" + outcome.play_taken_up_by + ": parts stay in the middle of their fits):\n" + text;
+}
+
+// A tuned mechanism whose requirements hang on how its parts lie in their fits.
+std::string play_advice(const OptimiseOutcome& outcome) {
+    if (outcome.in_doubt.empty()) return {};
+    return "a real mechanism may do either, depending on where its parts lie in their fits. What to do: put into the scene what decides\n"
+           "that (gravity, friction, a spring or load that presses the parts to one side) and tune again; or make the fits tighter; or\n"
+           "allow for both numbers in what is required\n";
+}
+
+std::string share_text(double gain, double objective) {
+    return objective == 0 ? "" : formatted(" (%.2g%% of it)", 100 * gain / std::abs(objective));
 }
 
 // What each requirement that holds costs, the dearest first; what could still move; what is too rough to tell.
-std::string verdict_text(const Design& design, const optimisers::Optimality& o, const std::string& minimised) {
+std::string verdict_text(const Design& design, const optimisers::Optimality& o, const std::string& minimised, double objective) {
     std::string text;
     const std::vector<answers::Cost> costs = answers::costs_of(design, o);
-    if (!costs.empty()) text += "what the requirements cost, in " + minimised + ", per hundredth of their unit:\n";
+    if (!costs.empty()) text += "what the requirements cost:\n";
     for (const answers::Cost& cost : costs) {
         const double worth = 0.01 * std::abs(cost.per_unit);
-        text += formatted("  %s: 0.01 %s is worth %.3g\n", cost.requirement.c_str(), cost.per_unit > 0 ? "less" : "more", worth);
+        const std::string unit = description::unit_name(design.constraints[cost.constraint]);
+        text += formatted("  %s: with %s required, %s could be lower by %.3g%s\n", cost.requirement.c_str(),
+                          (description::amount_text(0.01, 1, unit) + (cost.per_unit > 0 ? " less" : " more")).c_str(), minimised.c_str(),
+                          worth, share_text(worth, objective).c_str());
     }
     for (const int k : o.improvable) {
         const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
         text += formatted("could still move: %s by %.4g %s\n", p.name.c_str(), description::from_si(o.step[k], p.unit),
                           std::string(p.unit.name).c_str());
     }
-    if (!o.improvable.empty()) text += formatted("predicted gain %.3g, %.3g counts\n", o.predicted_gain, o.worth);
+    if (!o.improvable.empty())
+        text += formatted("that promises to lower %s by %.3g%s; the tolerance is %.3g\n", minimised.c_str(), o.predicted_gain,
+                          share_text(o.predicted_gain, objective).c_str(), o.worth);
     if (!o.refused.empty()) text += "but designs there cannot be evaluated: " + o.refused + "\n";
     if (o.roughest >= 0) {
-        text += formatted("too rough to tell an optimum: noise of %.3g in the objective, most of it by %s, %.3g counts; ",
-                          o.noise_in_objective, answers::roughest_name(design, o).c_str(), o.worth);
-        text += "wider contact (dhat) or damping would help\n";
+        text += formatted(
+            "whether this is the best cannot be told: simulated values scatter by up to %.3g in %s (the tolerance is %.3g), "
+            "most of it by %s; ",
+            o.noise_in_objective, minimised.c_str(), o.worth, answers::roughest_name(design, o).c_str());
+        text += "a wider contact distance (`contact.dhat`) or damping makes the motion smoother\n";
     }
     return text;
+}
+
+// What the objective is made of.
+std::string terms_text(const Design& design, const OptimiseOutcome& outcome) {
+    std::string text;
+    for (size_t k = 0; k < outcome.final.terms.size(); ++k) {
+        const description::ObjectiveTerm& term = design.objective[k];
+        const double value = outcome.final.terms[k].value;
+        const std::string unit = core::base::unit_name(term.quantity->dimension(), term.unit);
+        text += formatted("  %-40s %s, counts %.6g\n", term.name.c_str(), description::amount_text(value, term.unit, unit).c_str(),
+                          term.weight * value / term.unit);
+    }
+    return text;
+}
+
+const char* held_text(optimisers::Held held) {
+    switch (held) {
+        case optimisers::Held::stationary:
+            return "the objective, which is least here";
+        case optimisers::Held::lower_bound:
+            return "its lower bound";
+        case optimisers::Held::upper_bound:
+            return "its upper bound";
+        case optimisers::Held::constraints:
+            return "requirements";
+        case optimisers::Held::free:
+            return "nothing";
+    }
+    return "unknown";
 }
 
 // Of --repair.
@@ -71,10 +127,16 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     const bool good = report.status == OptimiserStatus::optimal;
     std::string text = console.coloured(optimisers::to_string(report.status), good) + ": " + report.message + "\n";
     if (!report.best.usable) return text;
-    text += formatted("objective %.8g, ", answers::objective_json(outcome, run).get<double>());
+    if (!outcome.in_doubt.empty())
+        text += console.coloured("in doubt", false) + ": this holds for the motion as simulated; with the play of the fits taken up " +
+                core::base::counted(outcome.in_doubt.size(), "requirement") + (outcome.in_doubt.size() == 1 ? " is" : " are") +
+                " not met (below)\n";
+    const double objective = answers::objective_json(outcome, run).get<double>();
+    text += formatted("objective %.8g, ", objective);
     text +=
         outcome.objective_start ? formatted("from %.8g at the start; ", *outcome.objective_start) : "the start could not be evaluated; ";
-    text += formatted("%d evaluations (%d failed), %d iterations\n", report.evaluations, report.failures, report.iterations);
+    text += core::base::counted(static_cast<size_t>(report.evaluations), "evaluation") + formatted(" (%d failed), ", report.failures) +
+            core::base::counted(static_cast<size_t>(report.iterations), "iteration") + "\n" + terms_text(design, outcome);
     if (run.repair && report.feasible) text += changes_text(design, report);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
@@ -82,21 +144,62 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         text += formatted("  %-24s %12.7g -> %12.7g %s%s%s\n", p.name.c_str(),
                           description::from_si(outcome.start[static_cast<Eigen::Index>(k)], p.unit),
                           description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), std::string(p.unit.name).c_str(),
-                          told ? ", held by: " : "", told ? optimisers::to_string(report.optimality.held[k]) : "");
+                          told ? ", held by " : "", told ? held_text(report.optimality.held[k]) : "");
     }
     for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = outcome.final.constraints[i];
+        const std::string unit = description::unit_name(design.constraints[i]);
         const bool met = description::violation(bounds, measured) <= 0;
-        text += formatted("  %-40s proven [%.7g, %.7g], required [%g, %g]: ", name.c_str(), measured.lower / bounds.unit,
-                          measured.upper / bounds.unit, bounds.lower / bounds.unit, bounds.upper / bounds.unit) +
+        text += formatted("  %-40s proven %s, required %s: ", name.c_str(), description::proven_text(measured, bounds, unit).c_str(),
+                          description::required_text(bounds, unit).c_str()) +
                 console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
     text += relations_text(design, outcome.final.relations, console);
-    text += by_models_text(design, outcome);
-    text += verdict_text(design, report.optimality, run.repair ? "the squared change" : "the objective");
+    text += by_models_text(design, outcome, console) + play_advice(outcome);
+    text += run.repair ? verdict_text(design, report.optimality, "the squared change", report.best.objective)
+                       : verdict_text(design, report.optimality, "the objective", objective);
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
-    return text + "written to " + run.out + ": design.final.json, trajectory.json, motion.glb, history.jsonl, result.json\n";
+    return text;
+}
+
+std::string written_text(const answers::RunFacts& run) {
+    return "written to " + run.out + ": design.final.json, trajectory.json, motion.glb, history.jsonl, result.json\n";
+}
+
+std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& outcome, const std::string& file) {
+    std::vector<Check> checks;
+    for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
+        const auto& [name, bounds, quantity] = design.constraints[i];
+        const description::Measurement& measured = outcome.final.constraints[i];
+        const std::string unit = description::unit_name(design.constraints[i]);
+        const bool met = description::violation(bounds, measured) <= 0;
+        const bool doubtful = met && std::count(outcome.in_doubt.begin(), outcome.in_doubt.end(), i) > 0;
+        Check check{name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated", "", file};
+        check.message =
+            "proven " + description::proven_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
+        if (!measured.fault.empty()) check.message += "; " + measured.fault;
+        if (doubtful) {
+            check.outcome = CheckOutcome::remarked;
+            check.rule = "in doubt";
+            check.message += "; with the play of the fits taken up it is " +
+                             description::amount_text(outcome.play_taken_up.constraints[i].value, bounds.unit, unit) + ", which is not";
+        }
+        checks.push_back(std::move(check));
+    }
+    for (Eigen::Index i = 0; i < outcome.final.relations.values.size(); ++i) {
+        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const bool met = description::violation(relation, outcome.final.relations.values[i]) <= 0;
+        checks.push_back({relation.name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated",
+                          "is " + description::amount_text(outcome.final.relations.values[i], relation.bounds.unit, "") + ", required " +
+                              description::required_text(relation.bounds, ""),
+                          file});
+    }
+    const OptimiserStatus status = outcome.report.status;
+    if (status == OptimiserStatus::infeasible) return checks;  // the requirements have failed
+    checks.push_back({"no better design is near", status == OptimiserStatus::optimal ? CheckOutcome::passed : CheckOutcome::undecided,
+                      optimisers::to_string(status), outcome.report.message, file});
+    return checks;
 }
 
 int exit_code(OptimiserStatus status) {

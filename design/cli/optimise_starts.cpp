@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_text.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/child_process.hpp"
 
@@ -38,11 +39,21 @@ std::string last_line(const std::string& text) {
     return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
+// Does it have what is told of it?
+bool is_whole(const Json& result) {
+    const auto has = [&](const char* key, const auto& is) { return result.contains(key) && is(result[key]); };
+    const auto text = [](const Json& value) { return value.is_string(); };
+    const auto texts = [&](const Json& value) { return value.is_array() && std::all_of(value.begin(), value.end(), text); };
+    return result.is_object() && has("status", text) && has("message", text) && has("limited_by", texts) &&
+           has("evaluations", [](const Json& value) { return value.is_number_integer(); });
+}
+
 void read_result(StartResult& start, int exit_code) {
+    start.exit_code = exit_code;
     const std::filesystem::path folder = start.out;
     const Result<std::string> text = core::files::read_file(folder / "result.json");
-    if (text) start.result = Json::parse(*text, nullptr, false);
-    if (start.result.is_object() && start.result.contains("status")) {
+    if (text && core::files::is_safe_json_text(*text)) start.result = Json::parse(*text, nullptr, false);
+    if (is_whole(start.result)) {
         start.status = start.result["status"].get<std::string>();
         start.message = start.result["message"].get<std::string>();
         return;
@@ -69,7 +80,8 @@ std::string joined_names(const Json& list) {
 std::string line_of(const StartResult& start) {
     std::string text = formatted("seed %-8llu %-12s", static_cast<unsigned long long>(start.seed), start.status.c_str());
     if (!start.result.is_object()) return text + " " + start.message;
-    text += formatted(" objective %-12.8g %3d evaluations", number(start.result, "objective"), start.result["evaluations"].get<int>());
+    text += formatted(" objective %-12.8g %3d %s", number(start.result, "objective"), start.result["evaluations"].get<int>(),
+                      start.result["evaluations"] == 1 ? "evaluation" : "evaluations");
     const double violation = number(start.result, "constraint_violation");
     if (violation > 0) return text + formatted(", largest violation %.3g", violation);
     const std::string limits = joined_names(start.result["limited_by"]);
@@ -104,7 +116,7 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
     std::vector<StartResult> starts;
     for (const std::uint64_t seed : request.seeds) {
         const std::string folder = (std::filesystem::path(request.out) / ("start-" + std::to_string(seed))).string();
-        starts.push_back({seed, folder, "not run", "", Json()});
+        starts.push_back({seed, folder, "not run", "", Json(), 0});
     }
     const int cores = core::base::thread_count(), at_once = std::min<int>(cores, static_cast<int>(starts.size()));
     std::vector<Running> running;
@@ -117,8 +129,14 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
         }
         for (; next < starts.size() && static_cast<int>(running.size()) < at_once; ++next) {
             const std::filesystem::path folder = starts[next].out;
-            std::filesystem::create_directories(folder);
-            std::filesystem::remove(folder / "result.json");  // of an earlier run: it would pass for this one's
+            std::error_code fault;
+            std::filesystem::create_directories(folder, fault);
+            if (!fault) std::filesystem::remove(folder / "result.json", fault);  // of an earlier run: it would pass for this one's
+            if (fault) {
+                starts[next] = {starts[next].seed, folder.string(), "failed", "its folder cannot be written: " + fault.message(), Json(),
+                                exit_bad_input};
+                continue;
+            }
             running.push_back(
                 {next, ChildProcess::start(arguments_of(request, starts[next], common, cores / at_once), folder / "log.txt")});
         }

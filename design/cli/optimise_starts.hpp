@@ -25,9 +25,11 @@ struct StartResult {
     std::string status;             ///< of the optimiser; "failed" where the run left no result, "not run" where it never began
     std::string message;            ///< why it failed: the last line of its log
     nlohmann::ordered_json result;  ///< result.json; null if there is none
+    int exit_code = 0;
 };
 
-/// Runs them all, or, once interrupted, as far as they have come. Throws std::runtime_error if no process can be started.
+/// Runs them all, or, once interrupted, as far as they have come. One whose folder cannot be made is failed; throws std::runtime_error if
+/// no process can be started.
 std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOptions& common, Console& console);
 
 /// The best one: of those that meet all requirements the one with the least objective (with --repair: the least change), else the one

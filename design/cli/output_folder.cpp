@@ -7,6 +7,7 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 
 namespace fettle::design::cli {
 
@@ -35,22 +36,24 @@ Errors try_output_folder(const fs::path& folder) {
     return errors;
 }
 
+Errors try_run_folder(const fs::path& folder) {
+    Errors errors = answers::others_files(folder);
+    return errors.empty() ? try_output_folder(folder) : errors;
+}
+
 Errors try_output_file(const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unreadable, file.string(), "is a folder, a file is wanted"}};
+    if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unwritable, file.string(), "is a folder, a file is wanted"}};
     return try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 
-Result<std::string> keep_longer_run(const fs::path& file, std::size_t steps) {
-    if (!core::records::is_trajectory_file(file) || stored_steps(file) <= steps) return std::string();
+std::string name_for_longer_run(const fs::path& file, std::size_t steps) {
+    if (!core::records::is_trajectory_file(file) || stored_steps(file) <= steps) return {};
     for (int n = 1;; ++n) {
         fs::path kept = file;
         kept.replace_extension(std::to_string(n) + file.extension().string());
-        std::error_code code;
-        if (fs::exists(kept, code)) continue;
-        fs::rename(file, kept, code);
-        if (code) return Error{ErrorCode::file_unreadable, kept.string(), "an earlier, longer run cannot be kept: " + code.message()};
-        return kept.string();
+        std::error_code ignored;
+        if (!fs::exists(fs::symlink_status(kept, ignored))) return kept.string();
     }
 }
 

@@ -12,14 +12,17 @@
 namespace fettle::design::cli {
 
 /// Can files be made in `folder`? It is made if it is not there; a file is written in it and taken away again.
-/// Errors: file_unreadable, with the reason. Call it when the input has been read, before minutes of work.
+/// Errors: file_unwritable, with the reason. Call it when the input has been read, before minutes of work.
 [[nodiscard]] Errors try_output_folder(const std::filesystem::path& folder);
+
+/// The same of a folder for the results of a run, in which nothing of another program may be replaced (answers/run_folder.hpp).
+[[nodiscard]] Errors try_run_folder(const std::filesystem::path& folder);
 
 /// The same of the folder of a file that is to be written; a folder in the file's place is a fault too.
 [[nodiscard]] Errors try_output_file(const std::filesystem::path& file);
 
-/// If `file` is a trajectory of more than `steps` steps it is renamed: trajectory.json -> the first of trajectory.1.json,
-/// trajectory.2.json, ... that is free. @return the new path, empty if nothing was done.
-Result<std::string> keep_longer_run(const std::filesystem::path& file, std::size_t steps);
+/// If `file` is a trajectory of more than `steps` steps: the name to keep it under when it is replaced, the first of trajectory.1.json,
+/// trajectory.2.json, ... that is free. Else empty.
+std::string name_for_longer_run(const std::filesystem::path& file, std::size_t steps);
 
 }  // namespace fettle::design::cli

@@ -7,8 +7,11 @@
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
@@ -35,8 +38,11 @@ std::string open_pair(const core::model::Model& model, const PairClearance& pair
     const auto name = [&](int body) { return "\"" + model.bodies[static_cast<size_t>(body)].name + "\""; };
     const std::string who = name(pair.a) + " and " + name(pair.b);
     if (pair.intersecting) return who + " pass through each other";
-    return formatted("%s are proven only to stay %.3g m apart or more (%.3g m was found), which must be more than dmin, %.3g m",
-                     who.c_str(), pair.lower, pair.upper, model.dmin);
+    if (pair.lower > model.dmin) return "of " + who + ": " + core::clearance::why_not_apart(pair.solids);
+    const RoundedLengths lengths(answers::unit_name(model.length_unit));
+    return who + " are proven only to stay " + lengths.fixed(pair.lower, Towards::down) + " " + lengths.unit() + " apart or more (" +
+           lengths.fixed(pair.upper, Towards::up) + " " + lengths.unit() + " was found), which must be more than " +
+           (model.dmin > 0 ? "`dmin`, " + core::base::length_text(model.dmin, model.length_unit) : std::string("nothing"));
 }
 
 // What a round of searches comes to.
@@ -45,7 +51,7 @@ struct Judgement {
     double settled = infinity;                  // lower bound of what is proven to stay farther apart than dmin
     std::vector<PairRequest> open;              // not proven to stay farther apart than dmin; each pair once
     std::string reason;                         // of the first of them
-    bool refuted = false;                       // one of them comes as near as dmin, or crosses
+    bool is_final = false;                      // one of them comes as near as dmin, crosses, or may lie in the other: no search tells more
     bool whole = true;                          // no search was cut short
 };
 
@@ -56,12 +62,12 @@ Judgement judge(const core::model::Model& model, const std::vector<PairClearance
         judged.whole = judged.whole && pair.complete;
         judged.lower = std::min(judged.lower, pair.lower);
         judged.upper = std::min(judged.upper, pair.upper);
-        if (pair.lower > model.dmin) {
+        if (pair.lower > model.dmin && core::certificate::are_apart(pair.solids)) {
             judged.settled = std::min(judged.settled, pair.lower);
             continue;
         }
         if (judged.reason.empty()) judged.reason = open_pair(model, pair);
-        judged.refuted = judged.refuted || pair.intersecting || !(pair.upper > model.dmin);
+        judged.is_final = judged.is_final || pair.intersecting || !(pair.upper > model.dmin) || pair.lower > model.dmin;
         const auto same = [&](const PairRequest& other) { return other.a == pair.a && other.b == pair.b; };
         if (judged.open.empty() || !same(judged.open.back())) judged.open.push_back({pair.a, pair.b, 0});
     }
@@ -188,7 +194,7 @@ PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
         if (judged.reason.empty()) judged.reason = other.reason;
         judged.lower = std::min(judged.lower, other.lower);
         judged.settled = std::min(judged.settled, other.settled);
-        judged.refuted = judged.refuted || other.refuted;
+        judged.is_final = judged.is_final || other.is_final;
         judged.open.insert(judged.open.end(), other.open.begin(), other.open.end());
         tolerance = std::min(tolerance, share * stretch.reach);
     }
@@ -197,7 +203,7 @@ PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
     judged.open.erase(
         std::unique(judged.open.begin(), judged.open.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) == key(y); }),
         judged.open.end());
-    for (int round = 1; !judged.refuted && round < most_rounds; ++round) {
+    for (int round = 1; !judged.is_final && round < most_rounds; ++round) {
         tolerance *= 1e-2;
         const auto options = proof_options(tolerance, should_stop_);
         judged = judge(model_, core::clearance::certify_clearance(model_, simulation.trajectory, judged.open, options), judged.settled);

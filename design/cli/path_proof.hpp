@@ -12,7 +12,7 @@
 namespace fettle::design::cli {
 
 enum class ProofState {
-    proven,         ///< every pair that may collide stays farther apart than dmin
+    proven,         ///< every pair that may collide stays farther apart than dmin, and neither lies in the other
     nothing,        ///< no two bodies may collide
     not_certified,  ///< of some pair that could not be proven
     stopped         ///< the proof was stopped before it was whole

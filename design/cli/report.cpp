@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// fettle report DIR: the HTML report of a folder that optimise, simulate or clearance wrote.
+/// fettle report DIR: the HTML report of a folder that optimise, simulate or clearance wrote, or of an exploration's file.
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/session.hpp"
+#include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
 
 namespace fettle::design::cli {
@@ -13,7 +15,7 @@ namespace fettle::design::cli {
 namespace {
 
 struct ReportArguments {
-    std::string folder, out;
+    std::string source, out;
 };
 
 int run_report(const ReportArguments& arguments, const CommonOptions& common, Console& console) {
@@ -26,7 +28,10 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
         const Errors errors = try_output_file(arguments.out);
         if (!errors.empty()) return console.input_errors(errors);
     }
-    const Result<std::string> made = report::write_report(arguments.folder, std::move(options));
+    std::error_code ignored;
+    const Result<std::string> made = std::filesystem::is_regular_file(arguments.source, ignored)
+                                         ? report::write_exploration_report(arguments.source, options)
+                                         : report::write_report(arguments.source, std::move(options));
     if (!made) return console.input_errors(made.errors());
     const bool whole = !interrupted();
     console.result({{"status", whole ? "ok" : "interrupted"}, {"report", *made}}, "report: " + *made + "\n");
@@ -36,11 +41,11 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
 }  // namespace
 
 Command add_report(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("report", "Makes the HTML report of a folder of results");
+    CommandLine app = program.command("report", "Makes the HTML report of a folder of results, or of an exploration");
     auto options = std::make_shared<ReportArguments>();
-    app.option("DIR", options->folder, "What optimise, simulate or clearance wrote with --out").required();
-    app.option("--out", options->out, "File for it (default: report.html in DIR)");
-    app.closing_words("Example:  fettle report out");
+    app.option("DIR", options->source, "What optimise, simulate or clearance wrote with --out; or the file that explore wrote").required();
+    app.option("--out", options->out, "File for it (default: report.html in DIR; of sweep.jsonl sweep.report.html)");
+    app.closing_words("Examples:  fettle report out\n           fettle report sweep.jsonl");
     return {app, [options, &common](Console& console) { return run_report(*options, common, console); }};
 }
 

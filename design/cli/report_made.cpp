@@ -19,8 +19,14 @@ void leave_report(const std::string& folder, const CommonOptions& common, Consol
     options.motion = std::move(motion);
     options.should_stop = interrupted;
     const Result<std::string> made = report::write_report(folder, std::move(options));
-    for (const Error& error : made.errors()) console.narrate("warning: no report: " + error.where + ": " + error.message);
-    if (!made) return;
+    if (!made) {
+        const Error& fault = made.errors().front();
+        answer["report"] = nullptr;
+        answer["report_fault"] = fault.where + ": " + fault.message;
+        told += "no report: " + answer["report_fault"].get<std::string>() + "\n";
+        if (fault.code == ErrorCode::file_unwritable) console.unwritten(made.errors());
+        return;
+    }
     answer["report"] = *made;
     told += "report: " + *made + "\n";
 }

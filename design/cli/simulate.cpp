@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
-#include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/simulate.hpp"
@@ -19,11 +19,13 @@
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/growing_tables.hpp"
 #include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/path_proof.hpp"
 #include "fettle/design/cli/report_made.hpp"
+#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
@@ -95,6 +97,14 @@ Json balance_json(const core::stepper::Balance& b) {
                 {"angular_momentum_scale", b.angular_momentum_scale}};
 }
 
+void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, Json& json, Console& console) {
+    json["balance"] = balance_json(balance);
+    const std::string warning = balance_warning(model, balance);
+    if (warning.empty()) return;
+    console.narrate("warning: " + warning);
+    json["warnings"].push_back(warning);
+}
+
 // A line of the answer.
 std::string balance_text(const core::stepper::Balance& b) {
     std::string text = formatted("energy: %.4g J at the start, %.4g J at the end; %.4g J supplied, %.4g J lost by friction and dampers",
@@ -115,36 +125,37 @@ std::string hold_joints(const std::string& allowed, const core::model::Model& mo
     return split.refusal;
 }
 
-// With the rows of the run that this one goes on with, if its tables are beside its trajectory.
-std::string whole_table(const std::string& name, const std::string& text, const SimulateArguments& options, const Simulation& earlier) {
-    if (options.earlier.empty()) return text;
-    const Result<std::string> before = core::files::read_file(std::filesystem::path(options.earlier).parent_path() / name);
-    const double until = (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep;
-    return before ? core::records::joined_table(*before, text, until) : text;
-}
+// With --out: what is written while the motion grows.
+struct Writing {
+    Writing(const SimulateArguments& options, const LoadedModel& loaded)
+        : trajectory(options.out, loaded.model, loaded.scene_path, options.earlier), tables(options.out, loaded.model) {}
 
-// What the folder holds of an earlier run is read, or put aside, before anything is written: it may be the run that this one goes on with.
-Errors write_motion(const SimulateArguments& options, const core::model::Model& model, const Simulation& simulation,
-                    const Simulation& earlier, const std::string& scene_path, Console& console) {
-    const std::filesystem::path folder = options.out;
-    std::vector<std::pair<std::string, std::string>> tables;
-    const std::vector<std::string> names = answers::body_names(model);
-    for (const auto& [name, text] : {std::pair{"steps.csv", core::records::steps_csv(simulation)},
-                                     {"contacts.csv", core::records::contacts_csv(simulation, names)},
-                                     {"drives.csv", core::records::drives_csv(simulation, names)},
-                                     {"joints.csv", core::records::joints_csv(simulation, model.mechanism)}})
-        if (std::string_view(name) != "joints.csv" || !model.mechanism.joints.empty())
-            tables.emplace_back(name, whole_table(name, text, options, earlier));
-    const Result<std::string> kept = keep_longer_run(folder / "trajectory.json", simulation.trajectory.steps.size());
-    if (!kept) return kept.errors();
-    if (!kept->empty()) console.narrate("warning: a longer run was there, which is kept as " + *kept);
-    answers::forget_motion(options.out);  // what is there speaks of another motion from here on
-    Errors errors =
-        core::records::write_trajectory(folder / "trajectory.json", simulation.trajectory, model, scene_path, &simulation.checkpoint);
-    for (const auto& [name, text] : tables) {
-        if (errors.empty()) errors = core::files::write_file_atomically(folder / name, text);
+    GrowingTrajectory trajectory;
+    GrowingTables tables;
+};
+
+struct FinishedRun {
+    const LoadedModel& loaded;
+    Simulation& simulation;           // nodes may be added to its path
+    const Simulation& earlier;        // that it went on with
+    std::optional<Writing>& writing;  // with --out
+    PathProver& prover;               // has followed the motion, unless nodes are to be added to it
+};
+
+// All of it beside what the folder holds of an earlier run, which may be the one that this run goes on with.
+Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core::files::FilesTogether& files, Console& console) {
+    const std::filesystem::path file = std::filesystem::path(options.out) / "trajectory.json";
+    const Simulation& simulation = run.simulation;
+    const core::model::Model& model = run.loaded.model;
+    const std::string kept = name_for_longer_run(file, simulation.trajectory.steps.size());
+    if (!kept.empty()) {
+        console.narrate("warning: a longer run was there, which is kept as " + kept);
+        files.keep_as(file, kept);
     }
-    if (errors.empty()) errors = answers::write_animation(options.out, model, simulation.trajectory);
+    answers::replace_motion(files, options.out);  // what is there speaks of another motion
+    Errors errors = core::records::add_trajectory(files, file, simulation.trajectory, model, run.loaded.scene_path, &simulation.checkpoint);
+    if (errors.empty()) errors = run.writing->tables.add_to(files);
+    if (errors.empty()) errors = answers::add_animation(files, options.out, model, simulation.trajectory);
     return errors;
 }
 
@@ -155,16 +166,16 @@ Result<Simulation> read_earlier(const SimulateArguments& options, const core::mo
     tell_warnings(console, stored->warnings);
     const std::size_t done = stored->trajectory.steps.size();
     if (steps >= 0 && static_cast<std::size_t>(steps) < done)
-        return Error{
-            ErrorCode::out_of_range, options.earlier,
-            "this run has " + std::to_string(done) + " steps, and goes on to no fewer: " + std::to_string(steps) + " are asked for"};
+        return Error{ErrorCode::out_of_range, options.earlier,
+                     "this run has " + core::base::counted(done, "step") + " already, and goes on to no fewer: " + std::to_string(steps) +
+                         " are asked for"};
     Result<Simulation> resumed = core::records::resumable(*stored, model);
     if (resumed) console.narrate("going on from step " + std::to_string(resumed->checkpoint.step));
     return resumed;
 }
 
 Errors try_outputs(const SimulateArguments& options) {
-    Errors errors = options.out.empty() ? Errors{} : try_output_folder(options.out);
+    Errors errors = options.out.empty() ? Errors{} : try_run_folder(options.out);
     if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
     return errors;
 }
@@ -190,19 +201,25 @@ Outcome outcome_of(const core::stepper::SimulationReport& report, const PathProo
 }
 
 std::string answer_text(const Outcome& outcome, const Simulation& simulation, const PathProof& proof, const std::string& out,
-                        const Console& console) {
-    std::string text = formatted("%s after %zu steps, %d Newton iterations, %.3g s\n",
-                                 console.coloured(outcome.status, outcome.exit_code == exit_done).c_str(),
-                                 simulation.trajectory.steps.size(), simulation.report.newton_iterations, simulation.report.wall_seconds);
+                        double length_unit, const Console& console) {
+    const RoundedLengths lengths(answers::unit_name(length_unit));
+    const auto proven = [&](double distance) {
+        return "at least " + lengths.fixed(distance, Towards::down) + " " + lengths.unit() + ", proven\n";
+    };
+    std::string text =
+        console.coloured(outcome.status, outcome.exit_code == exit_done) + " after " +
+        core::base::counted(simulation.trajectory.steps.size(), "step") +
+        formatted(", %d iterations of the solver, %.3g s\n", simulation.report.newton_iterations, simulation.report.wall_seconds);
     if (!outcome.message.empty()) text += outcome.message + "\n";
     if (proof.state == ProofState::nothing) {
         text += "smallest distance: none, no two bodies may collide\n";
     } else if (proof.state == ProofState::proven) {
-        text += formatted("smallest distance of two bodies over the path: %.6g m, proven\n", *proof.lower);
+        text += "smallest distance of two bodies over the path: " + proven(*proof.lower);
     } else {
         text += "smallest distance of two bodies over the path: not certified\n";
         if (proof.state == ProofState::stopped && proof.lower)
-            text += formatted("smallest distance of two bodies over the first %d steps: %.6g m, proven\n", proof.steps, *proof.lower);
+            text += "smallest distance of two bodies over the first " + core::base::counted(static_cast<size_t>(proof.steps), "step") +
+                    ": " + proven(*proof.lower);
     }
     if (!out.empty()) text += "trajectory: " + (std::filesystem::path(out) / "trajectory.json").string() + "\n";
     return text;
@@ -212,15 +229,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-struct FinishedRun {
-    const LoadedModel& loaded;
-    Simulation& simulation;                     // nodes may be added to its path
-    const Simulation& earlier;                  // that it went on with
-    std::optional<GrowingTrajectory>& growing;  // with --out
-    PathProver& prover;                         // has followed the motion, unless nodes are to be added to it
-};
-
-// Once the motion is there: writes it, proves what is left of its path, and answers. What was simulated is on the disk before that.
+// Once the motion is there: proves what is left of its path, writes all and answers. Until then the growing file has what was simulated.
 int finish(const SimulateArguments& options, const CommonOptions& common, const FinishedRun& run, Json json, Console& console) {
     Simulation& simulation = run.simulation;
     const Simulation& earlier = run.earlier;
@@ -231,12 +240,6 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     const bool writes_out = !options.out.empty() && simulation.trajectory.steps.size() >= earlier.trajectory.steps.size();
     if (!options.out.empty() && !writes_out)
         console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
-    Errors errors;
-    if (writes_out) errors = write_motion(options, model, simulation, earlier, run.loaded.scene_path, console);
-    if (errors.empty() && !options.poses.empty())
-        errors = core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit));
-    if (!errors.empty()) return console.input_errors(errors);
-    if (run.growing) run.growing->remove();
     console.narrate("certifying the path");
     const PathProof proof = run.prover.finish(simulation);
     Outcome outcome = outcome_of(report, proof);
@@ -255,22 +258,30 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     json["bodies"] = bodies_at_end(model, simulation.trajectory);
     add_joints(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
-    std::string told = answer_text(outcome, simulation, proof, writes_out ? options.out : "", console);
-    if (const auto balance = core::stepper::balance_of(model, simulation)) {
-        json["balance"] = balance_json(*balance);
-        told += balance_text(*balance);
-        if (const std::string warning = balance_warning(model, *balance); !warning.empty()) {
-            console.narrate("warning: " + warning);
-            json["warnings"].push_back(warning);
-        }
-    }
+    if (!options.poses.empty())
+        console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));
+    const std::optional<core::stepper::Balance>& balance = simulation.balance;
+    if (balance) add_balance(model, *balance, json, console);
+    bool written = false;
     if (writes_out) {
         json["out"] = options.out;
-        errors = answers::write_result(options.out, json, common.command);
-        if (!errors.empty()) return console.input_errors(errors);
-        if (!options.no_report)
-            leave_report(options.out, common, console, json, told, report::Motion{model, simulation.trajectory, run.loaded.scene_path});
+        core::files::FilesTogether files;
+        Errors errors = add_motion(options, run, files, console);
+        if (errors.empty()) errors = answers::add_result(files, options.out, json, common.command);
+        if (errors.empty()) errors = files.take_names();
+        console.unwritten(errors);
+        written = errors.empty();
     }
+    std::string told = answer_text(outcome, simulation, proof, written ? options.out : "", model.length_unit, console);
+    if (balance) told += balance_text(*balance);
+    if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
+    if (written && !options.no_report)
+        leave_report(options.out, common, console, json, told,
+                     report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path});
+    const CheckOutcome checked = outcome.exit_code == exit_done ? CheckOutcome::passed : CheckOutcome::undecided;
+    console.found({"the motion is simulated and proven", checked, outcome.status, outcome.message, options.path});
+    for (const std::string& warning : run.loaded.warnings)
+        console.found({options.path, CheckOutcome::remarked, "warning", warning, options.path});
     console.result(json, told);
     return outcome.exit_code;
 }
@@ -286,16 +297,18 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     simulate_options.steps = options.steps >= 0  ? options.steps
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
-    std::optional<GrowingTrajectory> growing;
+    std::optional<Writing> writing;
     PathProver prover(model, interrupted);
     const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then
     simulate_options.on_step = [&](const core::stepper::Progress& p) {
-        if (growing) growing->write(*p.so_far, console);
+        if (writing) writing->trajectory.write(*p.so_far, console);
+        if (writing) writing->tables.write(*p.so_far);
         if (!adds_nodes) prover.follow(*p.so_far);
         console.progress("simulating", p.step, p.steps);
     };
     simulate_options.should_stop = interrupted;
     simulate_options.outputs = !options.out.empty() || !model.mechanism.joints.empty();
+    simulate_options.last_outputs_only = true;  // the tables have those before
     Simulation earlier;
     if (!options.earlier.empty()) {
         Result<Simulation> read = read_earlier(options, model, core::stepper::step_count(model, simulate_options), console);
@@ -314,10 +327,12 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     json["status"] = "";
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
-    if (!options.out.empty()) growing.emplace(options.out, model, loaded->scene_path, options.earlier);
+    if (!options.out.empty()) writing.emplace(options, *loaded);
+    if (writing && !options.earlier.empty())
+        writing->tables.go_on_with(options.earlier, (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep);
     Simulation simulation = core::stepper::simulate(model, simulate_options);
     simulation.report.wall_seconds -= prover.seconds();
-    return finish(options, common, {*loaded, simulation, earlier, growing, prover}, std::move(json), console);
+    return finish(options, common, {*loaded, simulation, earlier, writing, prover}, std::move(json), console);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// fettle validate FILE: is this scene, design, trajectory or mesh usable? Every fault, by name and place.
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_judgement.hpp"
@@ -55,7 +56,7 @@ Verdict validate_mesh_file(const std::string& path, bool strict) {
         verdict.errors = std::move(found.errors);
         verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
     }
-    const bool has_unit = path.size() > 4 && (path.ends_with(".3mf") || path.ends_with(".3MF"));
+    const bool has_unit = core::mesh_files::states_its_unit(path);
     if (!has_unit) {
         for (std::string& warning : verdict.warnings) warning = without_metres(warning);
         for (Error& error : verdict.errors) error.message = without_metres(error.message);
@@ -94,8 +95,6 @@ Verdict validate_model(const std::string& path, const CommonOptions& common) {
         return verdict;
     }
     verdict.warnings = loaded->warnings;
-    const std::vector<std::string> doubts = doubts_of(loaded->model);
-    verdict.warnings.insert(verdict.warnings.end(), doubts.begin(), doubts.end());
     verdict.facts["bodies"] = answers::body_names(loaded->model);
     verdict.facts["parts"] = parts_json(loaded->model);
     verdict.text = parts_text(loaded->model);
@@ -136,7 +135,10 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
     json.update(verdict.facts);
     json["warnings"] = verdict.warnings;
     tell_warnings(console, verdict.warnings);
-    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + "\n" + verdict.text);
+    console.found({path, CheckOutcome::passed, "valid", std::string("a valid ") + kinds[static_cast<int>(kind)], path});
+    for (const std::string& warning : verdict.warnings) console.found({path, CheckOutcome::remarked, "warning", warning, path});
+    const std::string doubts = verdict.warnings.empty() ? "" : ", with " + core::base::counted(verdict.warnings.size(), "warning");
+    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + doubts + "\n" + verdict.text);
     return exit_done;
 }
 
@@ -146,7 +148,9 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
         program.command("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
     auto options = std::make_shared<ValidateArguments>();
-    app.option("FILE", options->path, "Scene, design, trajectory, certificate (.json) or mesh (.stl .obj .off .ply .3mf)").required();
+    app.option("FILE", options->path,
+               "Scene, design, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
+        .required();
     app.option("--trajectory", options->trajectory,
                "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
     app.option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");

@@ -31,6 +31,7 @@ struct Claim {
     int a = 0, b = 0;
     double lower = 0, upper = 0;
     Solids solids = Solids::unproven;
+    bool is_of_bodies = true;  // false: of the path as stored, and it is not known whether joints have the bodies elsewhere between nodes
 };
 
 // What both kinds of certificate come to.
@@ -42,6 +43,7 @@ struct Checked {
     bool motion = false;
     std::optional<core::certificate::Linkage> linkage;     // of one over ranges of joints
     std::optional<core::certificate::IdealJoints> joints;  // met at all times, beside the path
+    bool is_of_path = false;                               // and said to be of that
     std::vector<Claim> claims;
     std::vector<std::array<int, 2>> uncovered;
     std::vector<core::certificate::ExportedFile> exports;
@@ -74,6 +76,7 @@ Result<Checked> read_and_check(const std::string& path, const core::records::Sto
     out.motion = certificate->motion;
     out.exports = certificate->exports;
     out.joints = certificate->joints;
+    out.is_of_path = certificate->is_of_path;
     if (!out.joints) return out;
     for (Claim& claim : out.claims) {
         const double charge = joint_charge(*out.joints, claim.a, claim.b);
@@ -84,6 +87,21 @@ Result<Checked> read_and_check(const std::string& path, const core::records::Sto
     return out;
 }
 
+bool moves(const core::stepper::Trajectory& trajectory, int body) {
+    const auto i = static_cast<size_t>(body);
+    const core::kinematics::Pose& first = trajectory.poses.front()[i];
+    for (const auto& step : trajectory.steps)
+        for (const auto& node : step.nodes)
+            if (node[i].position != first.position || node[i].rotation_vector != Vector3::Zero()) return true;
+    return false;
+}
+
+// A certificate of a motion that neither has joints nor says that the path as stored is what it is of: what its bounds of moving bodies
+// are worth is known only where the source has no joints.
+void doubt_bounds(Checked& certificate, const core::stepper::Trajectory& trajectory) {
+    for (Claim& claim : certificate.claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
+}
+
 Json name_of(const Model& model, int body) {
     const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
     return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
@@ -91,8 +109,8 @@ Json name_of(const Model& model, int body) {
 
 // "clear", "violated" or "undecided", of a pair whose claims are proven.
 const char* verdict(const Claim& pair, double minimum) {
-    const bool apart = pair.solids == Solids::disjoint || pair.solids == Solids::not_closed;
-    if (pair.lower >= minimum && pair.lower > 0 && apart) return "clear";
+    if (!pair.is_of_bodies) return "undecided";
+    if (pair.lower >= minimum && pair.lower > 0 && are_apart(pair.solids)) return "clear";
     return pair.upper < minimum ? "violated" : "undecided";
 }
 
@@ -118,9 +136,10 @@ std::string claims_text(const Json& claims, const Checked& certificate) {
         const std::string solids = pair["solids"];
         text += "  " + name(pair["a"]) + ":" + name(pair["b"]) + "  at least " + lengths.fixed(pair["lower"], Towards::down) +
                 ", at most " + lengths.fixed(pair["upper"], Towards::up) + " " + lengths.unit() + "; " +
-                (solids == "disjoint"     ? "disjoint solids"
-                 : solids == "not closed" ? "disjoint solids cannot be verified: not closed"
-                                          : "not proven to be apart") +
+                (solids == "disjoint"       ? "disjoint solids"
+                 : solids == "not closed"   ? "disjoint solids cannot be verified: not closed"
+                 : solids == "not verified" ? "one may lie inside the other: not closed"
+                                            : "not proven to be apart") +
                 (pair.contains("status") ? ": " + pair["status"].get<std::string>() : "") + "\n";
     }
     return text;
@@ -130,6 +149,7 @@ std::string claims_text(const Json& claims, const Checked& certificate) {
 struct SourceCheck {
     bool stale = false;
     std::string note;
+    bool has_joints = true;  // as far as is known
 };
 
 SourceCheck check_source(const Checked& certificate, const std::string& path, const CommonOptions& common) {
@@ -152,7 +172,8 @@ SourceCheck check_source(const Checked& certificate, const std::string& path, co
         if (joints && same_joints(*joints, *certificate.joints)) return {};
         return {true, "stale: the joints or motors of " + certificate.source + " have changed since"};
     }
-    if (certificate.motion && !loaded->model.mechanism.rows.empty())
+    if (certificate.motion && loaded->model.mechanism.rows.empty()) return {false, "", false};
+    if (certificate.motion && certificate.is_of_path)
         return {false, "its bounds are of the path as stored, between whose nodes joints may part"};
     if (!certificate.linkage) return {};
     const auto ranges = core::clearance::joint_ranges(loaded->model);
@@ -181,8 +202,8 @@ ExportCheck check_exports(const Checked& certificate, const std::string& path) {
             check.stale.push_back("stale: " + exported.file + ", a file of its bodies, has changed since");
         } else if (exported.rounding > 0) {
             check.notes.push_back(exported.file +
-                                  formatted(": its vertices are rounded by up to %.2g m; between its parts bounds are wider by twice that",
-                                            exported.rounding));
+                                  formatted(": its vertices are rounded by up to %.2g mm; between its parts bounds are wider by twice that",
+                                            1000 * exported.rounding));
         }
     }
     return check;
@@ -217,7 +238,7 @@ std::string worst_of(const Json& claims) {
     return worst;
 }
 
-void check(const Checked& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
+void check(Checked& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
            const std::optional<double>& minimum, const CommonOptions& common, Answer& answer) {
     const core::certificate::CertificateReport& report = certificate.report;
     for (const auto& fault : report.faults) answer.add_fault(fault.where, fault.message);
@@ -227,6 +248,8 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
         answer.stale = true;
         answer.add_fault("/source", source.note);
     }
+    const bool is_doubtful = certificate.motion && !certificate.joints && !certificate.is_of_path && source.has_joints;
+    if (is_doubtful) doubt_bounds(certificate, stored.trajectory);
     const ExportCheck exports = check_exports(certificate, question.path);
     for (const std::string& stale : exports.stale) {
         answer.stale = true;
@@ -247,13 +270,19 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
     answer.json["notes"] = Json::array();
     if (!source.stale && !source.note.empty()) answer.json["notes"].push_back(source.note);
     for (const std::string& note : exports.notes) answer.json["notes"].push_back(note);
+    if (is_doubtful)
+        answer.json["notes"].push_back(
+            "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is proven "
+            "where "
+            "joints hold them; make it anew");
     if (!accepted) return;
     answer.code = exit_done;
     answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
-                             certificate.linkage  ? "over all positions of the joints"
-                             : certificate.joints ? "over the motion, of joints met at all times"
-                             : certificate.motion ? "over the motion"
-                                                  : "as assembled") +
+                             certificate.linkage                            ? "over all positions of the joints"
+                             : certificate.joints                           ? "over the motion, of joints met at all times"
+                             : certificate.motion && certificate.is_of_path ? "over the motion, of the path as stored"
+                             : certificate.motion                           ? "over the motion"
+                                                                            : "as assembled") +
                    claims_text(answer.json["pairs"], certificate);
     if (!uncovered.empty()) answer.text += "not covered: " + uncovered + "\n";
     for (const Json& note : answer.json["notes"]) answer.text += "note: " + note.get<std::string>() + "\n";
@@ -263,6 +292,21 @@ void check(const Checked& certificate, const core::records::StoredTrajectory& st
     answer.json["judgement"] = worst;
     answer.text += "at a minimum of " + question.minimum + ": " + worst + "\n";
     answer.code = worst == "violated" ? exit_violated : worst == "undecided" ? exit_undecided : exit_done;
+}
+
+// Each fault, or, of an accepted certificate, each pair against the minimum.
+void tell_checks(const Answer& answer, const std::string& file, const std::string& status, Console& console) {
+    for (const Json& fault : answer.faults)
+        console.found({fault["where"].get<std::string>(), CheckOutcome::failed, status, fault["message"].get<std::string>(), file});
+    if (!answer.faults.empty()) return;
+    console.found({file, CheckOutcome::passed, status, "every claim is proven", file});
+    for (const Json& pair : answer.json["pairs"]) {
+        const std::string judged = pair.contains("status") ? pair["status"].get<std::string>() : "clear";
+        const CheckOutcome outcome = judged == "violated"    ? CheckOutcome::failed
+                                     : judged == "undecided" ? CheckOutcome::undecided
+                                                             : CheckOutcome::passed;
+        console.found({pair["a"].get<std::string>() + ":" + pair["b"].get<std::string>(), outcome, judged, "", file});
+    }
 }
 
 }  // namespace
@@ -275,13 +319,14 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     if (!stored) return console.input_errors(stored.errors());
     Answer answer;
     answer.json = {{"status", "rejected"}, {"kind", "certificate"}, {"trajectory", trajectory}};
-    const Result<Checked> certificate = read_and_check(question.path, *stored);
+    Result<Checked> certificate = read_and_check(question.path, *stored);
     for (const Error& error : certificate.errors()) answer.add_fault(error.where, error.message);
     if (certificate) check(*certificate, *stored, question, *minimum, common, answer);
     const bool accepted = answer.faults.empty();
     const std::string status = accepted ? "accepted" : answer.stale ? "stale" : "rejected";
     answer.json["status"] = status;
     answer.json["faults"] = answer.faults;
+    tell_checks(answer, question.path, status, console);
     console.result(answer.json, question.path + ": " + console.coloured(status, accepted) + " for " + trajectory + "\n" + answer.text);
     return answer.code;
 }

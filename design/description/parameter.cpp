@@ -2,6 +2,7 @@
 #include "fettle/design/description/parameter.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 namespace fettle::design::description {
 
@@ -36,6 +37,37 @@ VectorX values_of(const std::vector<Parameter>& parameters) {
     VectorX p(static_cast<Eigen::Index>(parameters.size()));
     for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;
     return p;
+}
+
+namespace {
+
+std::string told(double si, const Unit& unit) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%g", from_si(si, unit));
+    return text + (unit.name.empty() ? "" : " " + std::string(unit.name));
+}
+
+}  // namespace
+
+Errors check_values(const std::vector<Parameter>& parameters, const VectorX& p) {
+    if (p.size() != static_cast<Eigen::Index>(parameters.size()))
+        return {{ErrorCode::inconsistent, "p",
+                 "one value for each of the design's parameters is wanted: " + std::to_string(parameters.size()) + ", found " +
+                     std::to_string(p.size())}};
+    Errors errors;
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
+        const Parameter& of = parameters[static_cast<size_t>(k)];
+        const double range = of.upper - of.lower;
+        if (!std::isfinite(p[k])) {
+            errors.push_back({ErrorCode::not_finite, "p/" + of.name, "it is no finite number"});
+        } else if (p[k] < of.lower - range || p[k] > of.upper + range) {
+            errors.push_back({ErrorCode::out_of_range, "p/" + of.name,
+                              told(p[k], of.unit) + " is far outside its bounds, " + told(of.lower, of.unit) + " to " +
+                                  told(of.upper, of.unit) +
+                                  ": farther than they are apart. Is it in SI units (m, rad, kg)? If it is meant, " + "widen the bounds"});
+        }
+    }
+    return errors;
 }
 
 double from_si(double si, const Unit& unit) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/model/mechanism.hpp"
@@ -84,6 +85,11 @@ struct Parameter {
 };
 
 VectorX values_of(const std::vector<Parameter>& parameters);
+
+/// What is wrong with p (SI) as values of these parameters, by name: not one finite number for each, or one that is farther beyond its
+/// bounds than they are apart. Within that, differences and searches may look beyond a bound; farther out it is most often a number in
+/// another unit. For what is given from outside: nothing here asks it of its own trials.
+Errors check_values(const std::vector<Parameter>& parameters, const VectorX& p);
 
 /// The number of `unit`s that is `si`, or one of its neighbours: one that to_si (core/base/units.hpp) maps back to the same bits, if there
 /// is one (not every SI value is some number of millimetres; representable() gives the nearest that is).

@@ -2,7 +2,6 @@
 #include "fettle/design/exports/assembly.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
@@ -52,22 +51,16 @@ bool same(const Pose& a, const Pose& b) { return a.rotation == b.rotation && a.p
 
 }  // namespace
 
-Colour part_colour(int index) {
-    constexpr std::array<Colour, 8> colours{
-        {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}, {213, 94, 0}, {240, 228, 66}, {140, 140, 140}}};
-    Colour colour = colours[static_cast<std::size_t>(index) % colours.size()];
-    for (int round = index / static_cast<int>(colours.size()); round % 4 > 0; --round)
-        for (unsigned char& c : colour) c = static_cast<unsigned char>(c + (255 - c) / 3);
-    return colour;
-}
-
 Assembly assembly_of(const core::model::Model& model, const Trajectory& trajectory) {
     FETTLE_ASSERT(trajectory.poses.front().size() == model.bodies.size(), "a trajectory that is not of this model");
     Assembly out;
     out.length_unit = model.length_unit;
     out.up = up_of(model.gravity);
-    for (const core::model::Body& body : model.bodies)
-        out.parts.push_back({body.name, part_colour(static_cast<int>(out.parts.size())), body.mesh, body.reference_point, false});
+    const std::vector<Colour> colours = part_colours(model);
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const core::model::Body& body = model.bodies[b];
+        out.parts.push_back({body.name, colours[b], body.mesh, body.reference_point, false});
+    }
     out.keyframes.push_back({core::stepper::time_at(trajectory, 0), true, trajectory.poses.front()});
     for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t) add_step(trajectory, t, out);
     for (std::size_t b = 0; b < out.parts.size(); ++b)

@@ -6,17 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/design/exports/palette.hpp"
 
 namespace fettle::design::exports {
-
-using core::mesh_files::Colour;
-
-/// Of part number `index`: eight colours that people with any colour vision tell apart (Okabe and Ito, the black one as grey), from the
-/// ninth on the same in paler tones.
-Colour part_colour(int index);
 
 struct AssemblyPart {
     std::string name;

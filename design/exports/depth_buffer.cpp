@@ -4,15 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fettle::design::exports {
 
-DepthBuffer::DepthBuffer(int width, int height, const core::mesh_files::Colour& background) {
+namespace {
+
+constexpr int hatch_pitch = 12, hatch_width = 3;  // [pixels]
+
+}  // namespace
+
+DepthBuffer::DepthBuffer(int width, int height, const core::mesh_files::Colour& background, std::optional<Cut> cut) : cut_(cut) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     image_.width = width;
     image_.height = height;
     image_.pixels.assign(count, background);
     depth_.assign(count, -std::numeric_limits<double>::infinity());
+    if (!cut_) return;
+    turns_.assign(count, 0);
+    in_solid_.assign(count, 0);
+}
+
+bool DepthBuffer::is_in_cut(int x, int y) const {
+    return cut_ && (Vector2(x + 0.5, y + 0.5) - cut_->centre).squaredNorm() <= cut_->radius * cut_->radius;
 }
 
 void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core::mesh_files::Colour& colour) {
@@ -30,6 +44,10 @@ void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core
             if (!(wb >= 0 && wc >= 0 && wb + wc <= 1)) continue;
             const double z = a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z());
             const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
+            if (is_in_cut(x, y)) {
+                if (z > cut_->depth) continue;
+                turns_[at] = static_cast<short>(turns_[at] + (area > 0 ? 1 : -1));  // y points down: seen from outside, corners turn left
+            }
             if (!(z > depth_[at])) continue;
             depth_[at] = z;
             image_.pixels[at] = colour;
@@ -37,9 +55,24 @@ void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core
     }
 }
 
+void DepthBuffer::close_solid(const core::mesh_files::Colour& colour, const core::mesh_files::Colour& shared) {
+    for (std::size_t at = 0; at < turns_.size(); ++at) {
+        if (std::exchange(turns_[at], short{0}) <= 0) continue;
+        const std::size_t width = static_cast<std::size_t>(image_.width);
+        const bool is_line = (at % width + at / width) % hatch_pitch < hatch_width;
+        const core::mesh_files::Colour& fill = in_solid_[at] != 0 ? shared : colour;
+        for (std::size_t k = 0; k < 3; ++k) image_.pixels[at][k] = is_line ? static_cast<unsigned char>(fill[k] - fill[k] / 3) : fill[k];
+        depth_[at] = cut_->depth;
+        in_solid_[at] = 1;
+    }
+}
+
+void DepthBuffer::close_open() { std::fill(turns_.begin(), turns_.end(), short{0}); }
+
 // The line may lie on the border of what covers it: the deepest of the pixels round it counts.
 bool DepthBuffer::is_visible(const Vector3& point, double tolerance) const {
     const int x = static_cast<int>(std::floor(point.x())), y = static_cast<int>(std::floor(point.y()));
+    if (is_in_cut(x, y) && point.z() > cut_->depth + tolerance) return false;
     double deepest = std::numeric_limits<double>::infinity();
     for (int v = y - 1; v <= y + 1; ++v) {
         for (int u = x - 1; u <= x + 1; ++u) {

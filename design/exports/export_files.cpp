@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/files/unique_names.hpp"
 #include "fettle/design/exports/glb_writer.hpp"
 #include "fettle/design/exports/vtk_writer.hpp"
 
@@ -68,19 +68,6 @@ void lay_out(std::vector<MeshPart>& parts) {
     }
 }
 
-/// What a file system takes, each once.
-std::string file_stem(const std::string& name, std::set<std::string>& taken) {
-    std::string stem = name;
-    for (char& c : stem) {
-        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == '+' || c == ' ';
-        if (!plain && static_cast<unsigned char>(c) < 0x80) c = '_';
-    }
-    if (stem.empty() || stem[0] == '.') stem = "_" + stem;
-    std::string unique = stem;
-    for (int count = 2; !taken.insert(unique).second; ++count) unique = stem + "_" + std::to_string(count);
-    return unique;
-}
-
 Errors write_meshes(const std::vector<MeshPart>& parts, Format format, const std::string& stem, const FileSink& sink) {
     if (format == Format::stl) {
         const bool empty = std::all_of(parts.begin(), parts.end(), [](const MeshPart& part) { return part.mesh->triangles.empty(); });
@@ -98,12 +85,12 @@ Errors write_meshes(const std::vector<MeshPart>& parts, Format format, const std
 Errors export_meshes(const Assembly& assembly, Format format, const ExportOptions& options, const std::string& stem, const FileSink& sink) {
     const std::vector<Mesh> meshes = file_meshes(assembly);
     std::vector<MeshPart> parts = own_parts(assembly, meshes);
-    if (options.arrangement == Arrangement::assembled) assemble(assembly, parts);
+    if (options.arrangement == Arrangement::assembled || options.in_place) assemble(assembly, parts);
     if (options.arrangement == Arrangement::plate) lay_out(parts);
     if (options.arrangement != Arrangement::parts) return write_meshes(parts, format, stem, sink);
-    std::set<std::string> taken;
+    core::files::UniqueNames stems("_", true);
     for (const MeshPart& part : parts) {
-        const std::string own_stem = file_stem(part.name, taken);
+        const std::string own_stem = stems.unique(core::files::file_stem(part.name));
         if (part.mesh->triangles.empty() && format != Format::obj) continue;
         Errors errors = write_meshes({part}, format, own_stem, sink);
         if (!errors.empty()) return errors;

@@ -20,12 +20,13 @@ const std::vector<std::string>& format_names();
 enum class Arrangement {
     assembled,  ///< one file, every part where it is at the start
     plate,      ///< one file, parts side by side on z = 0, 5 mm apart, turned as in their own files: for a printer's bed
-    parts       ///< a file for each part, in its own file's frame
+    parts       ///< a file for each part, in its own file's frame (ExportOptions::in_place: where it is at the start)
 };
 const std::vector<std::string>& arrangement_names();  ///< in the order of Arrangement
 
 struct ExportOptions {
     Arrangement arrangement = Arrangement::assembled;  ///< of 3MF, STL, OBJ
+    bool in_place = false;                             ///< of `parts`
     int every = 1;                                     ///< of VTU: a frame for every so many steps, and the last
 };
 

@@ -204,19 +204,21 @@ private:
         json_["animations"] = Json::array({{{"name", "motion"}, {"samplers", std::move(samplers)}, {"channels", std::move(channels)}}});
     }
 
-    std::string with_header() const {
-        std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace), binary = binary_;
+    std::string with_header() {
+        std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
         text.resize((text.size() + 3) / 4 * 4, ' ');
-        binary.resize((binary.size() + 3) / 4 * 4, '\0');
-        const std::size_t total = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
-        std::string out = "glTF";
+        binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+        const std::size_t total = 12 + 8 + text.size() + (binary_.empty() ? 0 : 8 + binary_.size());
+        std::string out;
+        out.reserve(total);
+        out += "glTF";
         append_word(out, 2);
         append_word(out, static_cast<std::uint32_t>(total));
         append_word(out, static_cast<std::uint32_t>(text.size()));
         out += "JSON" + text;
-        if (binary.empty()) return out;
-        append_word(out, static_cast<std::uint32_t>(binary.size()));
-        return out + std::string("BIN\0", 4) + binary;
+        if (binary_.empty()) return out;
+        append_word(out, static_cast<std::uint32_t>(binary_.size()));
+        return out.append("BIN\0", 4).append(binary_);
     }
 
     const Assembly& assembly_;

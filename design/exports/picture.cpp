@@ -1,141 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/exports/picture.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/design/exports/depth_buffer.hpp"
 #include "fettle/design/exports/small_letters.hpp"
 
 namespace fettle::design::exports {
 
 namespace {
 
-using core::geometry::Mesh;
 using core::kinematics::Pose;
 
-constexpr int fine = 2;                 // pixels of the depth buffer per pixel of the picture, each way
-constexpr double depth_tolerance = 3;   // of an edge against the faces that it belongs to [fine pixels]
-constexpr double margin = 0.08;         // of the picture on each side
-constexpr std::size_t most_named = 24;  // in the legend
-constexpr Colour white{255, 255, 255}, ink{30, 30, 30}, alarm{200, 0, 40};
+constexpr std::size_t most_named = 24;                   // in the legend
+constexpr int least_with_inset = 300;                    // pixels
+constexpr double hole_share = 0.11, inset_share = 0.36;  // of the picture's shorter side
+constexpr double least_magnified = 1.6;                  // by the inset
 
-/// World to fine pixels.
-struct Projection {
-    ProjectionView view;
-    double scale = 1;  // fine pixels per metre
-    Vector2 centre = Vector2::Zero(), middle = Vector2::Zero();
-
-    Vector3 operator()(const Vector3& x) const {
-        return {middle.x() + scale * (view.right.dot(x) - centre.x()), middle.y() - scale * (view.up.dot(x) - centre.y()),
-                scale * view.towards.dot(x)};
-    }
-};
-
-std::vector<Matrix3X> placed_vertices(const Assembly& assembly, const std::vector<Pose>& poses) {
-    std::vector<Matrix3X> out;
-    for (std::size_t i = 0; i < assembly.parts.size(); ++i)
-        out.push_back((poses[i].rotation * assembly.parts[i].mesh.vertices).colwise() + poses[i].position);
-    return out;
-}
-
-Projection fitted(const std::vector<Matrix3X>& vertices, const PictureOptions& options) {
-    Vector2 low = Vector2::Constant(INFINITY), high = Vector2::Constant(-INFINITY);
-    for (const Matrix3X& part : vertices) {
-        for (const auto& x : part.colwise()) {
-            const Vector2 p(options.view.right.dot(x), options.view.up.dot(x));
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-    }
-    Projection out{options.view};
-    const Vector2 size(fine * options.width, fine * options.height);
-    out.middle = size / 2;
-    if (!low.allFinite() || !high.allFinite()) return out;
-    out.centre = (low + high) / 2;
-    const Vector2 extent = (high - low).cwiseMax(1e-9);
-    out.scale = (1 - 2 * margin) * (size.array() / extent.array()).minCoeff();
-    return out;
-}
-
-/// A light at the viewer's shoulder; the inner side of what is not closed is lit as well.
-Colour shaded(const Colour& colour, const Vector3& normal, const ProjectionView& view) {
-    const Vector3 light = (view.towards + 0.35 * view.up - 0.25 * view.right).normalized();
-    const double brightness = 0.45 + 0.55 * std::abs(normal.dot(light));
-    Colour out{};
-    for (std::size_t k = 0; k < 3; ++k)
-        out[k] = static_cast<unsigned char>(std::lround(std::min(255.0, 40 + 0.84 * colour[k]) * brightness));
-    return out;
-}
-
-/// Triangles at an edge of a mesh.
-struct EdgeFaces {
-    std::vector<int> triangles;
-};
-
-bool is_drawn(const EdgeFaces& faces, const std::vector<Vector3>& normals, const PictureOptions& options) {
-    if (faces.triangles.size() != 2) return true;  // loose, border, or where more than two meet
-    const Vector3 &a = normals[static_cast<std::size_t>(faces.triangles[0])], &b = normals[static_cast<std::size_t>(faces.triangles[1])];
-    const bool outline = (a.dot(options.view.towards) > 1e-9) != (b.dot(options.view.towards) > 1e-9);
-    return outline || a.dot(b) < std::cos(options.crease);
-}
-
-std::vector<Vector3> normals_of(const Mesh& mesh, const Matrix3X& x) {
-    std::vector<Vector3> normals;
-    for (const auto& t : mesh.triangles)
-        normals.push_back(Vector3(x.col(t[1]) - x.col(t[0])).cross(Vector3(x.col(t[2]) - x.col(t[0]))).stableNormalized());
-    return normals;
-}
-
-std::map<core::geometry::Edge, EdgeFaces> faces_by_edge(const Mesh& mesh) {
-    std::map<core::geometry::Edge, EdgeFaces> faces;
-    for (const auto& edge : mesh.edges) faces[{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])}];
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto& t = mesh.triangles[i];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int u = t[k], v = t[(k + 1) % 3];
-            faces[{std::min(u, v), std::max(u, v)}].triangles.push_back(static_cast<int>(i));
-        }
-    }
-    return faces;
-}
-
-/// Visible stretches of the edges of one part, in pixels of the picture.
-std::vector<PictureLine> visible_edges(const Mesh& mesh, const Matrix3X& x, const DepthBuffer& buffer, const Projection& project,
-                                       const PictureOptions& options) {
-    std::vector<PictureLine> lines;
-    const std::vector<Vector3> normals = normals_of(mesh, x);
-    for (const auto& [edge, faces] : faces_by_edge(mesh)) {
-        if (!is_drawn(faces, normals, options)) continue;
-        const Vector3 from = project(x.col(edge[0])), to = project(x.col(edge[1]));
-        for (const auto& [begin, end] : buffer.visible(from, to, depth_tolerance)) {
-            const Vector3 first = from + begin * (to - from), last = from + end * (to - from);
-            lines.push_back({first.head<2>() / fine, last.head<2>() / fine});
-        }
-    }
-    return lines;
-}
-
-Image averaged(const Image& image) {
-    Image out{image.width / fine, image.height / fine, {}};
-    out.pixels.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height));
-    for (int y = 0; y < out.height; ++y) {
-        for (int x = 0; x < out.width; ++x) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                int sum = 0;
-                for (int j = 0; j < fine * fine; ++j) sum += image.at(fine * x + j % fine, fine * y + j / fine)[k];
-                out.at(x, y)[k] = static_cast<unsigned char>((sum + fine * fine / 2) / (fine * fine));
-            }
-        }
-    }
-    return out;
-}
-
-/// A bar of 1, 2 or 5 times a power of ten of millimetres, up to a sixth of the width.
+// A bar of 1, 2 or 5 times a power of ten of millimetres, up to a sixth of the width.
 void choose_scale(double pixels_per_metre, int width, Picture& out) {
     const double most = 1000.0 * width / 6 / pixels_per_metre;  // [mm]
     const double power = std::pow(10, std::floor(std::log10(most)));
@@ -150,7 +37,7 @@ void choose_scale(double pixels_per_metre, int width, Picture& out) {
     out.scale_text = text;
 }
 
-/// A line one pixel wide, with its share of the pixels on both sides.
+// A line one pixel wide, with its share of the pixels on both sides.
 void draw_line(Image& image, const PictureLine& line, const Colour& colour, double width) {
     const Vector2 along = line.to - line.from;
     const double length = along.norm(), reach = width / 2 + 0.5;
@@ -183,6 +70,35 @@ void fill(Image& image, const Rectangle& r, const Colour& colour) {
         for (int u = std::max(0, r.x); u < std::min(r.x + r.width, image.width); ++u) image.at(u, v) = colour;
 }
 
+// A circle as a drawing has it round what is shown again beside it.
+void draw_circle(Image& image, const Vector2& centre, double radius, const Colour& colour) {
+    const auto at = [&](int k) { return Vector2(centre + radius * Vector2(std::cos(k * M_PI / 36), std::sin(k * M_PI / 36))); };
+    for (int k = 0; k < 72; ++k) draw_line(image, {at(k), at(k + 1)}, colour, 1.5);
+}
+
+void ink_marker(const Picture& picture, Image& image) {
+    const Colour& colour = picture.marker_colour;
+    if (picture.hole > 0) draw_circle(image, middle_of(*picture.marker), picture.hole, colour);
+    draw_line(image, *picture.marker, colour, 2);
+    draw_dot(image, picture.marker->from, colour);
+    draw_dot(image, picture.marker->to, colour);
+    if (picture.marker_text.empty()) return;
+    const Vector2 at = text_place(picture);
+    const int width = text_width(picture.marker_text, 2);
+    const int x = std::clamp(static_cast<int>(at.x()), 4, std::max(4, image.width - width - 4));
+    const int y = std::clamp(static_cast<int>(at.y()) - 14, 4, std::max(4, image.height - 24));
+    fill(image, {x - 3, y - 3, width + 4, 21}, white);
+    write_text(image, x, y, picture.marker_text, colour, 2);
+}
+
+void ink_inset(const Picture& picture, Image& image) {
+    const Image inset = inked(picture.inset.front());
+    const int x = static_cast<int>(picture.inset_place.x()), y = static_cast<int>(picture.inset_place.y());
+    fill(image, {x - 2, y - 2, inset.width + 4, inset.height + 4}, picture.marker_colour);
+    for (int v = 0; v < inset.height; ++v)
+        for (int u = 0; u < inset.width; ++u) image.at(x + u, y + v) = inset.at(u, v);
+}
+
 void ink_texts(const Picture& picture, Image& image) {
     int y = 12;
     if (!picture.title.empty()) write_text(image, 12, std::exchange(y, y + 26), picture.title, ink, 2);
@@ -197,53 +113,123 @@ void ink_texts(const Picture& picture, Image& image) {
     write_text(image, static_cast<int>(20 + picture.scale_pixels), image.height - 21, picture.scale_text, ink, 2);
 }
 
+// A view with the marker in the picture's plane, else one as near to `view` as that allows.
+ProjectionView view_across(const PictureMarker& marker, const ProjectionView& view) {
+    const Vector3 along = (marker.b - marker.a).stableNormalized();
+    if (!(std::abs(along.dot(view.towards)) > 0.3)) return view;
+    Vector3 towards = view.towards - along.dot(view.towards) * along;
+    if (towards.norm() < 0.1) towards = view.up - along.dot(view.up) * along;
+    towards.normalize();
+    Vector3 right = view.up.cross(towards);
+    if (right.norm() < 0.1) right = view.right;
+    right = (right - right.dot(towards) * towards).normalized();
+    return {right, towards.cross(right), towards};
+}
+
+// Nearest points often lie in a face, which is not to be the cut's: a little before it.
+double cut_depth(const PictureMarker& marker, const Projection& projection, double diagonal) {
+    return projection((marker.a + marker.b) / 2).z() + 0.002 * diagonal * projection.scale;
+}
+
+PictureLine marker_line(const PictureMarker& marker, const Projection& projection) {
+    return {projection(marker.a).head<2>(), projection(marker.b).head<2>()};
+}
+
+Picture inset_of(const PartsView& parts, const PictureMarker& marker, const Projection& whole, int side) {
+    Projection projection{view_across(marker, whole.view)};
+    const double size = marker.size > 0 ? marker.size : (marker.b - marker.a).norm(), diagonal = parts.diagonal();
+    const double shown = std::clamp(8 * size, 0.06 * diagonal, std::max(0.06 * diagonal, side / (least_magnified * whole.scale)));
+    const Vector3 middle = (marker.a + marker.b) / 2;
+    projection.scale = side / std::max(shown, 1e-12);
+    projection.centre = Vector2(projection.view.right.dot(middle), projection.view.up.dot(middle));
+    projection.middle = Vector2::Constant(0.5 * side);
+    Cut cut;
+    cut.depth = cut_depth(marker, projection, shown);
+    ViewedParts seen = parts.seen(projection, side, side, cut);
+    Picture out;
+    out.surfaces = std::move(seen.surfaces);
+    out.edges = std::move(seen.edges);
+    out.marker = marker_line(marker, projection);
+    out.marker_colour = marker.is_shared ? alarm : nearest;
+    choose_scale(projection.scale, 2 * side, out);
+    return out;
+}
+
+// The corner where least is hidden; below the legend, above the scale, and not over the marker.
+Vector2 free_corner(const Picture& picture, int side) {
+    const double right = picture.surfaces.width - side - 14, bottom = picture.surfaces.height - side - 14;
+    const double under_legend = 40 + 20.0 * static_cast<double>(picture.legend.size());
+    const std::array<Vector2, 4> corners{Vector2(right, 14), Vector2(right, bottom), Vector2(14, bottom - 40), Vector2(14, under_legend)};
+    const auto covered = [&](const Vector2& corner) {
+        double sum = 0;
+        for (int y = 0; y < side; y += 4)
+            for (int x = 0; x < side; x += 4) {
+                const int u = static_cast<int>(corner.x()) + x, v = static_cast<int>(corner.y()) + y;
+                const bool is_inside = u >= 0 && v >= 0 && u < picture.surfaces.width && v < picture.surfaces.height;
+                sum += !is_inside || picture.surfaces.at(u, v) != white ? 1 : 0;
+            }
+        const Vector2 off = middle_of(*picture.marker) - (corner + Vector2::Constant(0.5 * side));
+        const bool hides_marker = off.cwiseAbs().maxCoeff() < 0.5 * side + picture.hole + 30;
+        const Vector2 text = text_place(picture) - corner;  // it ends at the picture's border at the latest
+        const double length = text_width(picture.marker_text, 2), begin = std::min(text.x(), picture.surfaces.width - length - corner.x());
+        const bool hides_text = begin < side + 8 && begin + length > -8 && text.y() > -12 && text.y() < side + 30;
+        return sum + (hides_marker ? 1e9 : 0) + (hides_text ? 1e6 : 0);
+    };
+    Vector2 best = corners.front();
+    double least = INFINITY;
+    for (const Vector2& corner : corners) {
+        if (corner.y() < 0 || corner.y() > bottom) continue;
+        const double count = covered(corner);
+        if (count < least) best = corner;
+        least = std::min(least, count);
+    }
+    return best;
+}
+
+void add_marker(const PartsView& parts, const Projection& projection, const PictureOptions& options, Picture& out) {
+    const PictureMarker& marker = *options.marker;
+    out.marker = marker_line(marker, projection);
+    out.marker_text = marker.text;
+    out.marker_colour = marker.is_shared ? alarm : nearest;
+    const int shorter = std::min(options.width, options.height);
+    if (parts.hides((marker.a + marker.b) / 2, projection, options.width, options.height)) {
+        out.hole = std::max(hole_share * shorter, 0.6 * (out.marker->to - out.marker->from).norm());
+        const Cut cut{middle_of(*out.marker), out.hole, cut_depth(marker, projection, parts.diagonal())};
+        ViewedParts seen = parts.seen(projection, options.width, options.height, cut);
+        out.surfaces = std::move(seen.surfaces);
+        out.edges = std::move(seen.edges);
+    }
+    if (shorter < least_with_inset) return;
+    const int side = static_cast<int>(inset_share * shorter);
+    out.inset_place = free_corner(out, side).array().round();
+    out.inset.push_back(inset_of(parts, marker, projection, side));
+}
+
 }  // namespace
 
 Picture draw_picture(const Assembly& assembly, const std::vector<Pose>& poses, const PictureOptions& options) {
-    FETTLE_ASSERT(poses.size() == assembly.parts.size(), "one pose for each part");
     FETTLE_ASSERT(std::min(options.width, options.height) >= 16 && std::max(options.width, options.height) <= 16384, "a picture's size");
-    const std::vector<Matrix3X> vertices = placed_vertices(assembly, poses);
-    const Projection project = fitted(vertices, options);
-    DepthBuffer buffer(fine * options.width, fine * options.height, white);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const Mesh& mesh = assembly.parts[i].mesh;
-        const std::vector<Vector3> normals = normals_of(mesh, vertices[i]);
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const auto corner = [&](std::size_t k) { return project(vertices[i].col(mesh.triangles[t][k])); };
-            buffer.add_triangle({corner(0), corner(1), corner(2)}, shaded(assembly.parts[i].colour, normals[t], options.view));
-        }
-    }
+    const PartsView parts(assembly, poses, options.crease);
+    const Projection projection = parts.fitted(options.view, options.width, options.height);
+    ViewedParts seen = parts.seen(projection, options.width, options.height);
     Picture out;
-    out.surfaces = averaged(buffer.image());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const auto lines = visible_edges(assembly.parts[i].mesh, vertices[i], buffer, project, options);
-        out.edges.insert(out.edges.end(), lines.begin(), lines.end());
-        if (i < most_named) out.legend.push_back({assembly.parts[i].name, assembly.parts[i].colour});
-    }
-    if (vertices.size() > most_named) out.legend.push_back({"and " + std::to_string(vertices.size() - most_named) + " more", white});
-    if (options.marker) {
-        out.marker = PictureLine{project(options.marker->a).head<2>() / fine, project(options.marker->b).head<2>() / fine};
-        out.marker_text = options.marker->text;
-    }
+    out.surfaces = std::move(seen.surfaces);
+    out.edges = std::move(seen.edges);
     out.title = options.title;
-    choose_scale(project.scale / fine, options.width, out);
+    for (std::size_t i = 0; i < assembly.parts.size() && i < most_named; ++i)
+        out.legend.push_back({assembly.parts[i].name, assembly.parts[i].colour});
+    if (assembly.parts.size() > most_named)
+        out.legend.push_back({"and " + std::to_string(assembly.parts.size() - most_named) + " more", white});
+    choose_scale(projection.scale, options.width, out);
+    if (options.marker) add_marker(parts, projection, options, out);
     return out;
 }
 
 Image inked(const Picture& picture) {
     Image image = picture.surfaces;
     for (const PictureLine& line : picture.edges) draw_line(image, line, ink, 1);
-    if (picture.marker) {
-        draw_line(image, *picture.marker, alarm, 2);
-        draw_dot(image, picture.marker->from, alarm);
-        draw_dot(image, picture.marker->to, alarm);
-        const Vector2 at = picture.marker->to;
-        const int width = text_width(picture.marker_text, 2);
-        const int x = std::clamp(static_cast<int>(at.x()) + 12, 4, std::max(4, image.width - width - 4));
-        const int y = std::clamp(static_cast<int>(at.y()) - 24, 4, std::max(4, image.height - 24));
-        fill(image, {x - 3, y - 3, width + 4, 21}, white);
-        write_text(image, x, y, picture.marker_text, alarm, 2);
-    }
+    if (!picture.inset.empty()) ink_inset(picture, image);
+    if (picture.marker) ink_marker(picture, image);
     ink_texts(picture, image);
     return image;
 }

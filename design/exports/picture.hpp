@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: MIT
-/// Pictures of an assembly without a browser: orthographic, hidden surfaces removed by a depth buffer, edges where faces meet at an angle.
+/// Pictures of an assembly without a browser: orthographic, hidden surfaces removed by a depth buffer, edges where faces meet at an angle
+/// (parts_view.hpp). What is marked is seen whatever stands before it: it is cut free, and shown near in an inset.
 /// As PNG: png_writer.hpp (`inked`); as SVG with edges and text as vectors: svg_writer.hpp.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "fettle/design/exports/assembly.hpp"
+#include "fettle/design/exports/parts_view.hpp"
 #include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/projection_view.hpp"
 
 namespace fettle::design::exports {
 
-/// Two points of the world and what is written beside them, such as a worst witness.
+/// Two points of the world and what is written beside them, such as a worst witness; of material that two bodies share twice its middle.
 struct PictureMarker {
     Vector3 a = Vector3::Zero(), b = Vector3::Zero();  ///< [m]
     std::string text;
+    bool is_shared = false;  ///< material that two bodies share
+    double size = 0;         ///< of what is marked, for the inset [m]; 0: how far the points are apart
 };
 
 struct PictureOptions {
@@ -25,10 +30,6 @@ struct PictureOptions {
     double crease = 0.6;  ///< faces that meet at a larger angle have an edge between them [rad]; 34 degrees: of a polygon of 12, none
     std::optional<PictureMarker> marker;
     std::string title;  ///< one line at the top
-};
-
-struct PictureLine {
-    Vector2 from = Vector2::Zero(), to = Vector2::Zero();  ///< pixels from the upper left corner
 };
 
 struct LegendEntry {
@@ -40,13 +41,26 @@ struct Picture {
     Image surfaces;                  ///< shaded, on white, no edges, no text
     std::vector<PictureLine> edges;  ///< their visible stretches
     std::optional<PictureLine> marker;
+    Colour marker_colour{};
     std::string marker_text, title;
     std::vector<LegendEntry> legend;
-    double scale_pixels = 0;  ///< length of the scale's bar
-    std::string scale_text;   ///< what it is long: "20 mm"
+    double scale_pixels = 0;     ///< length of the scale's bar
+    std::string scale_text;      ///< what it is long: "20 mm"
+    double hole = 0;             ///< radius round the marker's middle within which what stands before it is cut away; 0: nothing is
+    std::vector<Picture> inset;  ///< none or one: the marker from near, cut through
+    Vector2 inset_place = Vector2::Zero();  ///< of its upper left corner
 };
 
-/// The parts where `poses` have them (of the reference points' frames, one per part), as large as the picture allows.
+/// Where a marker's text begins: beside the hole.
+inline Vector2 text_place(const Picture& picture) {
+    return picture.marker->to + Vector2(12 + std::max(0.0, picture.hole - 8), -10 - 0.5 * picture.hole);
+}
+
+/// The middle of a marker in the picture.
+inline Vector2 middle_of(const PictureLine& marker) { return (marker.from + marker.to) / 2; }
+
+/// The parts where `poses` have them (of the reference points' frames, one per part), as large as the picture allows. Pictures below 300
+/// pixels have no inset.
 /// Contract: one pose per part; width and height from 16 to 16384.
 Picture draw_picture(const Assembly& assembly, const std::vector<core::kinematics::Pose>& poses, const PictureOptions& options);
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
 
 namespace fettle::design::exports {
@@ -109,7 +110,7 @@ std::string vtu_bytes(const Assembly& assembly, const Keyframe& keyframe) {
         }
         add_cells(mesh, vertices, static_cast<std::int32_t>(i), cells);
         vertices += static_cast<std::uint64_t>(mesh.vertices.cols());
-        names += (i == 0 ? "" : "\n") + assembly.parts[i].name;
+        names += (i == 0 ? "" : "\n") + core::base::shown_on_one_line(assembly.parts[i].name);
     }
     VtuWriter writer;
     const std::string field = writer.array("UInt8", "part_names", 1, names, " NumberOfTuples=\"" + std::to_string(names.size()) + "\"");

@@ -148,13 +148,13 @@ const char* words(nlopt_result result) {
         case NLOPT_STOPVAL_REACHED:
             return "stop value reached";
         case NLOPT_FTOL_REACHED:
-            return "objective changes less than the tolerance";
+            return "the objective changes by less than the tolerance";
         case NLOPT_XTOL_REACHED:
-            return "parameters change less than the tolerance";
+            return "the parameters change by less than the tolerance";
         case NLOPT_MAXEVAL_REACHED:
-            return "evaluation limit";
+            return "the most evaluations that are allowed were made";
         case NLOPT_ROUNDOFF_LIMITED:
-            return "limited by rounding";
+            return "steps became so short that rounding hides what they gain";
         case NLOPT_INVALID_ARGS:
             return "invalid arguments";
         case NLOPT_OUT_OF_MEMORY:
@@ -216,7 +216,7 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
         }
         return outcome;
     }
-    outcome.message = "too many restarts round designs that cannot be evaluated";
+    outcome.message = "designs that cannot be evaluated stand in the way again and again";
     return outcome;
 }
 

@@ -82,6 +82,7 @@ public:
         if (ended_at_start(report_.start)) return std::move(report_);
         for (const SmootherModel& model : problem_.smoother) {
             if (stopped_ != StopReason::none) break;
+            narrate(options_, "now with " + model.name + (begun ? ", from the best of these:" : ":"));
             begun = optimise_smoother(model, begun, point) || begun;
         }
         optimise_problem(begun, point);
@@ -126,7 +127,7 @@ private:
     bool ended_at_start(const Evaluation& start) {
         if (!start.usable || start.violation > 0 || start.objective > problem_.objective_floor) return false;
         report_.status = OptimiserStatus::optimal;
-        report_.message = "the start meets every requirement, and no other can be better";
+        report_.message = "the start meets every requirement, and no other design can be better";
         report_.start = report_.best = start;
         report_.feasible = true;
         return true;
@@ -182,6 +183,8 @@ private:
     }
 
     void optimise_problem(bool begun, const VectorX& from) {
+        if (!problem_.smoother.empty() && stopped_ != StopReason::interrupted)
+            narrate(options_, std::string("now the design as written") + (begun ? ", from the best of these:" : ":"));
         for (int k = 0; k < starts_tried; ++k) {
             if (stopped_ == StopReason::interrupted) break;
             const Problem problem = begun_at(candidate(from, k), nullptr);
@@ -249,10 +252,12 @@ private:
     // A probe that gains is where the optimiser goes on.
     void judge_and_go_on(Evaluator& evaluator, OptimiserOptions options) {
         options.radius = std::min(options.radius, later_radius);
+        narrate(options_, "no step gains any more; is it the best near by? A few designs round it, some of them worse on purpose:");
         for (int round = 0; round < most_rounds; ++round) {
             bool moved = false;
             report_.optimality = judge(evaluator, options, moved);
             if (!moved || evaluator.stop_reason() != StopReason::none) return;
+            narrate(options_, "one of them is better: going on from there");
             report_.iterations += minimise(evaluator, options).iterations;
         }
     }
@@ -263,7 +268,9 @@ private:
                          : report_.optimality.is_optimal() ? OptimiserStatus::optimal
                                                            : OptimiserStatus::feasible;
         report_.message = optimiser_.name() + ": " + native;
-        if (report_.budget_spent) report_.message = "stopped after max_evaluations = " + std::to_string(options_.max_evaluations);
+        if (report_.budget_spent)
+            report_.message = "stopped after " + std::to_string(options_.max_evaluations) +
+                              " evaluations, the most that the design allows (`max_evaluations`)";
         if (stopped_ != StopReason::interrupted) return;
         report_.status = OptimiserStatus::interrupted;
         report_.message = "stopped as asked after " + std::to_string(report_.evaluations) + " evaluations";

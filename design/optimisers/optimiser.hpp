@@ -17,7 +17,13 @@ struct OptimiserOptions {
     double radius = 0.25;               ///< of the first step, of each variable's range
     std::function<bool()> should_stop;  ///< optional (Ctrl-C)
     std::function<void(int, const VectorX&, const Evaluation&, bool best)> on_evaluation;  ///< optional
+    std::function<void(const std::string&)> narrate;  ///< optional: what the evaluations that follow are for
 };
+
+/// Says it to whoever listens.
+inline void narrate(const OptimiserOptions& options, const std::string& line) {
+    if (options.narrate) options.narrate(line);
+}
 
 /// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a ten thousandth of that at the start.
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective);

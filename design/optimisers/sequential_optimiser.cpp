@@ -32,12 +32,14 @@ public:
         for (;; ++iterations_) {
             telling_ = with_telling_derivatives(evaluator_, point_, *at_);
             const QuadraticSolution step = steered_step();
-            if (!step.solved) return end("no step could be computed");
+            if (!step.solved) return end("no next design could be computed");
             const double worth = least_gain(evaluator_, options_, at_->objective);
-            if (step.decrease <= worth) return end("the predicted gain is below the tolerance");
-            if (step.step.lpNorm<Eigen::Infinity>() < least_radius()) return end("steps became too short to be worth an evaluation");
+            if (step.decrease <= worth) return end("no change near by promises a gain above the tolerance");
+            if (step.step.lpNorm<Eigen::Infinity>() < least_radius())
+                return end("steps became so short that they change nothing that matters");
             take(step);
-            if (radius_ < least_radius()) return end("the prediction fails however short the step");
+            if (radius_ < least_radius())
+                return end("what is predicted does not come true, however small the change: the simulated values are rough here");
         }
     }
 

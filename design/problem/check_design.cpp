@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/design/problem/friction_moves.hpp"
 #include "fettle/design/problem/mechanism_moves.hpp"
@@ -25,6 +26,7 @@ public:
     DesignCheck(const Design& design, const core::model::Model& model) : design_(design), model_(model) {}
 
     Errors run() {
+        check_names();
         if (design_.steps < 0) add(ErrorCode::out_of_range, "steps", "the number of time steps is not negative");
         if (!(design_.clearance_tolerance > 0)) add(ErrorCode::out_of_range, "clearance_tolerance", "it must be greater than 0");
         for (size_t i = 0; i < design_.shapes.size(); ++i) check_shape(static_cast<int>(i));
@@ -55,6 +57,22 @@ public:
     }
 
 private:
+    // As those of bodies (core/model/check_scene.hpp).
+    void check_names() {
+        const auto want = [&](const auto& list, const char* what) {
+            for (const auto& each : list) {
+                const std::string fault = core::base::name_fault(each.name);
+                if (!fault.empty())
+                    add(ErrorCode::out_of_range, std::string(what) + " `" + core::base::shown_on_one_line(each.name) + "`",
+                        "its name " + fault + "; a name is text on one line");
+            }
+        };
+        want(design_.parameters, "parameter");
+        want(design_.objective, "objective");
+        want(design_.relations, "relation");
+        want(design_.constraints, "constraint");
+    }
+
     static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
 
     void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }

@@ -168,6 +168,7 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
         differentiate(*moved, options.branches, evaluation);
         evaluation.backward_seconds = backward.seconds();
     }
+    if (!evaluation.usable) evaluation.objective = evaluation.violation = std::nan("");
     return evaluation;
 }
 
@@ -233,6 +234,7 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
         if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
         if (evaluation.reason.empty()) evaluation.reason = name_of(of) + ": its value is no finite number";
     };
+    evaluation.objective = evaluation.violation = 0;
     for (const description::ObjectiveTerm& term : design_.objective) {
         evaluation.terms.push_back(term.quantity->value(simulated));
         evaluation.objective += term.weight * evaluation.terms.back().value / term.unit;

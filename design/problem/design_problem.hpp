@@ -6,6 +6,7 @@
 /// design has the same numbers, bit for bit, whether a program made it or a file.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -40,17 +41,17 @@ struct DesignEvaluation {
     std::vector<description::Measurement> terms;        ///< per objective term, SI
     std::vector<description::Measurement> constraints;  ///< per constraint, SI
     optimisers::Rows relations;                         ///< values and gradients, of an unusable trial too
-    double objective = 0;                               ///< sum of weight * value / unit
-    double violation = 0;                               ///< largest of the constraints' and relations' (description/constraint.hpp)
-    VectorX gradient;                                   ///< d objective / d parameters, SI; empty unless asked for
-    MatrixX jacobian;                                   ///< d constraint values / d parameters, SI
-    VectorX residuals;                                  ///< the objective's deviations (optimisers/problem.hpp)
-    MatrixX residual_jacobian;                          ///< of the objective's squared deviations (optimisers/problem.hpp), a row each
-    optimisers::Branches constraint_branches;           ///< of clearances (optimisers/problem.hpp)
-    optimisers::Branches objective_branches;            ///< the same of terms with a negative weight
-    std::vector<Tie> ties;                              ///< if asked for: quantities whose derivative is one of several
-    double forward_seconds = 0;                         ///< parts, model, simulation, values
-    double backward_seconds = 0;                        ///< seeds, sweep, chain
+    double objective = std::nan("");                    ///< sum of weight * value / unit; NaN: not usable
+    double violation = std::nan("");           ///< largest of the constraints' and relations' (description/constraint.hpp); NaN: not usable
+    VectorX gradient;                          ///< d objective / d parameters, SI; empty unless asked for
+    MatrixX jacobian;                          ///< d constraint values / d parameters, SI
+    VectorX residuals;                         ///< the objective's deviations (optimisers/problem.hpp)
+    MatrixX residual_jacobian;                 ///< of the objective's squared deviations (optimisers/problem.hpp), a row each
+    optimisers::Branches constraint_branches;  ///< of clearances (optimisers/problem.hpp)
+    optimisers::Branches objective_branches;   ///< the same of terms with a negative weight
+    std::vector<Tie> ties;                     ///< if asked for: quantities whose derivative is one of several
+    double forward_seconds = 0;                ///< parts, model, simulation, values
+    double backward_seconds = 0;               ///< seeds, sweep, chain
 };
 
 /// Const after creation: evaluate may be called from several threads at once.

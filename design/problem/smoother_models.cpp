@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 
 namespace fettle::design::problem {
@@ -47,14 +47,12 @@ std::vector<SmootherDesign> smoother_models(const DesignProblem& problem, const 
     std::vector<SmootherDesign> models;
     const Result<core::model::Model> model = problem.model_at(p);
     if (!model) return models;
-    const double unit = problem.design().scene.length_unit;
     const double widest = widest_share * play_of_fits(problem, p);
     for (int k = 0; std::ldexp(widest, -k) > worth_a_stage * model->dhat; ++k) {  // halved each time, exactly
         const double width = std::ldexp(widest, -k);
         Result<DesignProblem> wide = problem.with_contact_width(width);
         if (!wide) continue;
-        char name[80];
-        std::snprintf(name, sizeof name, "contact %.3g wide (in the file's unit), not %.3g", width / unit, model->dhat / unit);
+        const std::string name = "contact " + core::base::length_text(width, problem.design().scene.length_unit) + " wide";
         models.push_back({name, width, std::move(wide).value()});
     }
     return models;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/python/arguments.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/python/errors.hpp"
 
 namespace fettle::design::python {
@@ -36,6 +38,44 @@ std::string shown(py::handle found) {
     return (text.size() > 60 ? "a value" : text + ",") + " of type " + type;
 }
 
+std::vector<std::string> texts_of(const std::vector<Path>& paths) {
+    std::vector<std::string> texts;
+    for (const Path& path : paths) texts.push_back(path.string());
+    return texts;
+}
+
+double quantity_from(py::handle given, core::base::Dimension dimension, const std::string& where) {
+    if (py::isinstance<py::str>(given)) return value_or_raise(core::base::parse_quantity(given.cast<std::string>(), dimension, where));
+    py::detail::make_caster<double> number;
+    if (given.is_none() || !number.load(given, true))
+        refuse(ErrorCode::wrong_type, where,
+               shown(given) + ": a number in " + std::string(core::base::si_unit(dimension)) + ", or a text with a unit, is wanted");
+    return py::detail::cast_op<double>(number);
+}
+
+double unit_from(py::handle given, core::base::Dimension dimension, const std::string& where) {
+    if (py::isinstance<py::str>(given) && core::base::find_unit(given.cast<std::string>()) != nullptr)
+        return value_or_raise(core::base::si_per_unit(given.cast<std::string>(), dimension, where));
+    return quantity_from(given, dimension, where);
+}
+
+int body_from(const std::vector<std::string>& names, py::handle given, const std::string& where) {
+    const auto count = static_cast<int>(names.size());
+    if (py::isinstance<py::str>(given)) {
+        const auto name = given.cast<std::string>();
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found != names.end()) return static_cast<int>(found - names.begin());
+        refuse(ErrorCode::out_of_range, where,
+               "there is no body \"" + name + "\"; " + core::files::did_you_mean(name, {names.begin(), names.end()}));
+    }
+    py::detail::make_caster<int> number;
+    if (!number.load(given, true)) refuse(ErrorCode::wrong_type, where, shown(given) + ": a body's name or its number is wanted");
+    const int body = py::detail::cast_op<int>(number);
+    if (body < 0 || body >= count)
+        throw py::index_error("there is no body " + std::to_string(body) + "; there are " + std::to_string(count) + ", counted from 0");
+    return body;
+}
+
 void check_at_least(const std::string& where, double value, double least) {
     check_number(where, value, value >= least, shown_number(least) + " or more");
 }
@@ -47,13 +87,6 @@ void check_above(const std::string& where, double value, double least) {
 void check_steps(int steps) {
     if (steps >= -1) return;
     refuse(ErrorCode::out_of_range, "steps", std::to_string(steps) + " is not allowed: 0 or more is, or -1, until the model's end_time");
-}
-
-void check_point(const VectorX& p, Eigen::Index parameters) {
-    if (p.size() == parameters) return;
-    refuse(
-        ErrorCode::inconsistent, "p",
-        "one value for each of the design's parameters is wanted: " + std::to_string(parameters) + ", found " + std::to_string(p.size()));
 }
 
 std::uint64_t seed_from(std::int64_t seed) {

@@ -4,12 +4,16 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
@@ -20,13 +24,22 @@ namespace fettle::design::python {
 /// "'a', of type str"; None is "None". Contract: the interpreter's lock is held.
 std::string shown(pybind11::handle found);
 
+/// A path of a file or folder: str or os.PathLike.
+using Path = std::filesystem::path;
+std::vector<std::string> texts_of(const std::vector<Path>& paths);
+
+/// A number in SI, or a text with a unit of that dimension ("0.3mm").
+double quantity_from(pybind11::handle given, core::base::Dimension dimension, const std::string& where);
+/// The same; the unit's name alone ("mm") is one of it.
+double unit_from(pybind11::handle given, core::base::Dimension dimension, const std::string& where);
+/// A body's number, or its name.
+int body_from(const std::vector<std::string>& names, pybind11::handle given, const std::string& where);
+
 /// Finite, and `least` or more; or more than `least`.
 void check_at_least(const std::string& where, double value, double least);
 void check_above(const std::string& where, double value, double least);
 /// -1: until the model's end_time.
 void check_steps(int steps);
-/// @param p  SI, one value for each of the design's parameters.
-void check_point(const VectorX& p, Eigen::Index parameters);
 /// Those that are not negative.
 std::uint64_t seed_from(std::int64_t seed);
 /// Of a trajectory and the model that it is said to be of.

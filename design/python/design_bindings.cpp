@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
@@ -28,8 +30,8 @@ std::function<RelationValue(const VectorX&)> relation_function(py::handle callab
     };
 }
 
-reading::DesignReadOptions read_options(const std::vector<std::string>& mesh_dirs, bool allow_programs) {
-    return {mesh_dirs, allow_programs ? reading::Programs::allowed : reading::Programs::refused};
+reading::DesignReadOptions read_options(const std::vector<Path>& mesh_dirs, bool allow_programs) {
+    return {texts_of(mesh_dirs), allow_programs ? reading::Programs::allowed : reading::Programs::refused};
 }
 
 description::Design design_round_trip(description::Design design) { return with_formulas(std::move(design)); }
@@ -40,6 +42,37 @@ void refuse_unit(const std::string& name) {
     std::vector<std::string_view> known;
     for (const Unit& unit : core::base::units()) known.push_back(unit.name);
     refuse(ErrorCode::out_of_range, "unit", "\"" + name + "\" is no unit; " + core::files::did_you_mean(name, known));
+}
+
+VectorX point_from(const std::vector<description::Parameter>& parameters, py::handle given) {
+    const auto value_of = [&](std::size_t k, py::handle value) {
+        return quantity_from(value, parameters[k].unit.dimension, "p/" + parameters[k].name);
+    };
+    if (py::isinstance<py::dict>(given)) {
+        VectorX p = description::values_of(parameters);
+        std::vector<std::string> names;
+        for (const auto& parameter : parameters) names.push_back(parameter.name);
+        for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
+            const std::string name = py::str(key);
+            const auto found = std::find(names.begin(), names.end(), name);
+            if (found == names.end())
+                refuse(ErrorCode::unknown_key, "p/" + name,
+                       "there is no such parameter; " + core::files::did_you_mean(name, {names.begin(), names.end()}));
+            const auto k = static_cast<std::size_t>(found - names.begin());
+            p[static_cast<Eigen::Index>(k)] = value_of(k, value);
+        }
+        return p;
+    }
+    const bool listed = py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given);
+    if (listed && py::len(given) == parameters.size()) {
+        VectorX p(static_cast<Eigen::Index>(parameters.size()));
+        for (std::size_t k = 0; k < parameters.size(); ++k) p[static_cast<Eigen::Index>(k)] = value_of(k, given[py::int_(k)]);
+        return p;
+    }
+    py::detail::make_caster<VectorX> numbers;
+    if (given.is_none() || !numbers.load(given, true))
+        refuse(ErrorCode::wrong_type, "p", shown(given) + ": values of the parameters are wanted, in SI, or by name");
+    return py::detail::cast_op<VectorX>(numbers);
 }
 
 Relation relation_from_python(py::handle source) {
@@ -79,32 +112,33 @@ description::Design with_formulas(description::Design design) {
 }
 
 void bind_design(py::module_& module) {
-    using Paths = std::vector<std::string>;
+    using Paths = std::vector<Path>;
     bind_shapes(module);
     bind_quantities(module);
     const py::call_guard<py::gil_scoped_release> unlocked;
     module.def(
         "read_design",
-        [](const std::string& path, const Paths& dirs, bool allow_programs) {
-            return value_or_raise(reading::read_design(path, read_options(dirs, allow_programs)));
+        [](const Path& path, const Paths& dirs, bool allow_programs) {
+            return value_or_raise(reading::read_design(path.string(), read_options(dirs, allow_programs)));
         },
         py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The DesignFile of a *.design.json, with its scene. allow_programs: the programs that it names may be run to make its parts.");
     module.def(
         "parse_design",
-        [](const std::string& text, const std::string& path, const Paths& dirs, bool allow_programs) {
-            return value_or_raise(reading::parse_design(text, path, read_options(dirs, allow_programs)));
+        [](const std::string& text, const Path& path, const Paths& dirs, bool allow_programs) {
+            return value_or_raise(reading::parse_design(text, path.string(), read_options(dirs, allow_programs)));
         },
         py::arg("text"), py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The same of a text; `path` says where its scene is looked for.");
     module.def(
         "design_text",
-        [](const reading::DesignFile& file, const VectorX& values, const std::string& directory) {
-            check_point(values, static_cast<Eigen::Index>(file.design.parameters.size()));
-            return reading::design_text(file, values, directory);
+        [](const reading::DesignFile& file, const py::object& values, const Path& directory) {
+            const VectorX p = point_from(file.design.parameters, values);
+            raise_if_any(description::check_values(file.design.parameters, p));
+            return reading::design_text(file, p, directory.string());
         },
         py::arg("file"), py::arg("values"), py::arg("directory") = ".",
-        "The design's file with other values of its parameters (SI), to be written in that folder.");
+        "The design's file with other values of its parameters (as p of DesignProblem), to be written in that folder.");
     module.def("as_library_has_it", &design_round_trip, py::arg("design"), "For tests.");
     module.def(
         "to_si", [](double number, const Unit& unit) { return core::base::to_si(number, unit); }, py::arg("number"), py::arg("unit"));

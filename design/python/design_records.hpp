@@ -17,6 +17,10 @@ namespace fettle::design::python {
 description::Relation relation_from_python(pybind11::handle relation);
 pybind11::object relation_to_python(const description::Relation& relation);
 
+/// Values of parameters [SI] as Python gives them: numbers, one for each, or by name ({"height": 9e-3}; those left out as the design has
+/// them); texts have units ("9mm"), of the parameter's dimension.
+VectorX point_from(const std::vector<description::Parameter>& parameters, pybind11::handle given);
+
 /// Relations that Python gave as formulas get their functions. Throws RaisedErrors for those that cannot be read.
 description::Design with_formulas(description::Design design);
 
@@ -111,8 +115,8 @@ FETTLE_RECORD(fettle::design::description::Design, "Design", field("scene", &Typ
               field("steps", &Type::steps), field("clearance_tolerance", &Type::clearance_tolerance),
               field("parameters", &Type::parameters), field("objective", &Type::objective), field("constraints", &Type::constraints),
               field("relations", &Type::relations), field("optimiser", &Type::optimiser))
-FETTLE_RECORD(fettle::design::reading::DesignFile, "DesignFile", field("design", &Type::design), field("path", &Type::path),
-              field("text", &Type::text), field("scene_path", &Type::scene_path), field("length_unit", &Type::length_unit),
+FETTLE_RECORD(fettle::design::reading::DesignFile, "DesignFile", field("design", &Type::design), path_field("path", &Type::path),
+              field("text", &Type::text), path_field("scene_path", &Type::scene_path), field("length_unit", &Type::length_unit),
               field("output", &Type::output), field("warnings", &Type::warnings))
 FETTLE_RECORD(fettle::design::optimisers::Rows, "Rows", field("values", &Type::values), field("jacobian", &Type::jacobian))
 FETTLE_RECORD(fettle::design::problem::DesignEvaluation, "DesignEvaluation", field("usable", &Type::usable), field("reason", &Type::reason),

@@ -5,14 +5,19 @@
 
 #include "fettle/design/python/records.hpp"
 
-FETTLE_WORDS(fettle::core::base::ErrorCode, "file_not_found", "file_unreadable", "parse", "unknown_key", "missing_key", "wrong_type",
-             "out_of_range", "not_finite", "mesh_invalid", "bodies_intersect", "inconsistent", "unsupported")
+FETTLE_WORDS(fettle::core::base::ErrorCode, "file_not_found", "file_unreadable", "file_unwritable", "out_of_memory", "parse", "unknown_key",
+             "missing_key", "wrong_type", "out_of_range", "not_finite", "mesh_invalid", "bodies_intersect", "inconsistent", "unsupported")
 FETTLE_RECORD(fettle::core::base::Error, "Fault", field("code", &Type::code), field("where", &Type::where),
               field("message", &Type::message))
 
 namespace fettle::design::python {
 
 namespace py = pybind11;
+
+void warn_of(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+}
 
 Errors errors_of(py::error_already_set& raised, const std::string& where) {
     const py::object error_class = record_class("Error");

@@ -7,6 +7,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fettle/design/python/raised_errors.hpp"
 
@@ -20,6 +21,9 @@ T value_or_raise(Result<T> result) {
 inline void raise_if_any(const Errors& errors) {
     if (!errors.empty()) throw RaisedErrors(errors);
 }
+
+/// As Python's UserWarning, which may be made to raise. Contract: the interpreter's lock is held.
+void warn_of(const std::vector<std::string>& warnings);
 
 /// What a Python callable raised as fettle.Error or ValueError, as errors of the library; others are thrown on.
 /// Contract: the interpreter's lock is held.

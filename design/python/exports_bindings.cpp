@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
@@ -11,7 +12,9 @@
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
+#include "fettle/design/report/report_data.hpp"
 #include "fettle/design/report/report_folder.hpp"
+#include "fettle/design/report/report_page.hpp"
 
 namespace fettle::design::python {
 
@@ -96,15 +99,31 @@ py::bytes draw(const Model& model, const Trajectory* trajectory, const PictureAr
     return bytes;
 }
 
+std::string view_page(const Model& model, const Trajectory* trajectory, const std::string& title) {
+    const Trajectory path = trajectory == nullptr ? core::clearance::as_assembled(model) : *trajectory;
+    check_same_bodies(path, model);
+    const py::gil_scoped_release unlocked;
+    report::ReportSource source;
+    source.kind = report::ReportKind::clearance;  // of which nothing was judged: no distance is certified for a look
+    source.name = title;
+    source.gravity = model.gravity;
+    source.result = {{"status", "undecided"},
+                     {"message", "Parts and their motion as they were given; certify_clearance proves distances."},
+                     {"motion", !path.steps.empty()},
+                     {"pairs", nlohmann::ordered_json::array()}};
+    source.motion = report::Motion{model, path};
+    return report::page_of(report::report_data(source, [] { return true; }));
+}
+
 }  // namespace
 
 void bind_exports(py::module_& module) {
     module.def(
         "export_files",
-        [](const std::string& folder, const std::string& format, const Model& model, const Trajectory* trajectory, const std::string& stem,
+        [](const Path& folder, const std::string& format, const Model& model, const Trajectory* trajectory, const std::string& stem,
            const std::string& arrangement, int every) {
             const py::gil_scoped_release unlocked;
-            return export_files(model, trajectory, {folder, format, stem, arrangement, every});
+            return export_files(model, trajectory, {folder.string(), format, stem, arrangement, every});
         },
         py::arg("folder"), py::arg("format"), py::arg("model"), py::arg("trajectory") = py::none(), py::arg("stem") = "parts",
         py::arg("arrangement") = "assembled", py::arg("every") = 1,
@@ -122,12 +141,12 @@ void bind_exports(py::module_& module) {
         "\"azimuth,elevation\" in degrees; size: width and height in pixels.");
     module.def(
         "write_report",
-        [](const std::string& folder, const std::string& out, bool allow_programs) {
+        [](const Path& folder, const Path& out, bool allow_programs) {
             const py::gil_scoped_release unlocked;
             report::ReportOptions options;
-            options.out = out;
+            options.out = out.string();
             if (allow_programs) options.programs = reading::Programs::allowed;
-            return value_or_raise(report::write_report(folder, std::move(options)));
+            return value_or_raise(report::write_report(folder.string(), std::move(options)));
         },
         py::arg("folder"), py::arg("out") = "", py::arg("allow_programs") = false,
         "Makes FOLDER/report.html of what optimise_file, or a command with --out, left there; its path.");
@@ -135,7 +154,9 @@ void bind_exports(py::module_& module) {
         [](const Model& model) {
             return draw(model, nullptr, {0, "iso", "", {800, 600}, false});
         },
-        py::is_method(module.attr("Model")), "How a notebook shows it: the parts at the start.");
+        py::is_method(module.attr("Model")), "How it is shown where there is no HTML: the parts at the start.");
+    module.def("view_page", &view_page, py::arg("model"), py::arg("trajectory") = py::none(), py::arg("title") = "",
+               "The report's page of these parts and their motion, as HTML that needs nothing else; fettle.view shows it in a notebook.");
 }
 
 }  // namespace fettle::design::python

@@ -19,10 +19,14 @@ py::dict defaults() {
     py::dict all;
     add_default<fettle::core::certificate::CertificateFault>(all);
     add_default<fettle::core::certificate::CertificateReport>(all);
+    add_default<fettle::core::certificate::JointCoordinate>(all);
+    add_default<fettle::core::certificate::LinkageCoordinate>(all);
     add_default<fettle::core::clearance::MarginInterval>(all);
     add_default<fettle::core::clearance::Overlap>(all);
     add_default<fettle::core::clearance::PairClearance>(all);
     add_default<fettle::core::clearance::PairRequest>(all);
+    add_default<fettle::core::clearance::Touch>(all);
+    add_default<fettle::core::clearance::RangeClearance>(all);
     add_default<fettle::core::clearance::Witness>(all);
     add_default<fettle::core::energy::ContactForce>(all);
     add_default<fettle::core::kinematics::Pose>(all);

@@ -13,6 +13,7 @@ namespace fettle::design::python {
 
 /// Throws pybind11::index_error.
 const core::model::Body& body_at(const core::model::Model& model, int body);
+std::vector<std::string> body_names(const core::model::Model& model);
 pybind11::array read_only(pybind11::array array);
 
 /// Views into the model, kept alive by `owner`.

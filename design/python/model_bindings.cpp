@@ -13,23 +13,31 @@ using core::model::Model;
 
 namespace {
 
-std::shared_ptr<Model> build_model(const core::scene::Scene& scene, std::optional<double> kappa, bool check_start) {
+std::shared_ptr<Model> build_model(const core::scene::Scene& scene, const py::object& given_kappa, bool check_start) {
+    std::optional<double> kappa;
+    if (!given_kappa.is_none()) kappa = quantity_from(given_kappa, core::base::Dimension::stiffness, "kappa");
     if (kappa) check_above("kappa", *kappa, 0);
     check_above("scene/length_unit", scene.length_unit, 0);
     check_at_least("scene/max_newton_iterations", scene.max_newton_iterations, 1);
     core::model::BuildOptions options;
     options.kappa = kappa;
     options.check_start = check_start;
-    return std::make_shared<Model>(value_or_raise(core::model::build_model(scene, options)));
+    std::shared_ptr<Model> model;
+    {
+        const py::gil_scoped_release unlocked;
+        model = std::make_shared<Model>(value_or_raise(core::model::build_model(scene, options)));
+    }
+    warn_of(model->warnings);
+    return model;
 }
+
+}  // namespace
 
 std::vector<std::string> body_names(const Model& model) {
     std::vector<std::string> names;
     for (const Body& body : model.bodies) names.push_back(body.name);
     return names;
 }
-
-}  // namespace
 
 const Body& body_at(const Model& model, int body) {
     if (body < 0 || static_cast<std::size_t>(body) >= model.bodies.size())
@@ -62,30 +70,59 @@ py::array reference_points_of(const Model& model) {
     return points;
 }
 
+namespace {
+
+int body_named(const Model& model, const py::object& body) { return body_from(body_names(model), body, "body"); }
+
+}  // namespace
+
 void bind_model(py::module_& module) {
-    py::class_<Model, std::shared_ptr<Model>>(module, "Model", "Bodies with mass, hierarchy and prescribed coordinates; const once built.")
+    py::class_<Model, std::shared_ptr<Model>>(
+        module, "Model",
+        "Bodies with mass, hierarchy and prescribed coordinates; const once built. A body is asked for "
+        "by its number or its name.")
         .def_property_readonly("body_names", &body_names)
+        .def_property_readonly(
+            "body_types",
+            [](const Model& model) {
+                std::vector<core::scene::BodyType> types;
+                for (const Body& body : model.bodies) types.push_back(body.type);
+                return types;
+            },
+            "\"dynamic\", \"static\" or \"kinematic\", per body.")
+        .def("__repr__", [](const py::object& self) { return py::module_::import("fettle._shown").attr("model_line")(self); })
+        .def(
+            "_repr_html_", [](const py::object& self) { return py::module_::import("fettle._shown").attr("model_html")(self); },
+            "How a notebook shows it: a table of the bodies, and the parts at the start.")
         .def_property_readonly("reference_points", &reference_points_of,
                                "(bodies, 3): c of each body in its file's frame [m]; poses are c's, vertices relative to it.")
         .def(
-            "vertices", [](const py::object& self, int body) { return vertices_of(self.cast<const Model&>(), body, self); },
+            "vertices",
+            [](const py::object& self, const py::object& body) {
+                const auto& model = self.cast<const Model&>();
+                return vertices_of(model, body_named(model, body), self);
+            },
             py::arg("body"), "(n, 3), relative to the body's reference point [m]; a read-only view, no copy.")
         .def(
-            "triangles", [](const py::object& self, int body) { return triangles_of(self.cast<const Model&>(), body, self); },
+            "triangles",
+            [](const py::object& self, const py::object& body) {
+                const auto& model = self.cast<const Model&>();
+                return triangles_of(model, body_named(model, body), self);
+            },
             py::arg("body"), "(m, 3), counter-clockwise seen from outside; a read-only view, no copy.")
         .def(
-            "mass", [](const Model& model, int body) { return body_at(model, body).moments(3, 3); }, py::arg("body"),
-            "[kg]; 0 unless dynamic.")
+            "mass", [](const Model& model, const py::object& body) { return body_at(model, body_named(model, body)).moments(3, 3); },
+            py::arg("body"), "[kg]; 0 unless dynamic.")
         .def(
-            "density", [](const Model& model, int body) { return body_at(model, body).density; }, py::arg("body"))
+            "density", [](const Model& model, const py::object& body) { return body_at(model, body_named(model, body)).density; },
+            py::arg("body"))
         .def(
-            "mesh", [](const Model& model, int body) { return body_at(model, body).mesh; }, py::arg("body"),
-            "A copy of the body's mesh, relative to its reference point.")
+            "mesh", [](const Model& model, const py::object& body) { return body_at(model, body_named(model, body)).mesh; },
+            py::arg("body"), "A copy of the body's mesh, relative to its reference point.")
         .def(
             "may_collide",
-            [](const Model& model, int a, int b) {
-                body_at(model, a), body_at(model, b);
-                return core::model::may_collide(model, a, b);
+            [](const Model& model, const py::object& a, const py::object& b) {
+                return core::model::may_collide(model, body_named(model, a), body_named(model, b));
             },
             py::arg("a"), py::arg("b"), "Does contact act between these two bodies?")
         .def_property_readonly(
@@ -99,7 +136,7 @@ void bind_model(py::module_& module) {
         .def_readonly("warnings", &Model::warnings)
         .def("__len__", [](const Model& model) { return model.bodies.size(); });
     module.def("build_model", &build_model, py::arg("scene"), py::arg("kappa") = py::none(), py::arg("check_start") = true,
-               py::call_guard<py::gil_scoped_release>(), "Scene -> Model. Raises Error with every fault found, by body, mesh and element.");
+               "Scene -> Model. Raises Error with every fault found, by body, mesh and element; warns of what can hardly be meant.");
 }
 
 }  // namespace fettle::design::python

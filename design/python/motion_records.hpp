@@ -4,12 +4,13 @@
 
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
+#include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/core/stepper/simulation.hpp"
 #include "fettle/design/python/records.hpp"
 
 FETTLE_WORDS(fettle::core::stepper::SimulationStatus, "ok", "blocked", "not_held", "not_converged", "interrupted")
 FETTLE_WORDS(fettle::core::clearance::PairStatus, "clear", "violated", "undecided", "contact")
-FETTLE_WORDS(fettle::core::certificate::Solids, "unproven", "disjoint", "overlap", "not closed")
+FETTLE_WORDS(fettle::core::certificate::Solids, "unproven", "disjoint", "overlap", "not closed", "not verified")
 FETTLE_WORDS(fettle::core::certificate::Primitive, "vertex", "edge", "triangle")
 
 FETTLE_RECORD(fettle::core::stepper::StepReport, "StepReport", field("newton_iterations", &Type::newton_iterations),
@@ -37,7 +38,8 @@ FETTLE_RECORD(fettle::core::stepper::Simulation, "Simulation", field("trajectory
               field("outputs", &Type::outputs))
 
 FETTLE_RECORD(fettle::core::clearance::PairRequest, "PairRequest", field("a", &Type::a), field("b", &Type::b),
-              field("minimum", &Type::minimum), field("far", &Type::far))
+              field("minimum", &Type::minimum), field("far", &Type::far), field("may_touch", &Type::may_touch),
+              field("touch_depth", &Type::touch_depth))
 FETTLE_RECORD(fettle::core::clearance::Witness, "Witness", field("step", &Type::step), field("segment", &Type::segment),
               field("s", &Type::s), field("time", &Type::time), field("kind_a", &Type::kind_a), field("kind_b", &Type::kind_b),
               field("primitive_a", &Type::primitive_a), field("primitive_b", &Type::primitive_b), field("edge_edge", &Type::edge_edge),
@@ -49,12 +51,25 @@ FETTLE_RECORD(fettle::core::clearance::MarginInterval, "MarginInterval", field("
 FETTLE_RECORD(fettle::core::clearance::Overlap, "Overlap", field("depth_lower", &Type::depth_lower),
               field("depth_upper", &Type::depth_upper), field("volume_lower", &Type::volume_lower),
               field("volume_upper", &Type::volume_upper), field("time", &Type::time), field("center", &Type::center))
+FETTLE_RECORD(fettle::core::clearance::Touch, "Touch", field("area", &Type::area), field("time", &Type::time), field("depth", &Type::depth),
+              field("room", &Type::room))
 FETTLE_RECORD(fettle::core::clearance::PairClearance, "PairClearance", field("a", &Type::a), field("b", &Type::b),
-              field("minimum", &Type::minimum), field("lower", &Type::lower), field("upper", &Type::upper), field("is_far", &Type::is_far),
-              field("status", &Type::status), field("witness", &Type::witness), field("complete", &Type::complete),
-              field("intersecting", &Type::intersecting), field("solids", &Type::solids), field("overlap", &Type::overlap),
+              field("minimum", &Type::minimum), field("lower", &Type::lower), field("upper", &Type::upper),
+              field("is_bounded", &Type::is_bounded), field("is_far", &Type::is_far), field("status", &Type::status),
+              field("witness", &Type::witness), field("complete", &Type::complete), field("intersecting", &Type::intersecting),
+              field("solids", &Type::solids), field("overlap", &Type::overlap), field("touch", &Type::touch),
               field("clash_not_before", &Type::clash_not_before), field("clash_time", &Type::clash_time), field("reason", &Type::reason),
               field("sampled", &Type::sampled), field("margin", &Type::margin), field("witnesses", &Type::witnesses))
+FETTLE_RECORD(fettle::core::clearance::RangeClearance, "RangeClearance", field("a", &Type::a), field("b", &Type::b),
+              field("minimum", &Type::minimum), field("lower", &Type::lower), field("upper", &Type::upper),
+              field("tolerance", &Type::tolerance), field("status", &Type::status), field("witness", &Type::witness),
+              field("coordinates", &Type::coordinates), field("at", &Type::at), field("complete", &Type::complete),
+              field("intersecting", &Type::intersecting), field("solids", &Type::solids), field("reason", &Type::reason),
+              field("bounds", &Type::bounds))
+FETTLE_RECORD(fettle::core::certificate::JointCoordinate, "JointCoordinate", field("joint", &Type::joint),
+              field("is_angle", &Type::is_angle), field("scale", &Type::scale), field("offset", &Type::offset))
+FETTLE_RECORD(fettle::core::certificate::LinkageCoordinate, "RangeCoordinate", field("start", &Type::start), field("low", &Type::low),
+              field("high", &Type::high), field("is_whole_turn", &Type::is_whole_turn), field("joints", &Type::joints))
 FETTLE_RECORD(fettle::core::certificate::CertificateFault, "CertificateFault", field("where", &Type::where),
               field("message", &Type::message))
 FETTLE_RECORD(fettle::core::certificate::CertificateReport, "CertificateReport", field("faults", &Type::faults),

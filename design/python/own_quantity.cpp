@@ -16,8 +16,6 @@
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
-FETTLE_WORDS(fettle::core::base::Dimension, "number", "length", "area", "volume", "angle", "time", "mass", "force", "torque", "energy",
-             "speed", "angular_speed", "acceleration", "density", "stiffness")
 FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least")
 FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
 FETTLE_WORDS(fettle::design::quantities::JointLoadKind, "force", "torque", "effort")
@@ -312,6 +310,13 @@ void bind_quantities(py::module_& module) {
     py::class_<OpaqueQuantity>(module, "OpaqueQuantity", "A quantity of the library's that Python has no class for; it is not pickled.")
         .def(
             "__eq__", [](const OpaqueQuantity& a, const OpaqueQuantity& b) { return a.quantity == b.quantity; }, py::is_operator());
+    module.def(
+        "quantity_dimension",
+        [](const py::object& given) {
+            const auto quantity = quantity_from_python(given);
+            return quantity ? quantity->dimension() : Dimension::number;
+        },
+        py::arg("quantity"), "What a quantity measures: \"length\", \"mass\", ...");
     const auto model = [](const SimulatedView& view) -> const core::model::Model& { return view.get().model; };
     py::class_<SimulatedView>(module, "Simulated",
                               "A design, simulated; valid while the call that it is handed to runs. Arrays are copies.")

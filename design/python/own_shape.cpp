@@ -30,6 +30,16 @@ namespace {
 
 using NamedNumbers = std::map<std::string, double>;
 
+// {dimension: metres, or "3mm"}
+NamedNumbers lengths_from(const py::dict& given) {
+    NamedNumbers lengths;
+    for (const auto& [name, value] : given) {
+        const std::string of = py::str(name);
+        lengths[of] = quantity_from(value, core::base::Dimension::length, of);
+    }
+    return lengths;
+}
+
 // "Frustum.at()"
 std::string method_of(py::handle shape, const char* method) {
     return py::str(py::type::of(shape).attr("__name__")).cast<std::string>() + "." + method;
@@ -246,21 +256,22 @@ void bind_shapes(py::module_& module) {
         .def(
             "__eq__", [](const OpaqueShape& a, const OpaqueShape& b) { return a.shape == b.shape; }, py::is_operator())
         .def("dimensions", [](const OpaqueShape& self) { return named_dimensions(*self.shape); })
-        .def("at", [](const OpaqueShape& self, const std::map<std::string, double>& values) { return instance(*self.shape, values); });
+        .def("at", [](const OpaqueShape& self, const py::dict& values) { return instance(*self.shape, lengths_from(values)); });
     module.def(
         "shape_at",
-        [](const py::object& shape, const std::map<std::string, double>& values) { return instance(*shape_from_python(shape), values); },
-        py::arg("shape"), py::arg("values") = std::map<std::string, double>(),
-        "(mesh, {dimension: d vertices / d dimension, (n, 3)}) of a shape at these dimensions [m]; those left out are as drawn.");
+        [](const py::object& shape, const py::dict& values) { return instance(*shape_from_python(shape), lengths_from(values)); },
+        py::arg("shape"), py::arg("values") = py::dict(),
+        "(mesh, {dimension: d vertices / d dimension, (n, 3)}) of a shape at these dimensions, metres or \"3mm\"; those left out are as "
+        "drawn.");
     module.def(
         "shape_remarks",
-        [](const py::object& given, const std::map<std::string, double>& values) {
+        [](const py::object& given, const py::dict& values) {
             const auto shape = shape_from_python(given);
-            const std::vector<double> ordered = in_order(*shape, values);
+            const std::vector<double> ordered = in_order(*shape, lengths_from(values));
             const py::gil_scoped_release unlocked;
             return shape->remarks(ordered);
         },
-        py::arg("shape"), py::arg("values") = std::map<std::string, double>(),
+        py::arg("shape"), py::arg("values") = py::dict(),
         "How a shape's derivative was found at these dimensions, and how exact it is; empty: it is exact.");
     module.def(
         "generators",

@@ -45,8 +45,14 @@ std::shared_ptr<DesignProblem> create(const description::Design& design) {
     return std::make_shared<DesignProblem>(value_or_raise(DesignProblem::create(std::move(whole))));
 }
 
-DesignEvaluation evaluate(const DesignProblem& self, const VectorX& p, bool gradients, const py::object& progress) {
-    check_point(p, self.parameter_count());
+VectorX checked(const DesignProblem& self, const py::object& given) {
+    const VectorX p = point_from(self.design().parameters, given);
+    raise_if_any(description::check_values(self.design().parameters, p));
+    return p;
+}
+
+DesignEvaluation evaluate(const DesignProblem& self, const py::object& given, bool gradients, const py::object& progress) {
+    const VectorX p = checked(self, given);
     Watch watch(progress);
     DesignEvaluation evaluation;
     {
@@ -90,8 +96,11 @@ VectorX values_of(const std::vector<description::Measurement>& measured) {
 
 void bind_problem(py::module_& module) {
     using core::model::Model;
-    py::class_<DesignProblem, std::shared_ptr<DesignProblem>>(module, "DesignProblem",
-                                                              "From parameters p (SI, one per parameter) to numbers and their gradients.")
+    py::class_<DesignProblem, std::shared_ptr<DesignProblem>>(
+        module, "DesignProblem",
+        "From parameters p to numbers and their gradients. p: SI values, one per parameter, or by name, those "
+        "left out as the design has them: {\"radius\": \"9mm\"}. What is farther "
+        "beyond its bounds than they are apart is refused: Error, code out_of_range.")
         .def(py::init(&create), py::arg("design"))
         .def_property_readonly(
             "design", [](const DesignProblem& self) { return self.design(); }, "A copy.")
@@ -104,24 +113,26 @@ void bind_problem(py::module_& module) {
             "upper", [](const DesignProblem& self) { return each(self, &description::Parameter::upper); }, "(n), SI")
         .def_property_readonly("kappa", &DesignProblem::kappa, "Barrier stiffness that all designs are simulated with [N/m].")
         .def_property_readonly("warnings", &DesignProblem::warnings)
+        .def("__repr__", [](const py::object& self) { return py::module_::import("fettle._shown").attr("problem_line")(self); })
+        .def(
+            "_repr_html_", [](const py::object& self) { return py::module_::import("fettle._shown").attr("problem_html")(self); },
+            "How a notebook shows it.")
+        .def(
+            "check", [](const DesignProblem& self, const py::object& p) { checked(self, p); }, py::arg("p"),
+            "Raises Error where p has not a finite value for each parameter, or one far outside its bounds. What takes p asks this first.")
         .def(
             "model_at",
-            [](const DesignProblem& self, const VectorX& p) {
-                check_point(p, self.parameter_count());
-                return std::make_shared<Model>(value_or_raise(self.model_at(p)));
+            [](const DesignProblem& self, const py::object& p) {
+                return std::make_shared<Model>(value_or_raise(self.model_at(checked(self, p))));
             },
             py::arg("p"), "The model at p.")
         .def(
-            "relations",
-            [](const DesignProblem& self, const VectorX& p) {
-                check_point(p, self.parameter_count());
-                return self.relations(p);
-            },
-            py::arg("p"), "Rows of the relations at p; nothing is built.")
+            "relations", [](const DesignProblem& self, const py::object& p) { return self.relations(checked(self, p)); }, py::arg("p"),
+            "Rows of the relations at p; nothing is built.")
         .def(
             "refusal",
-            [](const DesignProblem& self, const VectorX& p) {
-                check_point(p, self.parameter_count());
+            [](const DesignProblem& self, const py::object& given) {
+                const VectorX p = checked(self, given);
                 const py::gil_scoped_release unlocked;
                 return self.refusal(p);
             },
@@ -129,18 +140,18 @@ void bind_problem(py::module_& module) {
         .def("evaluate", &evaluate, py::arg("p"), py::arg("gradients") = true, py::arg("progress") = py::none(),
              "A DesignEvaluation: simulated, measured, and with gradients differentiated.")
         .def(
-            "value", [](const DesignProblem& self, const VectorX& p) { return usable(evaluate(self, p, false, py::none())).objective; },
+            "value", [](const DesignProblem& self, const py::object& p) { return usable(evaluate(self, p, false, py::none())).objective; },
             py::arg("p"), "The objective. Raises EvaluationError where there is no design.")
         .def(
             "value_and_gradient",
-            [](const DesignProblem& self, const VectorX& p) {
+            [](const DesignProblem& self, const py::object& p) {
                 const DesignEvaluation at = usable(evaluate(self, p, true, py::none()));
                 return py::make_tuple(at.objective, at.gradient);
             },
             py::arg("p"), "(objective, gradient (n)), per SI unit. Raises EvaluationError where there is no design.")
         .def(
             "values_and_jacobians",
-            [](const DesignProblem& self, const VectorX& p) {
+            [](const DesignProblem& self, const py::object& p) {
                 const DesignEvaluation at = usable(evaluate(self, p, true, py::none()));
                 return py::make_tuple(at.objective, at.gradient, values_of(at.constraints), at.jacobian);
             },

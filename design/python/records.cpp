@@ -12,6 +12,21 @@ namespace py = pybind11;
 
 py::object record_class(const char* name) { return py::module_::import("fettle").attr(name); }
 
+py::object record_list(py::object list) { return py::module_::import("fettle._record").attr("Records")(std::move(list)); }
+
+py::object prepared(py::handle record) {
+    const py::object itself = py::reinterpret_borrow<py::object>(record), prepare = py::getattr(record, "_prepared", py::none());
+    return prepare.is_none() ? itself : prepare();
+}
+
+py::object paths_as_text(py::object given) {
+    if (py::hasattr(given, "__fspath__")) return py::module_::import("os").attr("fspath")(given);
+    if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) return given;
+    py::list texts;
+    for (const py::handle each : given) texts.append(paths_as_text(py::reinterpret_borrow<py::object>(each)));
+    return std::move(texts);
+}
+
 void refuse_type(const char* record, const char* member, py::handle found) {
     const std::string type = py::str(py::type::of(found).attr("__name__"));
     throw py::type_error(std::string(record) + "." + member + ": a value of type " + type + " is not what belongs there");

@@ -2,8 +2,9 @@
 /// Plain structs of the library as Python dataclasses, and back. A struct has a list of its members here (scene_records.hpp and the like)
 /// and a dataclass of the same name and members in the Python package; the two directions follow from the list. So Python owns what it
 /// holds: lists can be appended to, objects pickled, and no reference points into a vector that has grown.
-/// Enumerators are Python strings. Members that are NaN, or no word that is known, are refused by record, name and member ("body
-/// `cube`/type"). tests/design/python/records_test.py checks that both sides have the same members and defaults.
+/// Enumerators are Python strings; members that are paths are strings or os.PathLike. Members that are NaN, or no word that is known, are
+/// refused by record, name and member ("body `cube`/type"). tests/design/python/records_test.py checks that both sides have the same
+/// members and defaults.
 #pragma once
 
 #include <pybind11/eigen.h>
@@ -31,10 +32,16 @@ template <class Owner, class Member>
 struct Field {
     const char* name;
     Member Owner::*member;
+    bool is_path = false;
 };
 template <class Owner, class Member>
 constexpr Field<Owner, Member> field(const char* name, Member Owner::*member) {
     return {name, member};
+}
+/// A text, or a list of texts, that may be given as os.PathLike.
+template <class Owner, class Member>
+constexpr Field<Owner, Member> path_field(const char* name, Member Owner::*member) {
+    return {name, member, true};
 }
 
 /// Specialised for each struct: `name` (a description of pybind11's), `python_name`, `fields` (a tuple of Field).
@@ -55,6 +62,12 @@ concept IsWord = requires {
 
 /// The dataclass of that name.
 pybind11::object record_class(const char* name);
+/// A list of records as the list that shows itself in few lines (fettle/_record.py).
+pybind11::object record_list(pybind11::object list);
+/// What a dataclass says of itself before it is read: with names of bodies as their numbers, units checked (`_prepared` in fettle/).
+pybind11::object prepared(pybind11::handle record);
+/// os.PathLike as text, in lists too; all else as it is.
+pybind11::object paths_as_text(pybind11::object given);
 
 [[noreturn]] void refuse_type(const char* record, const char* member, pybind11::handle found);
 [[noreturn]] void refuse_word(const std::string& word, std::span<const std::string_view> known);
@@ -82,8 +95,8 @@ bool has_nan(const T& x) {
 
 /// A member of a Python object, as the library has it.
 template <class Member>
-Member member_of(pybind11::handle source, const char* record_name, const char* name) {
-    const pybind11::object found = source.attr(name);
+Member member_of(pybind11::handle source, const char* record_name, const char* name, bool is_path = false) {
+    const pybind11::object given = source.attr(name), found = is_path ? paths_as_text(given) : given;
     pybind11::detail::make_caster<Member> caster;
     try {
         if (!caster.load(found, true)) refuse_type(record_name, name, found);
@@ -125,7 +138,8 @@ public:
 
     bool load(handle source, bool) {
         if (!isinstance(source, fettle::design::python::record_class(Record::python_name))) return false;
-        std::apply([&](const auto&... field) { (read(source, field), ...); }, Record::fields);
+        const object whole = fettle::design::python::prepared(source);
+        std::apply([&](const auto&... field) { (read(whole, field), ...); }, Record::fields);
         return true;
     }
 
@@ -140,7 +154,18 @@ private:
     template <class Field>
     void read(handle source, const Field& field) {
         using Member = std::remove_reference_t<decltype(value.*field.member)>;
-        value.*field.member = fettle::design::python::member_of<Member>(source, Record::python_name, field.name);
+        value.*field.member = fettle::design::python::member_of<Member>(source, Record::python_name, field.name, field.is_path);
+    }
+};
+
+template <class T>
+requires fettle::design::python::IsRecord<T>
+class type_caster<std::vector<T>> : public list_caster<std::vector<T>, T> {
+public:
+    template <class Source>
+    static handle cast(Source&& source, return_value_policy policy, handle parent) {
+        const handle list = list_caster<std::vector<T>, T>::cast(std::forward<Source>(source), policy, parent);
+        return fettle::design::python::record_list(reinterpret_steal<object>(list)).release();
     }
 };
 

@@ -15,23 +15,26 @@ namespace scene = core::scene;
 
 namespace {
 
-using Paths = std::vector<std::string>;
+using Paths = std::vector<Path>;
 
 reading::Programs programs(bool allowed) { return allowed ? reading::Programs::allowed : reading::Programs::refused; }
 
-scene::Scene read_scene(const std::string& path, const Paths& mesh_dirs, bool strict_meshes, bool allow_programs) {
-    scene::ReadOptions options = reading::scene_read_options(mesh_dirs, programs(allow_programs));
+scene::Scene read_scene(const Path& path, const Paths& mesh_dirs, bool strict_meshes, bool allow_programs) {
+    scene::ReadOptions options = reading::scene_read_options(texts_of(mesh_dirs), programs(allow_programs));
     options.strict_meshes = strict_meshes;
-    return value_or_raise(scene::read_scene(path, options));
+    return value_or_raise(scene::read_scene(path.string(), options));
 }
 
-scene::Scene parse_scene(const std::string& text, const std::string& path, const Paths& mesh_dirs, bool allow_programs) {
-    return value_or_raise(scene::parse_scene(text, path, reading::scene_read_options(mesh_dirs, programs(allow_programs))));
+scene::Scene parse_scene(const std::string& text, const Path& path, const Paths& mesh_dirs, bool allow_programs) {
+    return value_or_raise(
+        scene::parse_scene(text, path.string(), reading::scene_read_options(texts_of(mesh_dirs), programs(allow_programs))));
 }
 
-core::geometry::Mesh read_mesh(const std::string& path, double unit, bool weld) {
-    check_above("unit", unit, 0);
-    return value_or_raise(core::mesh_files::read_mesh(path, {unit, weld}));
+core::geometry::Mesh read_mesh(const Path& path, const py::object& unit, bool weld) {
+    const double metres = unit_from(unit, core::base::Dimension::length, "unit");
+    check_above("unit", metres, 0);
+    const py::gil_scoped_release unlocked;
+    return value_or_raise(core::mesh_files::read_mesh(path.string(), {metres, weld}));
 }
 
 std::vector<std::string> judge_mesh(const core::geometry::Mesh& mesh, bool as_solid) {
@@ -49,10 +52,25 @@ void bind_scene(py::module_& module) {
                "The scene of a file, SI units. allow_programs: the programs that it names may be run to make its parts.");
     module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("path") = "", py::arg("mesh_dirs") = Paths(),
                py::arg("allow_programs") = false, unlocked, "The scene of a text; meshes are looked for as if it came from `path`.");
-    module.def("read_mesh", &read_mesh, py::arg("path"), py::arg("unit") = 1.0, py::arg("weld") = true, unlocked,
-               "The mesh of a file (.stl .obj .off .ply .3mf) [m]. unit: metres per unit of the file.");
+    module.def("read_mesh", &read_mesh, py::arg("path"), py::arg("unit") = 1.0, py::arg("weld") = true,
+               "The mesh of a file (STL, OBJ, OFF, PLY, 3MF, COLLADA, glTF, 3DS, AMF) [m]. unit: of the file's numbers, \"mm\" or metres.");
     module.def("judge_mesh", &judge_mesh, py::arg("mesh"), py::arg("as_solid") = true, unlocked,
                "What is odd about a mesh, a sentence each. Raises Error if it cannot be used.");
+    module.def(
+        "parse_quantity",
+        [](const std::string& text, core::base::Dimension dimension, const std::string& where) {
+            return value_or_raise(core::base::parse_quantity(text, dimension, where));
+        },
+        py::arg("text"), py::arg("dimension") = core::base::Dimension::length, py::arg("where") = "",
+        "The SI value of a number with a unit: \"0.3mm\" of \"length\" is 0.0003. dimension: as units() has them; where: of the error.");
+    module.def(
+        "units",
+        [] {
+            py::dict dimensions;
+            for (const core::base::Unit& unit : core::base::units()) dimensions[py::str(std::string(unit.name))] = unit.dimension;
+            return dimensions;
+        },
+        "{unit: its dimension}");
     module.def(
         "scene_round_trip", [](const scene::Scene& s) { return s; }, "As the library has it; for tests.");
 }

@@ -5,6 +5,7 @@
 
 #include <pybind11/numpy.h>
 
+#include "fettle/core/base/units.hpp"
 #include "fettle/core/scene/scene.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/records.hpp"
@@ -39,6 +40,8 @@ std::vector<std::array<int, width>> rows_from(pybind11::handle rows, const std::
 
 }  // namespace fettle::design::python
 
+FETTLE_WORDS(fettle::core::base::Dimension, "number", "length", "area", "volume", "angle", "time", "mass", "force", "torque", "energy",
+             "speed", "angular_speed", "acceleration", "density", "stiffness")
 FETTLE_WORDS(fettle::core::scene::BodyType, "dynamic", "static", "kinematic")
 FETTLE_WORDS(fettle::core::scene::MassKind, "volume", "area", "length", "vertex")
 FETTLE_WORDS(fettle::core::scene::MeshPolicy, "strict", "tolerant", "lenient")
@@ -56,8 +59,9 @@ FETTLE_RECORD(fettle::core::scene::Friction::Pair, "FrictionPair", field("materi
 FETTLE_RECORD(fettle::core::scene::Friction, "Friction", field("mu", &Type::mu), field("materials", &Type::materials),
               field("pairs", &Type::pairs), field("eps_v", &Type::eps_v), field("rounds", &Type::rounds))
 FETTLE_RECORD(fettle::core::scene::Damping, "Damping", field("linear", &Type::linear), field("angular", &Type::angular))
-FETTLE_RECORD(fettle::core::scene::MeshProgram, "MeshProgram", field("command", &Type::command), field("directory", &Type::directory),
-              field("format", &Type::format), field("unit", &Type::unit), field("time_limit", &Type::time_limit))
+FETTLE_RECORD(fettle::core::scene::MeshProgram, "MeshProgram", path_field("command", &Type::command),
+              path_field("directory", &Type::directory), field("format", &Type::format), field("unit", &Type::unit),
+              field("time_limit", &Type::time_limit))
 FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("generator", &Type::generator), field("dimensions", &Type::dimensions),
               field("counts", &Type::counts), field("program", &Type::program))
 FETTLE_RECORD(fettle::core::scene::Curve, "Curve", field("kind", &Type::kind), field("rate", &Type::rate), field("times", &Type::times),
@@ -107,7 +111,7 @@ FETTLE_RECORD(fettle::core::scene::Body, "Body", field("name", &Type::name), fie
               field("prescribed", &Type::prescribed), field("script", &Type::script), field("force", &Type::force),
               field("torque", &Type::torque), field("damping", &Type::damping), field("reference_point", &Type::reference_point),
               field("group", &Type::group))
-FETTLE_RECORD(fettle::core::scene::Scene, "Scene", field("path", &Type::path), field("length_unit", &Type::length_unit),
+FETTLE_RECORD(fettle::core::scene::Scene, "Scene", path_field("path", &Type::path), field("length_unit", &Type::length_unit),
               field("bodies", &Type::bodies), field("gravity", &Type::gravity), field("timestep", &Type::timestep),
               field("end_time", &Type::end_time), field("dhat", &Type::dhat), field("dmin", &Type::dmin), field("kappa", &Type::kappa),
               field("area_weighted", &Type::area_weighted), field("contact_damping_time", &Type::contact_damping_time),

@@ -19,10 +19,10 @@ using studies::OptimiseOutcome;
 
 namespace {
 
-studies::CheckReport check_gradients(const DesignProblem& problem, const std::optional<VectorX>& p, int most_parameters,
-                                     const py::object& progress) {
-    const VectorX point = p ? *p : description::values_of(problem.design().parameters);
-    check_point(point, problem.parameter_count());
+studies::CheckReport check_gradients(const DesignProblem& problem, const py::object& p, int most_parameters, const py::object& progress) {
+    const auto& parameters = problem.design().parameters;
+    const VectorX point = p.is_none() ? description::values_of(parameters) : point_from(parameters, p);
+    raise_if_any(description::check_values(parameters, point));
     check_at_least("most_parameters", most_parameters, 0);
     Watch watch(progress);
     studies::CheckReport report;
@@ -78,28 +78,34 @@ struct FileArguments {
 };
 
 // As `fettle optimise` leaves its folder.
-void leave_results(const DesignProblem& problem, const OptimiseOutcome& outcome, const FileArguments& arguments,
-                   const std::function<bool()>& should_stop) {
+Errors add_results(const DesignProblem& problem, const OptimiseOutcome& outcome, const FileArguments& arguments,
+                   core::files::FilesTogether& files) {
     const std::string& folder = arguments.directory;
-    answers::forget_motion(folder);
-    if (outcome.final.usable) raise_if_any(answers::write_animation(folder, *outcome.final.model, outcome.final.simulation.trajectory));
+    answers::replace_motion(files, folder);
+    const core::stepper::Trajectory& trajectory = outcome.final.simulation.trajectory;
+    Errors errors = outcome.final.usable ? answers::add_animation(files, folder, *outcome.final.model, trajectory) : Errors{};
+    if (!errors.empty()) return errors;
     const answers::RunFacts facts{folder, arguments.options.seed, false};
-    raise_if_any(answers::write_result(folder, answers::outcome_json(problem, outcome, facts), "fettle.optimise_file, Python"));
-    if (!arguments.report) return;
-    report::ReportOptions options;
-    options.programs = arguments.programs;
-    options.should_stop = should_stop;
-    value_or_raise(report::write_report(folder, std::move(options)));
+    return answers::add_result(files, folder, answers::outcome_json(problem, outcome, facts), "fettle.optimise_file, Python");
 }
 
 OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments, const py::object& progress) {
+    raise_if_any(answers::others_files(arguments.directory));
     if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
     const auto run = [&](const studies::OptimiseOptions& all) {
         const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));
-        const studies::RunFolder folder{arguments.directory, arguments.resume};
-        OptimiseOutcome outcome = value_or_raise(studies::optimise_file(file, problem, folder, all)).outcome;
-        leave_results(problem, outcome, arguments, all.should_stop);
-        return outcome;
+        const studies::RunFolder folder{arguments.directory, arguments.resume,
+                                        [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
+                                            return add_results(problem, outcome, arguments, files);
+                                        }};
+        studies::FileOutcome done = value_or_raise(studies::optimise_file(file, problem, folder, all));
+        raise_if_any(done.unwritten);
+        if (!arguments.report) return std::move(done.outcome);
+        report::ReportOptions options;
+        options.programs = arguments.programs;
+        options.should_stop = all.should_stop;
+        value_or_raise(report::write_report(arguments.directory, std::move(options)));
+        return std::move(done.outcome);
     };
     return optimise(arguments.options, progress, run);
 }
@@ -118,14 +124,14 @@ void bind_studies(py::module_& module) {
                "Optimises in memory: an OptimiseOutcome. seed 0 begins at the design's values, others at a random start. progress(line).");
     module.def(
         "optimise_file",
-        [](const std::string& path, const std::string& out, bool resume, const std::string& optimiser, std::int64_t seed,
+        [](const Path& path, const Path& out, bool resume, const std::string& optimiser, std::int64_t seed,
            const std::optional<int>& max_evaluations, bool allow_programs, bool report, const py::object& progress) {
             if (max_evaluations) check_at_least("max_evaluations", *max_evaluations, 1);
             const auto programs = allow_programs ? reading::Programs::allowed : reading::Programs::refused;
-            FileArguments arguments{out, resume, report, programs, max_evaluations, {}};
+            FileArguments arguments{out.string(), resume, report, programs, max_evaluations, {}};
             arguments.options.optimiser = optimiser;
             arguments.options.seed = seed_from(seed);
-            return optimise_file(value_or_raise(reading::read_design(path, {{}, programs})), std::move(arguments), progress);
+            return optimise_file(value_or_raise(reading::read_design(path.string(), {{}, programs})), std::move(arguments), progress);
         },
         py::arg("path"), py::arg("out"), py::arg("resume") = false, py::arg("optimiser") = "", py::arg("seed") = 0,
         py::arg("max_evaluations") = py::none(), py::arg("allow_programs") = false, py::arg("report") = true,

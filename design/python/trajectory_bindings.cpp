@@ -36,18 +36,18 @@ core::stepper::Simulation simulate(const Model& model, int steps, bool for_gradi
     return simulation;
 }
 
-py::tuple read_trajectory(const std::string& path) {
+py::tuple read_trajectory(const Path& path) {
     core::records::StoredTrajectory stored;
     {
         const py::gil_scoped_release unlocked;
-        stored = value_or_raise(core::records::read_trajectory(path));
+        stored = value_or_raise(core::records::read_trajectory(path.string()));
     }
     return py::make_tuple(std::make_shared<Trajectory>(std::move(stored.trajectory)), std::make_shared<Model>(std::move(stored.model)));
 }
 
-void write_trajectory(const std::string& path, const Trajectory& trajectory, const Model& model, const std::string& scene_path) {
+void write_trajectory(const Path& path, const Trajectory& trajectory, const Model& model, const Path& scene_path) {
     check_same_bodies(trajectory, model);
-    raise_if_any(core::records::write_trajectory(path, trajectory, model, scene_path));
+    raise_if_any(core::records::write_trajectory(path.string(), trajectory, model, scene_path.string()));
 }
 
 std::size_t time_index(const Trajectory& trajectory, int t) {
@@ -68,17 +68,6 @@ py::array pose_view(const py::object& self, int t, const std::vector<py::ssize_t
     if (rotation) strides.push_back(3 * number);  // columns stand together
     const double* first = poses.empty() ? nullptr : rotation ? poses.front().rotation.data() : poses.front().position.data();
     return read_only(py::array(py::dtype::of<double>(), sizes, strides, first, self));
-}
-
-py::object html_table(const Trajectory& trajectory) {
-    py::list rows;
-    const auto add = [&](const char* name, py::object value) { rows.append(py::make_tuple(name, std::move(value))); };
-    add("bodies", py::cast(trajectory.body_names));
-    add("steps", py::int_(trajectory.steps.size()));
-    add("timestep", py::float_(trajectory.timestep));
-    if (!trajectory.poses.empty())
-        add("end", py::float_(core::stepper::time_at(trajectory, static_cast<int>(trajectory.poses.size()) - 1)));
-    return py::module_::import("fettle._record").attr("table")("Trajectory", rows);
 }
 
 // A trajectory's numbers in one list, so that it can be pickled: poses by rows, then the nodes of each step.
@@ -202,7 +191,10 @@ void bind_trajectory(py::module_& module) {
                  const py::object dumps = py::module_::import("pickle").attr("dumps");
                  return dumps(packed(a)).equal(dumps(packed(b.cast<const Trajectory&>())));
              })
-        .def("_repr_html_", &html_table, "How a notebook shows it.")
+        .def("__repr__", [](const py::object& self) { return py::module_::import("fettle._shown").attr("trajectory_line")(self); })
+        .def(
+            "_repr_html_", [](const py::object& self) { return py::module_::import("fettle._shown").attr("trajectory_html")(self); },
+            "How a notebook shows it.")
         .def(py::pickle(&packed, &unpacked));
     module.def("simulate", &simulate, py::arg("model"), py::arg("steps") = -1, py::arg("for_gradient") = false, py::arg("outputs") = false,
                py::arg("progress") = py::none(),

@@ -71,8 +71,8 @@ Measurement Clearance::value(const Simulated& s) const {
     }
     Measurement measured{pair.upper, pair.lower, pair.upper, pair, {}};
     if (pair.intersecting) measured.fault = names + " pass through each other";
-    if (pair.lower > 0 && pair.solids == core::certificate::Solids::unproven)
-        measured.fault = "of " + names + " one may lie inside the other's material: " + pair.reason;
+    if (pair.lower > 0 && !pair.intersecting && !core::certificate::are_apart(pair.solids))
+        measured.fault = "of " + names + ": " + core::clearance::why_not_apart(pair.solids);
     return measured;
 }
 

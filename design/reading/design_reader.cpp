@@ -6,6 +6,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
@@ -35,7 +36,7 @@ public:
                          "constraints", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
-        root.require("fettle_design").integer(1, 1);
+        core::files::is_version(root.require("fettle_design"), 1);
         file_.path = document_.path();
         const auto unit = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
         if (unit) file_.length_unit = *find_unit(*unit);
@@ -67,6 +68,11 @@ private:
             core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs));
         if (!scene) {
             scene_errors_ = scene.errors();
+            if (scene_errors_.front().code == ErrorCode::file_not_found && scene_errors_.front().where == file_.scene_path) {
+                scene_errors_.clear();
+                node.fail(ErrorCode::file_not_found,
+                          "there is no scene file " + file_.scene_path + "; `scene` is its path from the design's folder");
+            }
             return false;
         }
         design_.scene = std::move(scene).value();

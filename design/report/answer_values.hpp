@@ -2,6 +2,7 @@
 /// Reading answers (docs/interface.md) whose keys may be missing.
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -14,5 +15,8 @@ inline nlohmann::ordered_json member(const nlohmann::ordered_json& object, const
     const bool there = object.is_object() && object.contains(name);
     return there ? nlohmann::ordered_json(object[name]) : nlohmann::ordered_json();
 }
+
+/// The number; null where it is none.
+inline nlohmann::ordered_json finite(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); }
 
 }  // namespace fettle::design::report

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/report/answer_values.hpp"
@@ -32,7 +33,9 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"fault", member(told, "fault")},
             {"cost", Json()},
             {"counts", false},
-            {"pair", Json()}};
+            {"pair", Json()},
+            {"play_taken_up", Json()},
+            {"in_doubt", false}};
 }
 
 // How many of the constraints are clearances: each has a pair in the result, in their order.
@@ -68,16 +71,9 @@ std::tuple<double, double, double> rank_of_start(const Json& row) {
 
 double shown_unit(Dimension dimension, double unit) { return dimension == Dimension::length ? millimetre : unit; }
 
-std::string shown_unit_name(Dimension dimension, double unit) {
-    if (dimension == Dimension::number) return {};
-    const double wanted = shown_unit(dimension, unit);
-    for (const Unit& each : core::base::units())
-        if (each.dimension == dimension && core::base::to_si(1, each) == wanted) return std::string(each.name);
-    return std::string(core::base::si_unit(dimension));
-}
-
 Json requirement_rows(const description::Design& design, const Json& result) {
     Json rows = Json::array();
+    const Json others = member(member(result, "by_models"), "constraints"), in_doubt = member(member(result, "by_models"), "in_doubt");
     const Json told = member(result, "constraints"), optimality = member(result, "optimality"), costs = member(optimality, "multipliers");
     const Json worth = member(optimality, "worth");
     const bool matched = pairs_match(design, result);
@@ -87,7 +83,9 @@ Json requirement_rows(const description::Design& design, const Json& result) {
         const Dimension dimension = constraint.quantity->dimension();
         const double unit = shown_unit(dimension, constraint.bounds.unit);
         Json row = row_json(constraint.name, i < told.size() ? told[i] : Json(), constraint.bounds, unit);
-        row["unit"] = shown_unit_name(dimension, constraint.bounds.unit);
+        row["unit"] = core::base::unit_name(dimension, unit);
+        row["play_taken_up"] = i < others.size() ? in_unit(member(others[i], "play_taken_up"), unit) : Json();
+        row["in_doubt"] = in_doubt.is_array() && std::find(in_doubt.begin(), in_doubt.end(), Json(constraint.name)) != in_doubt.end();
         if (const Json cost = member(costs, constraint.name); cost.is_number()) {
             const double per_unit = cost.get<double>() * unit / constraint.bounds.unit;
             row["cost"] = per_unit;

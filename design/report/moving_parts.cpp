@@ -7,6 +7,7 @@
 #include <set>
 
 #include "fettle/core/geometry/mesh.hpp"
+#include "fettle/design/exports/palette.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/packed_numbers.hpp"
 
@@ -114,6 +115,7 @@ void add_view(Json& data, const std::string& name, const core::model::Model& mod
     for (const core::model::Body& body : model.bodies) meshes.push_back(&body.mesh);
     const std::vector<std::size_t> shapes = core::geometry::first_of_shape(meshes);
     std::vector<std::size_t> mesh_of_first;  // where the first mesh of a shape went
+    const std::vector<exports::Colour> colours = exports::part_colours(model);
     Json bodies = Json::array();
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const core::model::Body& body = model.bodies[i];
@@ -127,7 +129,11 @@ void add_view(Json& data, const std::string& name, const core::model::Model& mod
         } else {
             append_pose(poses, trajectory.poses.front()[i]);
         }
-        bodies.push_back({{"name", body.name}, {"type", word(body.type)}, {"mesh", mesh_of_first[first]}, {"poses", packed(poses)}});
+        bodies.push_back({{"name", body.name},
+                          {"type", word(body.type)},
+                          {"colour", exports::css_colour(colours[i])},
+                          {"mesh", mesh_of_first[first]},
+                          {"poses", packed(poses)}});
     }
     data["views"].push_back({{"name", name}, {"every", every}, {"times", packed(times)}, {"bodies", std::move(bodies)}});
 }

@@ -20,7 +20,8 @@ void append_pose(std::vector<float>& numbers, const core::kinematics::Pose& pose
 
 /// Adds to `data`:
 ///   meshes  list of {vertices f32 [mm], triangles u32, edges u32: those of no triangle}; bodies of one shape share one
-///   views   list of {name, every: each so manieth step is there, times f64 [s], bodies: list of {name, type, mesh: index, poses f32:
+///   views   list of {name, every: each so manieth step is there, times f64 [s], bodies: list of {name, type, colour, mesh: index, poses
+///   f32:
 ///           x y z [mm] and the quaternion x y z w, at each time; one pose of a body that does not move}}
 /// The poses are those at all nodes of the path. Consecutive quaternions turn the shorter way round.
 /// Contract: finite numbers.

@@ -63,13 +63,15 @@ Json row_of(const PairClearance& pair, const core::model::Model& model, const co
             {"lower", pair.lower / millimetre},
             {"upper", std::isfinite(pair.upper) ? Json(pair.upper / millimetre) : Json()},
             {"status", core::clearance::to_string(pair.status)},
-            {"finding", pair.is_clash()  ? Json("clash")
-                        : pushes         ? Json("contact")
-                        : pair.lower > 0 ? Json("apart")
-                                         : Json("undecided")},
+            {"finding", pair.is_clash()                                               ? Json("clash")
+                        : pushes                                                      ? Json("contact")
+                        : pair.lower > 0 && core::certificate::are_apart(pair.solids) ? Json("apart")
+                                                                                      : Json("undecided")},
             {"time", core::stepper::time_at(trajectory, w.step, w.segment, w.s)},
             {"point_a", millimetres(w.point_a)},
             {"point_b", millimetres(w.point_b)},
+            {"depth", Json()},
+            {"volume", Json()},
             {"note", Json()}};
 }
 
@@ -110,6 +112,16 @@ Json worst_place(const Json& coordinates) {
 
 Vector3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
 
+// Of an interference: bounds as an answer tells them, in mm to the power `dimensions`, and what is told beside them. Null: not measured.
+Json measured_bounds(const Json& told, int dimensions) {
+    if (!told.is_object()) return {};
+    const double unit = std::pow(millimetre, dimensions);
+    Json bounds{{"lower", told.at("lower").get<double>() / unit}, {"upper", told.at("upper").get<double>() / unit}};
+    if (told.contains("time")) bounds["time"] = told["time"];
+    if (told.contains("point")) bounds["point"] = millimetres(told["point"]);
+    return bounds;
+}
+
 // All bodies where a pair is worst over the ranges of the joints, of an answer's `poses`, which has those that moved. Null: it has none.
 Json worst_poses(const Json& poses, const core::model::Model& model) {
     if (!poses.is_object()) return {};
@@ -124,6 +136,9 @@ Json worst_poses(const Json& poses, const core::model::Model& model) {
     }
     return packed(numbers);
 }
+
+// Where nothing is proven there is no bound.
+double bound_or(const Json& bound, double otherwise) { return bound.is_number() ? bound.get<double>() : otherwise; }
 
 float rounded_down(double x) {
     const auto y = static_cast<float>(x);
@@ -149,7 +164,7 @@ std::vector<ProvenRange> proven_ranges(const Json& rows, std::size_t k) {
 // Of row `k`. Searched to a coarser tolerance than the rows, a curve alone could fall below what is required and proven.
 Json margin_curve(const Json& rows, std::size_t k, const std::vector<core::clearance::MarginInterval>& margin) {
     const std::vector<ProvenRange> ranges = proven_ranges(rows, k);
-    double least = rows[k]["lower"].get<double>();
+    double least = bound_or(rows[k]["lower"], std::numeric_limits<double>::infinity());
     std::vector<float> low, high;
     for (const core::clearance::MarginInterval& each : margin) {
         const double upper = each.upper / millimetre;
@@ -191,6 +206,8 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
                         {"time", time},
                         {"point_a", millimetres(member(pair, "point_a"))},
                         {"point_b", millimetres(member(pair, "point_b"))},
+                        {"depth", measured_bounds(member(pair, "depth"), 1)},
+                        {"volume", measured_bounds(member(pair, "volume"), 3)},
                         {"poses", worst_poses(member(pair, "poses"), model)},
                         {"note", note}});
     }
@@ -228,7 +245,7 @@ Json margin_curves(const Json& rows, const core::model::Model& model, const core
         if (!row["motion"].get<bool>() || row["upper"].is_null() || a < 0 || b < 0) continue;
         if (std::find(done.begin(), done.end(), std::pair(a, b)) != done.end()) continue;
         done.emplace_back(a, b);
-        const double lower = row["lower"].get<double>() * millimetre, upper = row["upper"].get<double>() * millimetre;
+        const double lower = bound_or(row["lower"], 0) * millimetre, upper = bound_or(row["upper"], 0) * millimetre;
         core::clearance::ClearanceOptions options = options_over_motion(std::max({share * lower, upper - lower, 1e-8}), should_stop);
         options.margin_curve = true;
         const auto found = core::clearance::certify_clearance(model, trajectory, {{a, b, 0}}, options);

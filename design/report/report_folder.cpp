@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_text.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -28,13 +29,18 @@ std::string text_or_empty(const fs::path& file) {
     return text ? *text : std::string();
 }
 
+/// Discarded if it is no JSON.
+Json parsed_json(const std::string& text) {
+    return core::files::is_safe_json_text(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
+}
+
 Result<Json> read_result(const fs::path& folder) {
     const fs::path file = folder / "result.json";
     const Result<std::string> text = core::files::read_file(file);
     if (!text)
         return Error{ErrorCode::file_not_found, file.string(),
                      "is not there: a report is made of a folder that optimise, simulate or clearance wrote with --out"};
-    Json result = Json::parse(*text, nullptr, false);
+    Json result = parsed_json(*text);
     if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is no JSON"};
     if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is no answer of optimise, simulate or clearance"};
     return result;
@@ -50,13 +56,13 @@ std::string name_of(const std::string& scene, const fs::path& folder) {
 
 // What a scene or design file says in words.
 std::string description_of(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parsed_json(text);
     return json.is_object() && json.contains("description") && json["description"].is_string() ? json["description"].get<std::string>()
                                                                                                : std::string();
 }
 
 Vector3 gravity_in(const std::string& text) {
-    Json json = Json::parse(text, nullptr, false);
+    Json json = parsed_json(text);
     if (json.is_object() && json.contains("rigid_body_problem")) json = Json(json["rigid_body_problem"]);
     Vector3 gravity = Vector3::Zero();
     if (!json.is_object() || !json.contains("gravity") || !json["gravity"].is_array()) return gravity;
@@ -97,11 +103,11 @@ StepTables tables_of(const Simulation& simulation, const Model& model) {
     return tables;
 }
 
-Errors write_tables(const fs::path& folder, const StepTables& tables) {
+Errors add_tables(core::files::FilesTogether& files, const fs::path& folder, const StepTables& tables) {
     for (const auto& [name, text] : {std::pair{"steps.csv", &tables.steps}, std::pair{"contacts.csv", &tables.contacts},
                                      std::pair{"drives.csv", &tables.drives}, std::pair{"joints.csv", &tables.joints}}) {
         if (text->empty()) continue;
-        if (Errors errors = core::files::write_file_atomically(folder / name, *text); !errors.empty()) return errors;
+        if (Errors errors = files.add(folder / name, *text); !errors.empty()) return errors;
     }
     return {};
 }
@@ -134,8 +140,8 @@ std::optional<VectorX> start_values(const description::Design& design, const Jso
     VectorX p(static_cast<Eigen::Index>(design.parameters.size()));
     for (Eigen::Index k = 0; k < p.size(); ++k) {
         const description::Parameter& parameter = design.parameters[static_cast<std::size_t>(k)];
-        const Json& start = result["parameters_start"];
-        if (!start.contains(parameter.name) || !start[parameter.name].is_number()) return std::nullopt;
+        const Json start = result.value("parameters_start", Json());
+        if (!start.is_object() || !start.contains(parameter.name) || !start[parameter.name].is_number()) return std::nullopt;
         p[k] = core::base::to_si(start[parameter.name].get<double>(), parameter.unit);
     }
     return p;
@@ -144,8 +150,9 @@ std::optional<VectorX> start_values(const description::Design& design, const Jso
 // The folder being read into a source; what takes computing is left out once a stop is asked for.
 class FolderReader {
 public:
-    FolderReader(const fs::path& folder, ReportOptions& options, ReportSource& source)
-        : folder_(folder), options_(options), source_(source) {}
+    /// @param files  gets what the report had to compute, for the next one
+    FolderReader(const fs::path& folder, ReportOptions& options, ReportSource& source, core::files::FilesTogether& files)
+        : folder_(folder), options_(options), source_(source), files_(files) {}
 
     Errors read() {
         if (Errors errors = read_motion(); !errors.empty()) return errors;
@@ -209,7 +216,7 @@ private:
             return {};
         }
         source_.tables = tables_of(simulation, *model);
-        return write_tables(folder_, source_.tables);
+        return add_tables(files_, folder_, source_.tables);
     }
 
     Errors take_before(const problem::DesignProblem& problem, const std::string& scene_path) {
@@ -233,7 +240,7 @@ private:
         if (options_.should_stop()) return {};
         if (simulation.report.status != core::stepper::SimulationStatus::ok)
             source_.notices.push_back("The design before could not be simulated to the end: " + simulation.report.message);
-        const Errors errors = core::records::write_trajectory(file, simulation.trajectory, *model, scene_path);
+        const Errors errors = core::records::add_trajectory(files_, file, simulation.trajectory, *model, scene_path);
         source_.before = Motion{*model, std::move(simulation.trajectory)};
         return errors;
     }
@@ -241,6 +248,7 @@ private:
     const fs::path& folder_;
     ReportOptions& options_;
     ReportSource& source_;
+    core::files::FilesTogether& files_;
     std::string scene_path_;
 };
 
@@ -249,16 +257,23 @@ private:
 Result<std::string> write_report(const std::string& folder, ReportOptions options) {
     Result<Json> result = read_result(folder);
     if (!result) return result.errors();
+    const fs::path path = folder;
     ReportSource source;
     source.kind = *kind_of(*result);
     source.folder = folder;
     source.result = *std::move(result);
-    const fs::path path = folder;
-    if (Errors errors = FolderReader(path, options, source).read(); !errors.empty()) return errors;
     const std::string file = options.out.empty() ? (path / "report.html").string() : options.out;
-    if (options.out.empty()) source.files = files_beside(path);
-    const std::string page = page_of(report_data(source, options.should_stop));
-    if (Errors errors = core::files::write_file_atomically(file, page); !errors.empty()) return errors;
+    try {
+        core::files::FilesTogether files;
+        if (Errors errors = FolderReader(path, options, source, files).read(); !errors.empty()) return errors;
+        if (options.out.empty()) source.files = files_beside(path);
+        if (Errors errors = files.add(file, page_of(report_data(source, options.should_stop))); !errors.empty()) return errors;
+        if (Errors errors = files.take_names(); !errors.empty()) return errors;
+    } catch (const Json::exception& fault) {  // a key that is not there, or has another type
+        return Error{ErrorCode::wrong_type, (path / "result.json").string(),
+                     std::string("it, or the history.jsonl beside it, is damaged: ") + fault.what() +
+                         "; make them anew, by the command that wrote this folder"};
+    }
     return file;
 }
 

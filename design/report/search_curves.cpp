@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "fettle/core/files/json_text.hpp"
+#include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
 
 namespace fettle::design::report {
@@ -13,8 +15,6 @@ namespace fettle::design::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 Json at_key(const Json& entry, const char* key) { return entry.contains(key) && entry[key].is_number() ? entry[key] : Json(); }
 
@@ -32,7 +32,7 @@ Json search_curves(const std::string& text, const description::Design& design) {
     std::string line;
     std::getline(lines, line);  // the header
     while (std::getline(lines, line)) {
-        const Json entry = Json::parse(line, nullptr, false);
+        const Json entry = core::files::is_safe_json_text(line) ? Json::parse(line, nullptr, false) : Json();
         if (!entry.is_object() || !entry.contains("parameters")) continue;
         curves["objective"].push_back(at_key(entry, "objective"));
         curves["violation"].push_back(at_key(entry, "violation"));

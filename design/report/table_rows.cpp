@@ -5,6 +5,8 @@
 #include <charconv>
 #include <limits>
 
+#include "fettle/core/base/text.hpp"
+
 namespace fettle::design::report {
 
 namespace {
@@ -46,7 +48,9 @@ TableRows::TableRows(std::string_view text) {
     header_ = next_line(text, at);
     while (at < text.size()) {
         std::vector<std::string> fields = next_line(text, at);
-        if (fields.size() == header_.size()) rows_.push_back(std::move(fields));
+        if (fields.size() != header_.size()) continue;
+        for (std::string& field : fields) field = core::base::csv_word(field);
+        rows_.push_back(std::move(fields));
     }
 }
 

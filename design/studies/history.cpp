@@ -19,6 +19,7 @@
 
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_text.hpp"
 
 namespace fettle::design::studies {
 
@@ -125,6 +126,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
 }
 
 HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {
+    if (!core::files::is_safe_json_text(line)) throw std::runtime_error("is no JSON of a history");
     const Json json = Json::parse(line);
     HistoryEntry entry;
     entry.model = json.value("model", std::string());
@@ -162,20 +164,24 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
 }
 
 Errors header_errors(const std::string& line, const HistoryHeader& header, const std::string& path) {
-    const Json json = Json::parse(line, nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("fettle_history", 0) != 1) {
+    const Json json = core::files::is_safe_json_text(line) ? Json::parse(line, nullptr, false) : Json();
+    const auto has = [&](const char* key, const Json& value) { return json.contains(key) && json[key] == value; };
+    if (json.is_discarded() || !json.is_object() || !has("fettle_history", 1)) {
         return {{ErrorCode::parse, path + ": line 1", "this is not a history of fettle; give --out another folder"}};
     }
-    if (json.value("design", "") != header.design_hash || json.value("parameters", std::vector<std::string>{}) != header.parameters ||
-        json.value("constraints", std::vector<std::string>{}) != header.constraints) {
+    if (!has("design", header.design_hash) || !has("parameters", header.parameters) || !has("constraints", header.constraints)) {
+        const std::string hash = json.contains("design") && json["design"].is_string() ? json["design"].get<std::string>() : "none";
         return {{ErrorCode::inconsistent, path,
-                 "this is the history of another design, scene or version (hash " + json.value("design", std::string("none")) + ", now " +
-                     header.design_hash + "); run without --resume to start anew (this file is kept), or give --out another folder"}};
+                 "this is the history of another design, scene or version (hash " + hash + ", now " + header.design_hash +
+                     "); run without --resume to start anew (this file is kept), or give --out another folder"}};
     }
     return {};
 }
 
 std::string system_message() { return std::strerror(errno); }
+
+// A link that somebody laid there is not followed.
+int open_history(const fs::path& path) { return ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666); }
 
 std::string bits_of(const VectorX& x) {
     std::string key(static_cast<size_t>(x.size()) * sizeof(double), '\0');
@@ -190,7 +196,7 @@ Result<std::string> rename_away(const fs::path& path) {
         if (fs::exists(target)) continue;
         std::error_code failure;
         fs::rename(path, target, failure);
-        if (failure) return Error{ErrorCode::file_unreadable, path.string(), "cannot be renamed: " + failure.message()};
+        if (failure) return Error{ErrorCode::file_unwritable, path.string(), "cannot be renamed: " + failure.message()};
         return target.string();
     }
 }
@@ -210,12 +216,13 @@ Result<History> History::open(const std::string& directory, const HistoryHeader&
     History history;
     history.header_ = header;
     const fs::path path = fs::path(directory) / "history.jsonl";
+    history.path_ = path.string();
     std::error_code failure;
     fs::create_directories(directory, failure);
-    if (failure) return Error{ErrorCode::file_unreadable, directory, "cannot be made: " + failure.message()};
+    if (failure) return Error{ErrorCode::file_unwritable, directory, "cannot be made: " + failure.message()};
     // Locked before it is renamed or read: a history that another run is still writing is left alone.
-    history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (history.file_ < 0) return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
+    history.file_ = open_history(path);
+    if (history.file_ < 0) return Error{ErrorCode::file_unwritable, path.string(), "cannot be opened for writing: " + system_message()};
     if (!lock(history.file_)) {
         return Error{ErrorCode::file_unreadable, path.string(),
                      "another process is writing this history; wait for it, or give --out another folder"};
@@ -225,9 +232,9 @@ Result<History> History::open(const std::string& directory, const HistoryHeader&
         if (!kept) return kept.errors();
         history.kept_as_ = *kept;
         ::close(history.file_);
-        history.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+        history.file_ = open_history(path);
         if (history.file_ < 0 || ::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
-            return Error{ErrorCode::file_unreadable, path.string(), "cannot be opened for writing: " + system_message()};
+            return Error{ErrorCode::file_unwritable, path.string(), "cannot be opened for writing: " + system_message()};
         }
     }
     Errors errors = history.read_existing(path.string());
@@ -259,29 +266,34 @@ Errors History::read_existing(const std::string& path) {
     }
     entries_ = static_cast<int>(replayed_.size());
     if (begin < text->size() && ::ftruncate(file_, static_cast<off_t>(begin)) != 0) {
-        return {{ErrorCode::file_unreadable, path, "cannot be cut back to its last whole line: " + system_message()}};
+        return {{ErrorCode::file_unwritable, path, "cannot be cut back to its last whole line: " + system_message()}};
     }
     if (begin > 0) return {};
-    try {
-        write_line(header_line(header_));
-    } catch (const std::exception& e) {
-        return {{ErrorCode::file_unreadable, path, e.what()}};
-    }
-    return {};
+    waiting_ = header_line(header_);
+    write_waiting();
+    return unwritten();
 }
 
-void History::write_line(const std::string& line) {
-    size_t done = 0;
-    while (done < line.size()) {
-        const ssize_t written = ::write(file_, line.data() + done, line.size() - done);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) throw std::runtime_error("the history cannot be written: " + system_message());
-        done += static_cast<size_t>(written);
+// A part of a line may have got there; the rest of it comes first the next time.
+void History::write_waiting() {
+    write_error_ = 0;
+    while (!waiting_.empty() && write_error_ == 0) {
+        const ssize_t written = ::write(file_, waiting_.data(), waiting_.size());
+        if (written > 0) waiting_.erase(0, static_cast<size_t>(written));
+        if (written < 0 && errno != EINTR) write_error_ = errno;
     }
-    if (::fsync(file_) != 0 && errno != EINVAL) throw std::runtime_error("the history cannot be flushed to the disk: " + system_message());
+    if (write_error_ == 0 && ::fsync(file_) != 0 && errno != EINVAL) write_error_ = errno;
 }
 
-void History::append(const HistoryEntry& entry) { write_line(entry_line(entry, header_, ++entries_)); }
+void History::append(const HistoryEntry& entry) {
+    waiting_ += entry_line(entry, header_, ++entries_);
+    write_waiting();
+}
+
+Errors History::unwritten() const {
+    if (write_error_ == 0) return {};
+    return {{ErrorCode::file_unwritable, path_, std::string("the history cannot be written: ") + std::strerror(write_error_)}};
+}
 
 History::~History() {
     if (file_ >= 0) ::close(file_);
@@ -291,6 +303,9 @@ History::History(History&& other) noexcept { *this = std::move(other); }
 
 History& History::operator=(History&& other) noexcept {
     std::swap(file_, other.file_);
+    std::swap(path_, other.path_);
+    std::swap(waiting_, other.waiting_);
+    std::swap(write_error_, other.write_error_);
     std::swap(entries_, other.entries_);
     std::swap(header_, other.header_);
     std::swap(replayed_, other.replayed_);

@@ -42,8 +42,8 @@ enum class HistoryMode {
 /// Owns the open file, which it locks against a second process.
 class History {
 public:
-    /// Errors: a history of another design (inconsistent), one that is in use by another process or cannot be written
-    /// (file_unreadable), a damaged line other than the last (parse). A last line cut off by a kill is dropped.
+    /// Errors: a history of another design (inconsistent), one that is in use by another process (file_unreadable) or cannot be written
+    /// (file_unwritable), a damaged line other than the last (parse). A last line cut off by a kill is dropped.
     static Result<History> open(const std::string& directory, const HistoryHeader& header, HistoryMode mode);
     ~History();
     History(History&&) noexcept;
@@ -52,18 +52,24 @@ public:
     /// What an earlier run left, in its order.
     const std::vector<HistoryEntry>& replayed() const { return replayed_; }
 
-    /// Writes one line and waits until it is on the disk. Throws std::runtime_error if it cannot: going on would lose what is computed.
+    /// Writes one line and waits until it is on the disk. What cannot be written (a full disk) is kept, and tried again with the next.
     void append(const HistoryEntry& entry);
+
+    /// Why what was appended is not all on the disk (file_unwritable); nothing where it is.
+    Errors unwritten() const;
 
     /// Of the file that `fresh` renamed away; empty if there was none.
     const std::string& kept_as() const { return kept_as_; }
 
 private:
     History() = default;
-    void write_line(const std::string& line);
+    void write_waiting();
     Errors read_existing(const std::string& path);
 
     int file_ = -1;
+    std::string path_;
+    std::string waiting_;  ///< lines that are not on the disk yet
+    int write_error_ = 0;  ///< why
     int entries_ = 0;
     HistoryHeader header_;
     std::vector<HistoryEntry> replayed_;

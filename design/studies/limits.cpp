@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/problem/buildable.hpp"
 
 namespace fettle::design::studies {
@@ -109,24 +110,21 @@ private:
     }
 
     void add_requirements() {
-        char text[300];
         for (size_t i = 0; i < final_.constraints.size(); ++i) {
             const description::Measurement& measured = final_.constraints[i];
             const Bounds& bounds = design_.constraints[i].bounds;
             if (description::violation(bounds, measured) <= 0) continue;
-            const double unit = bounds.unit;
-            std::snprintf(text, sizeof text, "%s is proven within [%.6g, %.6g], required is [%.6g, %.6g]",
-                          design_.constraints[i].name.c_str(), measured.lower / unit, measured.upper / unit, bounds.lower / unit,
-                          bounds.upper / unit);
-            lines_.push_back(text + (measured.fault.empty() ? "" : ": " + measured.fault));
+            const std::string unit = description::unit_name(design_.constraints[i]);
+            lines_.push_back(design_.constraints[i].name + " is proven to be " + description::proven_text(measured, bounds, unit) +
+                             ", required is " + description::required_text(bounds, unit) +
+                             (measured.fault.empty() ? "" : ": " + measured.fault));
         }
         for (size_t i = 0; i < design_.relations.size(); ++i) {
             const description::Relation& relation = design_.relations[i];
-            const double value = final_.relations.values[static_cast<Eigen::Index>(i)], unit = relation.bounds.unit;
+            const double value = final_.relations.values[static_cast<Eigen::Index>(i)];
             if (description::violation(relation, value) <= 0) continue;
-            std::snprintf(text, sizeof text, "%s is %.6g, required is [%.6g, %.6g]", relation.name.c_str(), value / unit,
-                          relation.bounds.lower / unit, relation.bounds.upper / unit);
-            lines_.emplace_back(text);
+            lines_.push_back(relation.name + " is " + description::amount_text(value, relation.bounds.unit, "", 6) + ", required is " +
+                             description::required_text(relation.bounds, ""));
         }
     }
 

@@ -2,9 +2,11 @@
 #include "fettle/design/studies/optimise_design.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/optimisers/nearest_design.hpp"
 #include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/optimiser_problem.hpp"
@@ -19,14 +21,34 @@ namespace {
 using description::Design;
 using problem::DesignEvaluation;
 
-std::string evaluation_line(int number, const optimisers::Evaluation& e, bool best) {
-    char line[200];
-    if (!e.usable) {
-        std::snprintf(line, sizeof line, "%4d  cannot be evaluated: ", number);
-        return line + e.reason;
+// The requirement that is missed by most, by how much.
+std::string shortfall(const Design& design, const VectorX& p, const optimisers::Evaluation& e) {
+    if (e.violation <= 0) return "meets every requirement";
+    double most = 0;
+    std::string text;
+    const auto look_at = [&](const std::string& name, double violation, const std::string& unit) {
+        if (!(violation > most)) return;
+        most = violation;
+        text = "misses " + name + " by " + description::amount_text(violation, 1, unit, 4);
+    };
+    for (size_t i = 0; i < design.constraints.size(); ++i) {
+        const description::Constraint& constraint = design.constraints[i];
+        const description::Measurement value = description::exact(e.constraints[static_cast<Eigen::Index>(i)]);
+        look_at(constraint.name, description::violation(constraint.bounds, value), description::unit_name(constraint));
     }
-    std::snprintf(line, sizeof line, "%4d  objective %-13.8g violation %-11.4g%s", number, e.objective, e.violation, best ? " best" : "");
-    return line;
+    for (const description::Relation& relation : design.relations)
+        look_at(relation.name, description::violation(relation, relation.at(p).value), "");
+    constexpr double nearly = 0.01;  // what is proven may be a little less than what was found
+    return std::abs(most - e.violation) <= nearly * e.violation ? text : "a requirement is not proven to be met";
+}
+
+std::string evaluation_line(const Design& design, int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%4d  ", number);
+    if (!e.usable) return line + ("cannot be evaluated: " + e.reason);
+    const std::string text = line + shortfall(design, p, e);
+    std::snprintf(line, sizeof line, "objective %-13.8g", e.objective);
+    return text.substr(0, 6) + line + " " + text.substr(6) + (best ? ", the best so far" : "");
 }
 
 constexpr double repair_tolerance = 1e-2;  // of the squared change: half a percent of the change
@@ -91,8 +113,11 @@ private:
             seen.smoother.push_back({model.name,
                                      answered(model.problem, model.name, compute_, options_.history, Recorded::with_derivatives),
                                      answered(model.problem, model.name, compute_, options_.history, Recorded::values)});
-            narrate("to begin with: " + model.name);
         }
+        if (smoother_.empty()) return;
+        std::string names;
+        for (const problem::SmootherDesign& model : smoother_) names += (names.empty() ? "" : ", then ") + model.name;
+        narrate("parts rattle in the play of their fits: the search begins with wider contact, in which they do not (" + names + ")");
     }
 
     void watch_refusals(optimisers::Problem& seen) {
@@ -113,8 +138,9 @@ private:
         settings.should_stop = options_.should_stop;
         settings.on_evaluation = [this](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
             if (!e.usable) failures_.push_back({p, e.reason});
-            narrate(evaluation_line(number, e, best));
+            narrate(evaluation_line(design_, number, p, e, best));
         };
+        settings.narrate = [this](const std::string& line) { narrate(line); };
         return settings;
     }
 
@@ -128,6 +154,7 @@ private:
             last.should_stop = options_.should_stop;
             outcome_.play_taken_up_by = smoother_.front().name;
             outcome_.play_taken_up = smoother_.front().problem.evaluate(point, last);
+            outcome_.in_doubt = requirements_in_doubt(design_, outcome_.final, outcome_.play_taken_up);
         }
         for (const description::Measurement& measured : outcome_.final.constraints) {
             if (measured.clearance) outcome_.clearance.push_back(*measured.clearance);
@@ -149,6 +176,18 @@ private:
 };
 
 }  // namespace
+
+std::vector<size_t> requirements_in_doubt(const Design& design, const DesignEvaluation& own, const DesignEvaluation& other) {
+    std::vector<size_t> doubtful;
+    if (!own.usable || !other.usable) return doubtful;
+    for (size_t i = 0; i < design.constraints.size(); ++i) {
+        const description::Bounds& bounds = design.constraints[i].bounds;
+        const bool met = description::violation(bounds, own.constraints[i]) <= 0;
+        const description::Measurement value = description::exact(other.constraints[i].value);  // it is no proof of anything
+        if (met && description::violation(bounds, value) > 0) doubtful.push_back(i);
+    }
+    return doubtful;
+}
 
 HistoryEntry history_entry(const Design& design, const VectorX& p, const DesignEvaluation& evaluation) {
     HistoryEntry entry;

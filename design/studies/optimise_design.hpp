@@ -37,6 +37,7 @@ struct OptimiseOutcome {
     /// matters. Not usable where there is no smoother model, or it cannot be simulated.
     problem::DesignEvaluation play_taken_up;
     std::string play_taken_up_by;                           ///< that model's name
+    std::vector<size_t> in_doubt;                           ///< requirements that are met as written, and not with the play taken up
     std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
     std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)
     std::vector<std::string> unbuildable;  ///< what within the bounds makes no design, found before the first simulation (buildable.hpp)
@@ -46,6 +47,11 @@ struct OptimiseOutcome {
 /// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.
 /// Errors: the optimiser's name.
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});
+
+/// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there hangs on which
+/// of the two a real mechanism is like. None where the other is not usable.
+std::vector<size_t> requirements_in_doubt(const description::Design& design, const problem::DesignEvaluation& own,
+                                          const problem::DesignEvaluation& other);
 
 /// An evaluation as the history keeps it. Throws optimisers::Interrupted if it was.
 HistoryEntry history_entry(const description::Design& design, const VectorX& p, const problem::DesignEvaluation& evaluation);

@@ -2,8 +2,8 @@
 #include "fettle/design/studies/optimise_file.hpp"
 
 #include <filesystem>
+#include <utility>
 
-#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/reading/design_text.hpp"
 
@@ -19,18 +19,18 @@ HistoryHeader header_of(const reading::DesignFile& file) {
     return header;
 }
 
-Errors write_files(const reading::DesignFile& file, const std::string& directory, const OptimiseOutcome& outcome) {
-    const std::filesystem::path folder = directory;
-    const std::string text = reading::design_text(file, outcome.report.point, directory);
-    Errors errors = core::files::write_file_atomically(folder / "design.final.json", text);
-    if (!errors.empty()) return errors;
+Errors write_files(const reading::DesignFile& file, const RunFolder& run, const OptimiseOutcome& outcome) {
+    const std::filesystem::path folder = run.directory, trajectory = folder / "trajectory.json";
+    core::files::FilesTogether files;
+    Errors errors = files.add(folder / "design.final.json", reading::design_text(file, outcome.report.point, run.directory));
     if (!outcome.final.usable) {
-        std::error_code ignored;
-        std::filesystem::remove(folder / "trajectory.json", ignored);  // of an earlier run: it would pass for this one's
-        return {};
+        files.take_away(trajectory);  // of an earlier run: it would pass for this one's
+    } else if (errors.empty()) {
+        errors =
+            core::records::add_trajectory(files, trajectory, outcome.final.simulation.trajectory, *outcome.final.model, file.scene_path);
     }
-    return core::records::write_trajectory(folder / "trajectory.json", outcome.final.simulation.trajectory, *outcome.final.model,
-                                           file.scene_path);
+    if (errors.empty() && run.add_files) errors = run.add_files(outcome, files);
+    return errors.empty() ? files.take_names() : errors;
 }
 
 }  // namespace
@@ -45,11 +45,19 @@ Result<FileOutcome> optimise_file(const reading::DesignFile& file, const problem
     Result<History> history = History::open(folder.directory, header_of(file), mode);
     if (!history) return history.errors();
     options.history = &*history;
+    bool told = false;
+    options.narrate = [&, narrate = options.narrate](const std::string& line) {
+        if (!narrate) return;
+        narrate(line);
+        if (const Errors fault = history->unwritten(); !fault.empty() && !std::exchange(told, true))
+            narrate("warning: " + fault.front().where + ": " + fault.front().message + "; until it can, a run that is killed leaves less");
+    };
     Result<OptimiseOutcome> outcome = optimise_design(problem, options);
     if (!outcome) return outcome.errors();
-    const Errors errors = write_files(file, folder.directory, *outcome);
-    if (!errors.empty()) return errors;
-    return FileOutcome{std::move(*outcome), history->kept_as()};
+    Errors unwritten = history->unwritten();
+    const Errors files = write_files(file, folder, *outcome);
+    unwritten.insert(unwritten.end(), files.begin(), files.end());
+    return FileOutcome{std::move(*outcome), history->kept_as(), std::move(unwritten)};
 }
 
 }  // namespace fettle::design::studies

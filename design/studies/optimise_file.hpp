@@ -3,8 +3,10 @@
 /// `fettle optimise` is this and its printing.
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 
@@ -15,16 +17,20 @@ struct RunFolder {
     /// there.
     std::string directory;
     bool resume = false;  ///< replay an existing history
+    /// Optional: what else takes its place with design.final.json and trajectory.json. @return why it cannot be written
+    std::function<Errors(const OptimiseOutcome&, core::files::FilesTogether&)> add_files = {};
 };
 
 struct FileOutcome {
     OptimiseOutcome outcome;
     std::string history_kept_as;  ///< of an earlier run, if one was moved away
+    /// What could not be written (file_unwritable): of the history, or of the files, all of which are then as they were before.
+    Errors unwritten;
 };
 
 /// A killed run, resumed with the same design and options, ends with the same outcome, bit for bit.
 /// @param problem  Of file.design.
-/// Errors: the optimiser's name, the history (another design's, in use), files that cannot be written.
+/// Errors: the optimiser's name, the history (another design's, in use, not to be written from the start).
 Result<FileOutcome> optimise_file(const reading::DesignFile& file, const problem::DesignProblem& problem, const RunFolder& folder,
                                   OptimiseOptions options);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/text_lines.hpp"
 #include "fettle/core/mesh_files/xml_reader.hpp"
@@ -44,6 +45,9 @@ private:
         const std::string name = xml_.attribute("name").value_or("");
         if (xml_.name() != "link" && xml_.name() != "joint") return;
         if (name.empty()) xml_.fail(ErrorCode::missing_key, "a <" + std::string(xml_.name()) + "> needs a `name`");
+        if (const std::string fault = core::base::name_fault(name); !fault.empty())
+            xml_.fail(ErrorCode::out_of_range,
+                      "the name of a <" + std::string(xml_.name()) + "> " + fault + "; a name is text on one line");
         if (xml_.name() == "link") {
             robot_.links.emplace_back();
             robot_.links.back().name = name;
@@ -170,21 +174,30 @@ private:
     std::vector<Geometry>* section_ = nullptr;
 };
 
+constexpr std::size_t most_listed = 20;
+
 Errors check_ends(const Robot& robot, const std::string& where) {
     Errors errors;
     std::vector<std::string_view> names;
     for (const Link& link : robot.links) names.push_back(link.name);
+    std::vector<std::string_view> sorted = names, joints;
+    std::sort(sorted.begin(), sorted.end());
     for (const Joint& joint : robot.joints) {
+        joints.push_back(joint.name);
+        if (errors.size() >= most_listed) break;
         for (const auto& [end, name] : {std::pair{"parent", &joint.parent}, {"child", &joint.child}}) {
-            if (std::find(names.begin(), names.end(), *name) != names.end()) continue;
+            if (std::binary_search(sorted.begin(), sorted.end(), *name)) continue;
             errors.push_back({ErrorCode::missing_key, where,
                               "the " + std::string(end) + " of the joint \"" + joint.name + "\" is the link \"" + *name +
                                   "\", which is not there; " + core::files::did_you_mean(*name, names)});
         }
     }
-    std::sort(names.begin(), names.end());
-    const auto twice = std::adjacent_find(names.begin(), names.end());
-    if (twice != names.end()) errors.push_back({ErrorCode::inconsistent, where, "two links are called \"" + std::string(*twice) + "\""});
+    std::sort(joints.begin(), joints.end());
+    for (const auto& [kind, of_kind] : {std::pair{"links", &sorted}, {"joints", &joints}}) {
+        const auto twice = std::adjacent_find(of_kind->begin(), of_kind->end());
+        if (twice != of_kind->end())
+            errors.push_back({ErrorCode::inconsistent, where, "two " + std::string(kind) + " are called \"" + std::string(*twice) + "\""});
+    }
     return errors;
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
@@ -137,7 +138,7 @@ public:
                   {"timestep", 0.005},       {"end_time", 1},
                   {"bodies", Json::array()}, {"joints", Json::array()}};
         find_tree();
-        if (errors_.empty()) walk(root_, Pose{}, "", !options_.floating);
+        if (errors_.empty()) walk_tree();
         if (errors_.empty()) couple();
         if (errors_.empty() && visited_ < robot_.links.size())
             errors_.push_back({ErrorCode::inconsistent, robot_.name, "its links form no tree: some are children of one another"});
@@ -151,7 +152,14 @@ public:
 
 private:
     void find_tree() {
+        core::files::UniqueNames bodies;
+        for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+            index_of_[robot_.links[i].name] = i;
+            bodies_.push_back(bodies.unique(plain(robot_.links[i].name)));
+        }
         for (const Joint& joint : robot_.joints) {
+            joint_of_[joint.name] = &joint;
+            children_[joint.parent].push_back(&joint);
             if (!parent_joint_.insert({joint.child, &joint}).second)
                 errors_.push_back({ErrorCode::inconsistent, robot_.name, "the link \"" + joint.child + "\" is the child of two joints"});
         }
@@ -166,39 +174,53 @@ private:
         if (root_ < 0) errors_.push_back({ErrorCode::inconsistent, robot_.name, "every link has a parent, so that there is no root"});
     }
 
-    int link_index(const std::string& name) const {
-        const auto found = std::find_if(robot_.links.begin(), robot_.links.end(), [&](const Link& link) { return link.name == name; });
-        return static_cast<int>(found - robot_.links.begin());
+    /// A link to be visited.
+    struct Visit {
+        const Joint* joint = nullptr;  // that it hangs from; null: the root
+        std::size_t link = 0;
+        Pose pose;           // of the link's frame in the world
+        std::string body;    // that it hangs from; empty: the world
+        double start = 0;    // coordinate of the joint
+        bool still = false;  // does the link not move?
+    };
+
+    /// A link before its children, and those in the order of the joints. By a list of what is to come: a chain may have any length.
+    void walk_tree() {
+        std::vector<Visit> ahead{{nullptr, static_cast<std::size_t>(root_), Pose{}, "", 0, !options_.floating}};
+        while (!ahead.empty()) {
+            Visit visit = std::move(ahead.back());
+            ahead.pop_back();
+            const Link& link = robot_.links[visit.link];
+            const bool fixed_to_world = visit.joint && visit.still;
+            if (visit.joint && !fixed_to_world && !link.geometry().empty()) add_joint(*visit.joint, visit.pose, visit.body, visit.start);
+            take_link(visit);
+            const std::vector<const Joint*>& joints = children_[link.name];
+            for (auto joint = joints.rbegin(); joint != joints.rend(); ++joint) ahead.push_back(below(visit, **joint));
+        }
     }
 
-    /// @param pose  of the link's frame in the world. @param body  that joints of its children hang from, unless it has one of its own;
-    /// empty: the world.
-    /// @param still  does the link not move?
-    void walk(int index, const Pose& pose, std::string body, bool still) {
-        const Link& link = robot_.links[static_cast<std::size_t>(index)];
+    /// @param visit  its body becomes the link's own, if it has one: what its children hang from.
+    void take_link(Visit& visit) {
+        const Link& link = robot_.links[visit.link];
         ++visited_;
         if (!link.geometry().empty()) {
-            body = plain(link.name);
-            add_body(link, pose, still);
-        } else if (index != root_ && parent_joint_.at(link.name)->type != "fixed") {
+            visit.body = bodies_[visit.link];
+            add_body(link, visit.body, visit.pose, visit.still);
+        } else if (visit.joint && visit.joint->type != "fixed") {
             errors_.push_back(
                 {ErrorCode::unsupported, robot_.name, "the link \"" + link.name + "\" moves and has no geometry; give it a small one"});
         } else if (link.mass) {
-            add_to(body, link, pose);
+            add_to(visit.body, link, visit.pose);
         }
-        for (const Joint& joint : robot_.joints) {
-            if (joint.parent != link.name) continue;
-            const Pose frame = composed(pose, joint.origin);
-            const double start = start_of(joint);
-            Pose child = frame;
-            const Vector3 axis = joint.axis.normalized();
-            if (joint.type == "prismatic") child.position += start * (frame.rotation * axis);
-            if (joint.type == "revolute") child.rotation = frame.rotation * Eigen::AngleAxisd(start, axis).toRotationMatrix();
-            const int next = link_index(joint.child);
-            const bool fixed_to_world = body.empty() && joint.type == "fixed";
-            if (!fixed_to_world && !robot_.links[static_cast<std::size_t>(next)].geometry().empty()) add_joint(joint, child, body, start);
-            walk(next, child, body, fixed_to_world);
-        }
+    }
+
+    Visit below(const Visit& parent, const Joint& joint) const {
+        const Pose frame = composed(parent.pose, joint.origin);
+        Visit child{&joint, index_of_.at(joint.child), frame, parent.body, start_of(joint), parent.body.empty() && joint.type == "fixed"};
+        const Vector3 axis = joint.axis.normalized();
+        if (joint.type == "prismatic") child.pose.position += child.start * (frame.rotation * axis);
+        if (joint.type == "revolute") child.pose.rotation = frame.rotation * Eigen::AngleAxisd(child.start, axis).toRotationMatrix();
+        return child;
     }
 
     static bool is_limited(const Joint& joint) {
@@ -206,11 +228,12 @@ private:
     }
     static double start_of(const Joint& joint) { return is_limited(joint) ? std::clamp(0.0, *joint.lower, *joint.upper) : 0; }
 
-    void add_body(const Link& link, const Pose& pose, bool still) {
+    void add_body(const Link& link, const std::string& name, const Pose& pose, bool still) {
         const Result<Mesh> mesh = link_mesh(link, options_);
         errors_.insert(errors_.end(), mesh.errors().begin(), mesh.errors().end());
         if (!mesh) return;
-        const std::string name = plain(link.name), file = options_.stem + ".meshes/" + name + ".obj";
+        if (name != link.name) out_.warnings.push_back("link \"" + link.name + "\": its body is called \"" + name + "\"");
+        const std::string file = options_.stem + ".meshes/" + files_.unique(core::files::file_stem(name)) + ".obj";
         out_.files.emplace_back(file, core::mesh_files::obj_text({{name, &*mesh}}));
         Json body{{"name", name}};
         if (still) {
@@ -279,7 +302,7 @@ private:
         const std::string type = turns ? "revolute" : joint.type;
         Json out{{"name", joint.name}, {"type", type}};
         if (!parent.empty()) out["a"] = parent;
-        out["b"] = plain(joint.child);
+        out["b"] = bodies_[index_of_.at(joint.child)];
         out["point"] = numbers(1e3 * child.position);
         if (type != "fixed") out["axis"] = numbers(child.rotation * joint.axis);
         const double unit = turns ? 180 / M_PI : 1e3;
@@ -295,10 +318,10 @@ private:
     void couple() {
         for (const Joint& joint : robot_.joints) {
             if (joint.mimics.empty()) continue;
-            const auto other =
-                std::find_if(robot_.joints.begin(), robot_.joints.end(), [&](const Joint& j) { return j.name == joint.mimics; });
+            const auto other = joint_of_.find(joint.mimics);
             const auto turns = [](const Joint& j) { return j.type == "revolute" || j.type == "continuous"; };
-            if (other == robot_.joints.end() || !turns(*other) || !(turns(joint) || joint.type == "prismatic") || joint.multiplier == 0) {
+            if (other == joint_of_.end() || !turns(*other->second) || !(turns(joint) || joint.type == "prismatic") ||
+                joint.multiplier == 0) {
                 errors_.push_back(
                     {ErrorCode::unsupported, robot_.name,
                      "the joint \"" + joint.name + "\" mimics \"" + joint.mimics + "\": only one that turns can be followed"});
@@ -324,7 +347,11 @@ private:
     Json scene_;
     ImportedScene out_;
     Errors errors_;
-    std::map<std::string, const Joint*> parent_joint_;
+    std::map<std::string, const Joint*> parent_joint_, joint_of_;
+    std::map<std::string, std::vector<const Joint*>> children_;  // by the parent's name
+    std::map<std::string, std::size_t> index_of_;                // of links
+    std::vector<std::string> bodies_;                            // per link, the name of what becomes of it
+    core::files::UniqueNames files_{"_", true};
     struct BodyMass {
         Pose pose;                         // of the body's frame in the world
         std::optional<Inertial> inertial;  // along its axes

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_map>
 
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
 
@@ -17,11 +20,7 @@ using core::scene::JointKind;
 
 std::string text_of(const Vector3& x) { return decimal(x[0]) + " " + decimal(x[1]) + " " + decimal(x[2]); }
 
-std::string in_quotes(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-    return out + "\"";
-}
+std::string in_quotes(const std::string& text) { return "\"" + core::base::xml_text(text) + "\""; }
 
 std::string origin_text(const Pose& pose) {
     return "<origin xyz=\"" + text_of(pose.position) + "\" rpy=\"" + text_of(rpy_of_rotation(pose.rotation)) + "\"/>";
@@ -42,13 +41,16 @@ struct Hanging {
 class RobotWriter {
 public:
     RobotWriter(const core::scene::Scene& scene, const core::model::Model& model, std::string stem)
-        : scene_(scene), model_(model), stem_(std::move(stem)), hanging_(scene.bodies.size()) {}
+        : scene_(scene), model_(model), stem_(std::move(stem)), hanging_(scene.bodies.size()) {
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i) index_of_.try_emplace(scene.bodies[i].name, static_cast<int>(i));
+    }
 
     Result<ExportedRobot> write() {
         check_kinds();
         if (errors_.empty()) find_tree();
         if (!errors_.empty()) return errors_;
         tell_what_is_left_out();
+        name_links();
         std::string text = "<?xml version=\"1.0\"?>\n<robot name=" + in_quotes(stem_) + ">\n<link name=\"world\"/>\n";
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) text += link_text(i);
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) text += joint_text(i);
@@ -57,6 +59,20 @@ public:
     }
 
 private:
+    /// "world" is the root; what carries a body into it is named here, beside the scene's own joints.
+    void name_links() {
+        core::files::UniqueNames links, joints;
+        links.unique("world");
+        for (const core::scene::Joint& joint : scene_.mechanism.joints) joints.unique(joint.name);
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+            const std::string& name = scene_.bodies[i].name;
+            links_.push_back(links.unique(name));
+            if (links_.back() != name)
+                out_.warnings.push_back("body \"" + name + "\": its link is called \"" + links_.back() + "\", as the other name is taken");
+            carriers_.push_back(hanging_[i].joint ? hanging_[i].joint->name : joints.unique("world to " + links_.back()));
+        }
+    }
+
     static bool is_coupling(const core::scene::Joint& joint) { return joint.kind == JointKind::gear || joint.kind == JointKind::rack; }
 
     void check_kinds() {
@@ -68,9 +84,8 @@ private:
     }
 
     int body_index(const std::string& name) const {
-        const auto found =
-            std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const core::scene::Body& b) { return b.name == name; });
-        return found == scene_.bodies.end() ? world : static_cast<int>(found - scene_.bodies.begin());
+        const auto found = index_of_.find(name);
+        return found == index_of_.end() ? world : found->second;
     }
 
     static bool stays(const core::scene::Body& body) { return body.type == core::scene::BodyType::static_body; }
@@ -125,10 +140,8 @@ private:
     std::string link_text(std::size_t i) {
         const core::scene::Body& body = scene_.bodies[i];
         const Pose file = composed(inverse(hanging_[i].frame), body.pose);
-        std::string mesh_name = body.name;
-        std::replace(mesh_name.begin(), mesh_name.end(), '/', '_');
-        const std::string path = stem_ + ".meshes/" + mesh_name + ".stl";
-        std::string text = "<link name=" + in_quotes(body.name) + ">\n" + inertial_text(i, file);
+        const std::string path = stem_ + ".meshes/" + files_.unique(core::files::file_stem(body.name)) + ".stl";
+        std::string text = "<link name=" + in_quotes(links_[i]) + ">\n" + inertial_text(i, file);
         if (!body.mesh.triangles.empty()) {
             out_.files.emplace_back(path, core::mesh_files::stl_bytes({{body.name, &body.mesh}}));
             for (const char* section : {"visual", "collision"})
@@ -168,12 +181,11 @@ private:
     std::string joint_text(std::size_t i) const {
         const Hanging& from = hanging_[i];
         const core::scene::Body& body = scene_.bodies[i];
-        const std::string parent = from.parent == world ? "world" : scene_.bodies[static_cast<std::size_t>(from.parent)].name;
+        const std::string parent = from.parent == world ? "world" : links_[static_cast<std::size_t>(from.parent)];
         const Pose above = from.parent == world ? Pose{} : hanging_[static_cast<std::size_t>(from.parent)].frame;
         const std::string type = from.joint ? type_of(*from.joint) : stays(body) ? "fixed" : "floating";
-        const std::string name = from.joint ? from.joint->name : "world to " + body.name;
-        std::string text = "<joint name=" + in_quotes(name) + " type=\"" + type + "\"><parent link=" + in_quotes(parent) +
-                           "/><child link=" + in_quotes(body.name) + "/>" + origin_text(composed(inverse(above), from.frame));
+        std::string text = "<joint name=" + in_quotes(carriers_[i]) + " type=\"" + type + "\"><parent link=" + in_quotes(parent) +
+                           "/><child link=" + in_quotes(links_[i]) + "/>" + origin_text(composed(inverse(above), from.frame));
         if (from.joint && type != "fixed") text += motion_text(*from.joint, from);
         return text + "</joint>\n";
     }
@@ -199,6 +211,9 @@ private:
     const core::model::Model& model_;
     std::string stem_;
     std::vector<Hanging> hanging_;
+    std::vector<std::string> links_, carriers_;      // per body: its link, and the joint that it hangs from
+    std::unordered_map<std::string, int> index_of_;  // bodies by name
+    core::files::UniqueNames files_{"_", true};
     ExportedRobot out_;
     Errors errors_;
 };

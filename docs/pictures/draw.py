@@ -8,6 +8,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -15,8 +16,8 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 DESIGN = "examples/slider_crank/slider_crank.design.json"
 PICTURES = ("scene", "parts", "play", "margins", "contact", "convergence")
-COLOURS = {"block": "#7fb5d8", "crank": "#e8b040", "rod": "#4db596", "piston": "#d9a3c2"}  # lighter than `fettle draw` has them
-INK, GREY, BAND = "#222222", "#888888", "#9db8dd"
+COLOURS = {}  # of parts, as `fettle draw` has them
+INK, GREY, NEAREST, ALARM = "#222222", "#888888", "#1f56c4", "#c2182f"  # the last two as design/exports/palette.hpp has them
 
 
 def svg(width, height, parts):
@@ -86,10 +87,10 @@ def play_picture(before, after, clearances):
         parts.append(f'<clipPath id="c{column}"><rect x="{x0}" y="53" width="{34 * 12.4:.0f}" height="422"/></clipPath>')
         parts.append(f'<g clip-path="url(#c{column})">' + "".join(drawn_section(start, 0.0, place)) + "</g>")
         (ax, ay), (bx, by) = (place(1000 * p[0], 1000 * p[1]) for p in (clearance["point_a"], clearance["point_b"]))
-        parts.append(line([(ax, ay), (bx, by)], "#c00000", 3))
+        parts.append(line([(ax, ay), (bx, by)], NEAREST, 3))
         lower, upper = math.floor(1e7 * clearance["lower"]) / 1e4, math.ceil(1e7 * clearance["upper"]) / 1e4
         bounds = f"proven: at least {lower:.4f} mm, at most {upper:.4f} mm"
-        parts += [label(x0, 22, f"crank pin in the rod's bore, {name}"), label(x0, 42, bounds, colour="#c00000")]
+        parts += [label(x0, 22, f"crank pin in the rod's bore, {name}"), label(x0, 42, bounds, colour=NEAREST)]
     return svg(920, 490, parts)
 
 
@@ -128,7 +129,7 @@ class Axes:
         return (self.x0 + self.width * (x - self.x[0]) / (self.x[1] - self.x[0]),
                 self.y0 + self.height * (1 - (y - self.y[0]) / (self.y[1] - self.y[0])))
 
-    def level(self, value, text, colour="#c00000", below=0):
+    def level(self, value, text, colour=ALARM, below=0):
         (x, y), (end, _) = self.place(self.x[0], value), self.place(self.x[1], value)
         self.parts += [line([(x, y), (end, y)], colour, 1.2, "6 4"), label(end - 4, y - 5 + below, text, "end", colour)]
 
@@ -152,8 +153,8 @@ def margins_picture(rows):
 
 def contact_picture(rows):
     axes = margin_axes(rows, ("block", "crank"), (60, 40, 840, 220), 0.1, (0, 0.02, 0.04, 0.06, 0.08, 0.1), "crank's journal and block's bearing, nearest [mm]")
-    axes.level(0.08, "contact distance: pushes below", "#1f5fa8")
-    axes.level(0.0005, "touching", "#c00000")
+    axes.level(0.08, "contact distance: pushes below", NEAREST)
+    axes.level(0.0005, "touching", ALARM)
     return svg(920, 305, axes.parts)
 
 
@@ -205,6 +206,7 @@ def main(program, place=HERE):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         run("draw", DESIGN, "--out", str(place / "scene.svg"), "--size", "920x560", "--plain", "--title", "slider-crank")
+        COLOURS.update({name: colour for colour, name in re.findall(r'fill="(#\w{6})"/>\n<text [^>]*>([^<]+)', (place / "scene.svg").read_text())})
         run("simulate", DESIGN, "--steps", "1", "--out", folder + "/before")
         tuned = run("optimise", DESIGN, "--out", folder + "/after")
         after = folder + "/after/trajectory.json"

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Draws a trajectory's parts at one step, static ones cut open: draw.py TRAJECTORY.json PICTURE.png [STEP]. Needs python3-numpy.
-The README's picture: optimise the design, then draw.py OUT/trajectory.json slider_crank.png 35."""
+The README's picture: optimise the design, then draw.py OUT/trajectory.json slider_crank.png 35. The parts' colours are those of OUT/motion.glb."""
 import json
+import pathlib
 import struct
 import sys
 import zlib
@@ -10,7 +11,19 @@ import zlib
 import numpy as np
 
 WIDTH, HEIGHT, SAMPLES = 960, 460, 2
-COLOURS = {"block": (0.72, 0.76, 0.80), "crank": (0.82, 0.29, 0.36), "rod": (0.93, 0.68, 0.29), "piston": (0.0, 0.47, 0.55)}
+
+
+def colours(animation):
+    """By the bodies' names, sRGB, of a GLB file; it has them linear."""
+    data = animation.read_bytes()
+    scene = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
+    found = {}
+    for node in scene["nodes"]:
+        if "mesh" in node:
+            material = scene["meshes"][node["mesh"]]["primitives"][0]["material"]
+            linear = np.array(scene["materials"][material]["pbrMetallicRoughness"]["baseColorFactor"][:3])
+            found[node["name"]] = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return found
 
 
 def camera():
@@ -67,7 +80,7 @@ def main():
         header, *steps = (json.loads(line) for line in file)  # the bodies and their start, then a line for each step
     poses = [line["poses"] for line in (header, *steps) if "poses" in line]
     step = int(sys.argv[3]) if len(sys.argv) > 3 else 0
-    view = camera()
+    view, colour_of = camera(), colours(pathlib.Path(sys.argv[1]).with_name("motion.glb"))
     parts = [(body, world_triangles(body, pose) @ view.T) for body, pose in zip(header["bodies"], poses[step])]
     points = np.concatenate([triangles.reshape(-1, 3) for _, triangles in parts])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -91,7 +104,7 @@ def main():
             pixel = (triangle - (low + high) / 2) * scale
             pixel[:, 0] += size[0] / 2
             pixel[:, 1] = size[1] / 2 - pixel[:, 1]
-            rasterise(pixel, np.array(COLOURS.get(body["name"], (0.5, 0.5, 0.5))) * shade, image, depth)
+            rasterise(pixel, colour_of[body["name"]] * shade, image, depth)
     behind = depth < hidden[1]
     image[behind] = 0.6 * image[behind] + 0.4 * hidden[0][behind]
     write_png(sys.argv[2], image.reshape(HEIGHT, SAMPLES, WIDTH, SAMPLES, 3).mean(axis=(1, 3)))

@@ -31,10 +31,11 @@ struct Answer {
 
 /// @param arguments    as a shell takes them.
 /// @param with_errors  stderr too, in `out`; dropped otherwise.
-inline Answer run(const std::string& arguments, bool with_errors = false) {
+/// @param before       what the shell does first: "ulimit -f 8;".
+inline Answer run(const std::string& arguments, bool with_errors = false, const std::string& before = {}) {
     const char* elsewhere = std::getenv("FETTLE_PROGRAM");
     const std::string program = elsewhere != nullptr ? elsewhere : FETTLE_PROGRAM;
-    const std::string command = "'" + program + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
+    const std::string command = before + "'" + program + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
     Answer answer;
     FILE* pipe = ::popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);

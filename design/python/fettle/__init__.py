@@ -1,32 +1,41 @@
 # SPDX-License-Identifier: MIT
 """Tunes mechanisms of rigid parts under certified clearance: the library of fettle, from Python.
 
-SI units throughout (m, kg, s, rad, N). Scenes and designs are plain data (dataclasses); what is wrong with them raises fettle.Error, whose
-`errors` have code, where and message. Long calls let other threads run, and end on Ctrl-C.
+SI units throughout (m, kg, s, rad, N); a number that has a dimension may be given with a unit, "0.3mm". Paths are str or os.PathLike.
+Scenes and designs are plain data (dataclasses); what is wrong with them raises fettle.Error, whose `errors` have code, where and message.
+Long calls let other threads run, and end on Ctrl-C.
 
     scene = fettle.read_scene("hinge.scene.json")
     model = fettle.build_model(scene)
     simulation = fettle.simulate(model)
-    for pair in fettle.certify_clearance(model, simulation.trajectory, minimum=0.3e-3):
-        print(pair.status, pair.lower, pair.upper)
+    pairs = fettle.certify_clearance(model, simulation.trajectory, minimum="0.3mm")
+    print(pairs)                                                    # names, verdicts, proven bounds [m]
+    print(pairs.pair("pin", "plate").lower)
 
     problem = fettle.DesignProblem(fettle.read_design("hinge.design.json").design)
     value, gradient = problem.value_and_gradient(problem.values)
     outcome = fettle.optimise(problem, progress=print)
+
+In a notebook fettle.view(model, simulation.trajectory) shows the parts and their motion. A pickle can run code when it is read: load none
+but your own.
 """
 # `X as X`: for type checkers the name is public.
 from ._fettle import (
     Certificate as Certificate,
     DesignProblem as DesignProblem,
+    JointRanges as JointRanges,
     Model as Model,
     OpaqueQuantity as OpaqueQuantity,
     OpaqueShape as OpaqueShape,
+    RangeCertificate as RangeCertificate,
     Simulated as Simulated,
     ThreadLimit as ThreadLimit,
     Trajectory as Trajectory,
     __version__ as __version__,
+    as_assembled as as_assembled,
     build_model as build_model,
     certify_clearance as certify_clearance,
+    certify_ranges as certify_ranges,
     check_gradients as check_gradients,
     design_text as design_text,
     draw_picture as draw_picture,
@@ -34,11 +43,15 @@ from ._fettle import (
     follow_scripts as follow_scripts,
     from_si as from_si,
     generators as generators,
+    joint_ranges as joint_ranges,
     judge_mesh as judge_mesh,
     optimise as optimise,
     optimise_file as optimise_file,
     parse_design as parse_design,
+    parse_quantity as parse_quantity,
     parse_scene as parse_scene,
+    pose_at_witness as pose_at_witness,
+    quantity_dimension as quantity_dimension,
     read_design as read_design,
     read_mesh as read_mesh,
     read_scene as read_scene,
@@ -48,6 +61,8 @@ from ._fettle import (
     simulate as simulate,
     start_of_seed as start_of_seed,
     to_si as to_si,
+    units as units,
+    view_page as view_page,
     write_report as write_report,
     write_trajectory as write_trajectory,
 )
@@ -82,6 +97,7 @@ from .design import (
 )
 from .errors import Error as Error, EvaluationError as EvaluationError, Fault as Fault
 from .exploration import Exploration as Exploration, explore as explore, read_exploration as read_exploration
+from .notebook import View as View, view as view
 from .results import (
     CertificateFault as CertificateFault,
     CertificateReport as CertificateReport,
@@ -94,6 +110,7 @@ from .results import (
     ContactState as ContactState,
     DesignEvaluation as DesignEvaluation,
     DriveForce as DriveForce,
+    JointCoordinate as JointCoordinate,
     JointForce as JointForce,
     LineRow as LineRow,
     MarginInterval as MarginInterval,
@@ -105,7 +122,10 @@ from .results import (
     Overlap as Overlap,
     PairClearance as PairClearance,
     PairRequest as PairRequest,
+    Pairs as Pairs,
     QuantityRoughness as QuantityRoughness,
+    RangeClearance as RangeClearance,
+    RangeCoordinate as RangeCoordinate,
     RoughnessReport as RoughnessReport,
     Rows as Rows,
     Simulation as Simulation,
@@ -113,6 +133,7 @@ from .results import (
     StageReport as StageReport,
     StepOutputs as StepOutputs,
     StepReport as StepReport,
+    Touch as Touch,
     SweepAgreement as SweepAgreement,
     Witness as Witness,
 )
@@ -140,4 +161,5 @@ from .scene import (
     held as held,
 )
 
-__all__ = [name for name in dir() if not name.startswith("_") and name not in ("design", "errors", "exploration", "results", "scene")]
+_MODULES = ("design", "errors", "exploration", "notebook", "results", "scene")
+__all__ = [name for name in dir() if not name.startswith("_") and name not in _MODULES]

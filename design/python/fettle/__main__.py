@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m fettle explore DESIGN --out FILE: explores a design space from the command line. The other commands are the program's."""
+"""python3 -P -m fettle explore DESIGN --out FILE: explores a design space from the command line. The other commands are the program's.
+(-P: without it Python takes modules from the current folder first, whatever lies there.)"""
 import argparse
+import contextlib
+import dataclasses
+import errno
 import json
 import math
+import os
+import signal
 import sys
 from typing import Any, Dict, List, NoReturn, Optional, Sequence, Union
 
 from . import _fettle
 from .errors import Error, Fault
-from .exploration import explore, swept_faults
+from .exploration import Exploration, Unwritten, explore, read_exploration, swept_faults
 
 EXIT_DONE, EXIT_VIOLATED, EXIT_BAD_INPUT = 0, 1, 3
+EXIT_SIGNAL = 128  # and the number of the signal that asked for the end
 FORMS = "NAME=COUNT or NAME=LOW:HIGH:COUNT is wanted"
 
 
@@ -97,24 +104,49 @@ def run(options: argparse.Namespace) -> int:
     sweep = sweep_of(options.sweep, design)
     if not sweep and options.samples == 0 and options.starts == 0:
         raise Error([Fault("missing_key", "command line", "nothing to explore: give --sweep, --samples or --starts")])
-    found = explore(
-        design,
-        options.out,
-        sweep=sweep,
-        samples=options.samples,
-        starts=options.starts,
-        seed=options.seed,
-        workers=options.workers,
-        dask=options.dask,
-        progress=tell,
-    )
+    try:
+        found = explore(
+            options.design,
+            options.out,
+            sweep=sweep,
+            samples=options.samples,
+            starts=options.starts,
+            seed=options.seed,
+            workers=options.workers,
+            dask=options.dask,
+            allow_programs=options.allow_programs,
+            progress=tell,
+        )
+    except Unwritten as fault:  # what was found is told all the same
+        answer(fault.found, options, fault.errors)
+        for each in fault.errors:
+            print(error_line(each.where, each), file=sys.stderr)
+        return EXIT_BAD_INPUT
+    return answer(found, options, [])
+
+
+def answer(found: Exploration, options: argparse.Namespace, unwritten: Sequence[Fault]) -> int:
+    """Tells what was found."""
     best = next(iter(found.best()), None)
     if options.json:
-        print(json.dumps({"status": "ok" if best else "infeasible", "results": len(found), "best": best, "out": options.out}))
+        told: Dict[str, Any] = {"status": "ok" if best else "infeasible", "results": len(found), "best": best, "out": options.out}
+        if unwritten:
+            told["unwritten"] = [dataclasses.asdict(fault) for fault in unwritten]
+        put(json.dumps(told, allow_nan=False))
     else:
-        told = f"the best has the objective {best['objective']:.6g}" if best else "none meets every requirement"
-        print(f"{len(found)} designs in {options.out}; {told}")
+        text = f"the best has the objective {best['objective']:.6g}" if best else "none meets every requirement"
+        if unwritten and best:
+            text += ", at " + ", ".join(f"{name} {value:.9g}" for name, value in best["parameters"].items()) + " (SI)"
+        if not unwritten:
+            text += f"\nto look at them: fettle report {options.out}"
+        put(f"{len(found)} designs{'' if unwritten else ' in ' + options.out}; {text}")
     return EXIT_DONE if best else EXIT_VIOLATED
+
+
+def error_line(where: str, fault: Fault) -> str:
+    """Control characters, which paths and names can hold, are shown."""
+    line = f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]"
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in line)
 
 
 def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
@@ -123,18 +155,84 @@ def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
     places = [("--" if fault.where.split("/")[0] in options else "") + fault.where for fault in faults]
     if as_json:
         errors = [{"code": fault.code, "where": where, "message": fault.message} for where, fault in zip(places, faults)]
-        print(json.dumps({"status": "error", "errors": errors}))
+        put(json.dumps({"status": "error", "errors": errors}))
     else:
         for where, fault in zip(places, faults):
-            print(f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]", file=sys.stderr)
+            print(error_line(where, fault), file=sys.stderr)
     return EXIT_BAD_INPUT
 
 
+class _AnswerLost(Exception):
+    """Standard output does not take it."""
+
+
+def put(text: str) -> None:
+    if sys.stdout is None:  # closed
+        raise _AnswerLost(os.strerror(errno.EBADF))
+    try:
+        print(text, flush=True)
+    except OSError as fault:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the interpreter tries once more at its end
+        raise _AnswerLost(fault.strerror) from fault
+
+
+class Stopped(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM."""
+
+    def __init__(self, number: int):
+        super().__init__(number)
+        self.number = number
+
+
+def stop_on_signals() -> None:
+    """The first Ctrl-C (or SIGTERM) ends the work with what it has, a second one ends it at once. Those that came while Python started were
+    held back by the program that started it."""
+
+    def stop(number: int, _: Any) -> NoReturn:
+        signal.signal(number, signal.SIG_DFL)
+        raise Stopped(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT, signal.SIGTERM))
+
+
+def interrupted(options: argparse.Namespace, number: int) -> int:
+    """What has been found, and how to go on."""
+    results, best = 0, None
+    with contextlib.suppress(Error, OSError):
+        found = read_exploration(options.out)
+        results, best = len(found), next(iter(found.best()), None)
+    if options.json:
+        put(json.dumps({"status": "interrupted", "results": results, "best": best, "out": options.out}))
+    elif results:
+        put(f"interrupted: {results} designs are in {options.out}; the same command goes on with the others")
+    else:
+        put("interrupted before the first design was done")
+    return EXIT_SIGNAL + number
+
+
 def main(words: Optional[Sequence[str]] = None) -> int:
+    """words: None: those of the process, which is then the command's own, its signals too. As the other commands: an answer that standard
+    output does not take is exit code 3."""
+    try:
+        return run_told(words)
+    except _AnswerLost as fault:
+        print(error_line("standard output", Fault("file_unwritable", "", f"the answer cannot be written: {fault}")), file=sys.stderr)
+        return EXIT_BAD_INPUT
+
+
+def run_told(words: Optional[Sequence[str]]) -> int:
     given = sys.argv[1:] if words is None else list(words)
     as_json = "--json" in given
+    options = argparse.Namespace(out="", json=as_json)
     try:
-        return run(arguments().parse_args(given))
+        if words is None:
+            stop_on_signals()
+        options = arguments().parse_args(given)
+        return run(options)
+    except Stopped as stopped:
+        return interrupted(options, stopped.number)
     except Error as fault:
         return input_errors(fault.errors, as_json)
     except OSError as fault:

@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""A design as plain data (the library's design/description/): SI units. Shapes and quantities of one's own derive from Shape and Quantity.
+"""A design as plain data (the library's design/description/): SI units, or numbers with units as in a scene; bodies by number or by name.
+Shapes and quantities of one's own derive from Shape and Quantity.
 
     design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
     fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
-    design.parameters.append(fettle.Parameter("radius", 5e-3, 4e-3, 6e-3, "mm", [fettle.Move(body=0, dimension="radius")]))
+    design.parameters.append(fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm", [fettle.Move(body="pin", dimension="radius")]))
 """
 import dataclasses
 import math
-from typing import Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _fettle
-from ._record import Record, did_you_mean
+from ._record import Given, Number, Record, did_you_mean, faults_of, number
 from .errors import Error, Fault
 from .results import Measurement
-from .scene import Body, Mesh, MeshProgram, Scene, Vector
+from .scene import Body, Mesh, MeshProgram, PathLike, Scene, Vector
 
 Array = NDArray[np.float64]
+Which = Union[int, str]  # a body, by its number or its name
 
 
 class Shape:
@@ -39,12 +41,12 @@ class Shape:
         raise NotImplementedError
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class GeneratedPart(Record, Shape):
     """A generator's part (fettle.generators() lists them); dimensions that are left out take their defaults."""
 
     generator: str
-    values: Dict[str, float] = dataclasses.field(default_factory=dict)  #: [m]
+    values: Dict[str, Number] = number("length", factory=dict)  #: [m]
     segments: int = 24  #: of a full circle
 
     def dimensions(self) -> Dict[str, float]:
@@ -58,12 +60,12 @@ class GeneratedPart(Record, Shape):
         return _fettle.shape_at(self, values)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class FunctionShape(Record, Shape):
     """A part from a function: function(dimensions) -> (Mesh, {dimension: d vertices / d dimension (n, 3)})."""
 
     function: Callable[[Dict[str, float]], Tuple[Mesh, Mapping[str, ArrayLike]]]
-    values: Dict[str, float]
+    values: Dict[str, Number] = number("length")  #: [m]
     always_solid: bool = False
 
     def dimensions(self) -> Dict[str, float]:
@@ -73,26 +75,26 @@ class FunctionShape(Record, Shape):
         return self.function(values)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MeshShape(Record):
     """A part from any function that makes a mesh (CadQuery, build123d, trimesh): function(dimensions) -> Mesh, everything in metres. Its
     derivative comes from rebuilt meshes (design/shapes/rebuilt_shape.hpp); triangles may differ from mesh to mesh, the topology not."""
 
     function: Callable[[Dict[str, float]], Mesh]
-    values: Dict[str, float]  #: as drawn [m]
-    unit: float = 1e-3  #: that coordinates were rounded in: their digits tell the rounding [m]
-    rounding: Optional[float] = None  #: of coordinates, if it is known [m]
+    values: Dict[str, Number] = number("length")  #: as drawn [m]
+    unit: Number = number("length", 1e-3, of_unit=True)  #: that coordinates were rounded in: their digits tell the rounding [m]
+    rounding: Optional[Number] = number("length", None)  #: of coordinates, if it is known [m]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ProgramShape(Record):
     """A part from a program that writes a mesh file: ProgramShape(MeshProgram(["openscad", "-o", "{out}", ...], unit=1e-3), {"radius": 3e-3})."""
 
     program: MeshProgram
-    values: Dict[str, float]  #: as drawn [m]
+    values: Dict[str, Number] = number("length")  #: as drawn [m]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class QuantityGradient(Record):
     """Derivatives of a number in what a simulated design is made of; None or absent: zero."""
 
@@ -131,7 +133,7 @@ class Quantity:
         raise NotImplementedError
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class FunctionQuantity(Record, Quantity):
     """A number from two functions: function(simulated) -> value, derivative(simulated) -> QuantityGradient."""
 
@@ -147,55 +149,55 @@ class FunctionQuantity(Record, Quantity):
         return self.derivative(simulated)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Clearance(Record):
     """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
 
-    a: int
-    b: int
+    a: Which
+    b: Which
     motion: bool = False
     window: int = 0
     windows: int = 1
-    minimum: float = 0.0
+    minimum: Number = number("length", 0.0)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mass(Record):
-    """Of bodies, as (index, kind), kind as in Body.mass_kind [kg]."""
+    """Of bodies, as (body, kind), kind as in Body.mass_kind [kg]."""
 
-    bodies: Sequence[Tuple[int, str]]
+    bodies: Sequence[Tuple[Which, str]]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Stroke(Record):
     """Along a unit axis [m]; with a target the square of the deviation from it [m^2]."""
 
-    body: int
+    body: Which
     axis: Vector
-    target: Optional[float] = None
+    target: Optional[Number] = number("length", None)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerPath(Record):
     """Mean squared distance of a body's point from targets [m^2]; without times each at its nearest."""
 
-    body: int
-    point: Vector
-    targets: Sequence[Vector]
-    times: Sequence[float] = ()
+    body: Which
+    point: Vector = number("length")
+    targets: Sequence[Vector] = number("length")
+    times: Sequence[Number] = number("time", ())
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerSpeed(Record):
     """Velocity of a body's point (in its file frame) at the steps' ends [m/s]; `over` as in JointLoad."""
 
-    body: int
-    point: Vector
+    body: Which
+    point: Vector = number("length")
     over: str = "end"
     axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class JointLoad(Record):
     """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
     "mean", "largest" or "least"."""
@@ -207,18 +209,18 @@ class JointLoad(Record):
     effort_dimension: str = "torque"  #: of a motor's effort; "force" where it drives a travel
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactLoad(Record):
     """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
 
-    body: int
-    other: Optional[int] = None
+    body: Which
+    other: Optional[Which] = None
     over: str = "end"
     axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
-    about: Optional[Vector] = None  #: the torque about this point of the body's file frame [N m], in place of the force
+    about: Optional[Vector] = number("length", None)  #: the torque about this point of the body's file frame [N m], in place of the force
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Energy(Record):
     """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
@@ -230,7 +232,7 @@ AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, 
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Origin(Record):
     """A place in one of the scene's lists of joints, springs, motors and loads."""
 
@@ -238,7 +240,7 @@ class Origin(Record):
     index: int = -1
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Move(Record):
     """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
     design/description/parameter.hpp lists the targets."""
@@ -248,7 +250,7 @@ class Move(Record):
     #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",
     #: "pitch", "ratio", "curve_value", "curve_rate", "load_point", "load_force"
     target: str = "dimension"
-    body: int = 0
+    body: Which = 0
     dimension: str = ""
     dof: int = 0  #: motor_rate: 0 .. 5
     scale: float = 1.0
@@ -260,44 +262,47 @@ class Move(Record):
     materials: List[str] = dataclasses.field(default_factory=list)  #: material_mu: one, pair_mu: two
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Parameter(Record):
-    """value, lower, upper in SI; `unit` is what people read it in."""
+    """value, lower, upper in SI, or as texts with units of `unit`'s dimension; `unit` is what people read it in."""
 
     name: str = ""
-    value: float = 0.0
-    lower: float = 0.0
-    upper: float = 0.0
+    value: Number = number("unit", 0.0)
+    lower: Number = number("unit", 0.0)
+    upper: Number = number("unit", 0.0)
     unit: str = ""
     moves: List[Move] = dataclasses.field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        self.value, self.lower, self.upper = self.value, self.lower, self.upper  # now that the unit is known
 
-@dataclasses.dataclass(eq=False, slots=True)
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Bounds(Record):
-    lower: float = -math.inf  #: SI
-    upper: float = math.inf
-    margin: float = 0.0  #: by which the optimiser keeps away from both
-    unit: float = 1.0  #: SI value of the unit that violations are counted in
+    lower: Number = number("any", -math.inf)  #: SI
+    upper: Number = number("any", math.inf)
+    margin: Number = number("any", 0.0)  #: by which the optimiser keeps away from both
+    unit: Number = number("any", 1.0, of_unit=True)  #: SI value of the unit that violations are counted in, or its name
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ObjectiveTerm(Record):
     """Contributes weight * value / unit."""
 
     name: str = ""
     weight: float = 1.0
-    unit: float = 1.0
+    unit: Number = number("any", 1.0, of_unit=True)
     quantity: Optional[AnyQuantity] = None
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Constraint(Record):
     name: str = ""
     bounds: Bounds = dataclasses.field(default_factory=Bounds)
     quantity: Optional[AnyQuantity] = None
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Relation(Record):
     """Between parameters alone: a formula ("crank / rod"), or at(p) -> (value, gradient), p all parameters in SI."""
 
@@ -308,36 +313,94 @@ class Relation(Record):
     at: Optional[Callable[[Array], Tuple[float, ArrayLike]]] = None
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class OptimiserSettings(Record):
     name: str = "ipopt"
     max_evaluations: int = 100
     tolerance: float = 1e-4
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Design(Record):
     """A scene, what may be changed in it, what is wanted and what is required."""
 
     scene: Scene = dataclasses.field(default_factory=Scene)
     shapes: List[Optional[AnyShape]] = dataclasses.field(default_factory=list)  #: per body; None: the mesh stays as it is
     steps: int = 0
-    clearance_tolerance: float = 1e-9  #: [m]
+    clearance_tolerance: Number = number("length", 1e-9)  #: [m]
     parameters: List[Parameter] = dataclasses.field(default_factory=list)
     objective: List[ObjectiveTerm] = dataclasses.field(default_factory=list)
     constraints: List[Constraint] = dataclasses.field(default_factory=list)
     relations: List[Relation] = dataclasses.field(default_factory=list)
     optimiser: OptimiserSettings = dataclasses.field(default_factory=OptimiserSettings)
 
+    def _prepared(self) -> "Design":
+        """As the library takes it: bodies by number. Raises Error where a name is no body's, or a number was given in a unit of another
+        dimension than what it bounds."""
+        faults: List[Fault] = []
+        names = [body.name for body in self.scene.bodies]
+        made = dataclasses.replace(
+            self,
+            parameters=[dataclasses.replace(p, moves=[_numbered(move, names, faults) for move in p.moves]) for p in self.parameters],
+            objective=[dataclasses.replace(term, quantity=_numbered(term.quantity, names, faults)) for term in self.objective],
+            constraints=[dataclasses.replace(c, quantity=_numbered(c.quantity, names, faults)) for c in self.constraints],
+        )
+        faults = faults or _faults_of_units(made)
+        if faults:
+            raise Error(faults)
+        return made
 
-@dataclasses.dataclass(eq=False, slots=True)
+
+def _body_number(body: Which, names: Sequence[str], where: str, faults: List[Fault]) -> int:
+    if not isinstance(body, str):
+        return body
+    if body in names:
+        return names.index(body)
+    faults.append(Fault("out_of_range", where, f"there is no body {body!r}; {did_you_mean(body, names)}"))
+    return 0
+
+
+def _numbered(record: Any, names: Sequence[str], faults: List[Fault]) -> Any:
+    """A quantity or move with its bodies by number."""
+    kind = type(record)
+    if kind is Mass:
+        if all(not isinstance(body, str) for body, _ in record.bodies):
+            return record
+        return Mass([(_body_number(body, names, "Mass/bodies", faults), of) for body, of in record.bodies])
+    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, ContactLoad, Move):
+        return record
+    members = {name: getattr(record, name) for name in ("a", "b", "body", "other") if name in kind.__dataclass_fields__}
+    numbers = {
+        name: _body_number(body, names, f"{kind.__name__}/{name}", faults) for name, body in members.items() if isinstance(body, str)
+    }
+    return dataclasses.replace(record, **numbers) if numbers else record
+
+
+def _faults_of_units(design: Design) -> List[Fault]:
+    """Of numbers with units in objective and constraints: their quantity says which dimension is wanted."""
+    faults: List[Fault] = []
+    measured: List[Tuple[Any, str, Dict[str, Any]]] = [
+        (term.quantity, f"objective term `{term.name}`", {"unit": term.unit}) for term in design.objective
+    ]
+    for c in design.constraints:
+        members = {name: getattr(c.bounds, name) for name in ("lower", "upper", "margin", "unit")}
+        measured.append((c.quantity, f"constraint `{c.name}`/bounds", members))
+    for of, where, members in measured:
+        units = {name: value for name, value in members.items() if isinstance(value, Given)}
+        if units and of is not None:
+            dimension = _fettle.quantity_dimension(of)
+            faults += [fault for name, value in units.items() for fault in faults_of(value, dimension, f"{where}/{name}")]
+    return faults
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class DesignFile(Record):
     """A design and what its file says besides."""
 
     design: Design = dataclasses.field(default_factory=Design)
-    path: str = ""
+    path: PathLike = ""
     text: str = ""
-    scene_path: str = ""
+    scene_path: PathLike = ""
     length_unit: str = ""
     output: str = ""
     warnings: List[str] = dataclasses.field(default_factory=list)

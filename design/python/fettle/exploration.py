@@ -20,8 +20,10 @@ import json
 import math
 import multiprocessing
 import multiprocessing.connection
+import multiprocessing.resource_tracker
 import os
 import pickle
+import signal
 import threading
 import time
 from typing import Any, Callable, Deque, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
@@ -30,13 +32,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _fettle
-from ._record import did_you_mean
+from ._record import columns, did_you_mean, in_si, units
 from .design import Design
 from .errors import Error, Fault
+from .scene import PathLike
 
 VERSION = 1
 FIRST_KEY = '{"fettle_explore"'
-MOST_DESIGNS = 1_000_000  # of one sweep
+MOST_DESIGNS = 1_000_000  # of one exploration
 DASK_SECONDS = 10  # for a scheduler to answer
 Result = Dict[str, Any]
 Progress = Callable[[int, int, Result], object]
@@ -142,9 +145,37 @@ def run_job(name: str, design: bytes, job: Job) -> Result:
     return {"key": job.key, "kind": job.kind, "seed": job.seed, **result, "seconds": time.perf_counter() - begin}
 
 
-def _serve(pipe: Any, name: str, design: bytes) -> None:
-    """A worker process: jobs in, results out, until the pipe closes."""
-    with contextlib.suppress(EOFError, KeyboardInterrupt, BrokenPipeError):
+SAFE_PATH = "PYTHONSAFEPATH"
+
+
+@contextlib.contextmanager
+def _starting_processes() -> Iterator[None]:
+    """Processes that are started meanwhile do not look for modules in the folder that they run in, which may be anyone's; and Ctrl-C, which
+    reaches them too, waits until they know what to do with it."""
+    given = os.environ.get(SAFE_PATH)
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    os.environ[SAFE_PATH] = "1"
+    try:
+        multiprocessing.resource_tracker.ensure_running()  # it would take Ctrl-C's block away where the first process is started
+        signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+        yield
+    finally:
+        if given is None:
+            del os.environ[SAFE_PATH]
+        else:
+            os.environ[SAFE_PATH] = given
+        signal.pthread_sigmask(signal.SIG_SETMASK, held)
+
+
+def _serve(pipe: Any, name: str, design: bytes, safe_path: Optional[str]) -> None:
+    """A worker process: jobs in, results out, until the pipe closes. Whoever got Ctrl-C ends it. safe_path: of the environment of programs
+    that it runs."""
+    os.environ.pop(SAFE_PATH, None)
+    if safe_path is not None:
+        os.environ[SAFE_PATH] = safe_path
+    signal.signal(signal.SIGINT, lambda *_: None)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
+    with contextlib.suppress(EOFError, BrokenPipeError):
         while True:
             pipe.send(run_job(name, design, pipe.recv()))
 
@@ -171,14 +202,15 @@ class _LocalPool:
     """Workers beside this process. One that ends, however it ends, is replaced."""
 
     def __init__(self, workers: int, name: str, design: bytes):
-        self.arguments = (name, design)
+        self.arguments = (name, design, os.environ.get(SAFE_PATH))
         self.context = multiprocessing.get_context("spawn")
         self.workers = [self._start() for _ in range(workers)]
 
     def _start(self) -> _Local:
         here, there = self.context.Pipe()
         process = self.context.Process(target=_serve, args=(there, *self.arguments), daemon=True)
-        process.start()
+        with _starting_processes():
+            process.start()
         there.close()
         return _Local(process, here)
 
@@ -284,26 +316,54 @@ class Exploration:
         return f"Exploration({len(self)} designs{': ' if told else ''}{told})"
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{r['status']}</td><td>{r.get('objective')}</td></tr>" for r in self.best(10))
-        return f"<table><caption>{len(self)} designs; the best</caption><tr><th>status</th><th>objective</th></tr>{rows}</table>"
+        names: List[str] = list(self.header.get("parameters", []))
+        rows = [[r["status"], r.get("objective"), *(r.get("parameters", {}).get(name) for name in names)] for r in self.best(10)]
+        return columns(f"{len(self)} designs; the best, SI", ["status", "objective", *names], rows)
 
 
 def _fail(code: str, where: str, message: str) -> Error:
     return Error([Fault(code, where, message)])
 
 
-def read_exploration(path: str) -> Exploration:
+def _refused(name: str) -> float:
+    raise ValueError(f"{name} is no number of JSON")
+
+
+def _is_result(record: Any) -> bool:
+    """Has a line what is told of a result, each of its type?"""
+
+    def numbers(value: Any) -> bool:
+        return isinstance(value, dict) and all(x is None or isinstance(x, (int, float)) for x in value.values())
+
+    if not isinstance(record, dict) or not all(isinstance(record.get(key), str) for key in ("key", "status")):
+        return False
+    groups = [record[key] for key in ("parameters", "terms", "constraints", "certified") if key in record]
+    single = {key: record.get(key) for key in ("objective", "violation")}
+    return numbers(single) and all(map(numbers, groups))
+
+
+def _record(path: str, number: int, line: str) -> Result:
+    """A line of the file, checked."""
+    try:
+        record: Result = json.loads(line, parse_constant=_refused)
+    except (ValueError, RecursionError) as fault:
+        raise _fail("parse", f"{path}:{number}", f"the line is damaged: {fault}; take it out, or name another file") from fault
+    if number > 1 and not _is_result(record):
+        message = "the line is damaged: it is no result of an exploration; take it out, or name another file"
+        raise _fail("wrong_type", f"{path}:{number}", message)
+    return record
+
+
+def read_exploration(path: PathLike) -> Exploration:
     """Reads a file of explore(). A last line that was cut off is left out."""
+    path = os.fspath(path)
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.read().split("\n")
     except UnicodeDecodeError as fault:
         raise _fail("parse", str(path), f"it is no text: {fault}") from fault
     whole = [line for line in lines[:-1] if line]  # what follows the last line feed was cut off
-    try:
-        records = [json.loads(line) for line in whole]
-    except json.JSONDecodeError as fault:
-        raise _fail("parse", str(path), f"a line is no JSON: {fault}") from fault
+    records = [_record(str(path), number, line) for number, line in enumerate(whole, 1)]
     if not records or not isinstance(records[0], dict) or records[0].get("fettle_explore") != VERSION:
         raise _fail("missing_key", str(path), f"no exploration: its first line has no `fettle_explore` {VERSION}")
     return Exploration(records[0], records[1:])
@@ -322,28 +382,43 @@ def swept_faults(names: Sequence[str], sweep: Mapping[str, Union[int, Sequence[f
             faults.append(Fault("out_of_range", where, f"{count} values are not allowed: 1 or more are"))
         elif not isinstance(values, int) and not all(math.isfinite(x) for x in values):
             faults.append(Fault("not_finite", where, "the values are finite numbers"))
-    if designs > MOST_DESIGNS:
-        faults.append(Fault("out_of_range", "sweep", f"{designs} designs are not allowed: up to {MOST_DESIGNS} are"))
-    return faults
+    return faults + too_many("sweep", designs)
+
+
+def too_many(where: str, designs: int) -> List[Fault]:
+    """Each is planned before the first is made, so there is an end to what memory holds."""
+    if designs <= MOST_DESIGNS:
+        return []
+    return [Fault("out_of_range", where, f"{designs} designs are not allowed: up to {MOST_DESIGNS} are")]
+
+
+def _swept_in_si(design: Design, sweep: Mapping[str, Union[int, Sequence[Any]]]) -> Dict[str, Union[int, Sequence[float]]]:
+    """A sweep whose values may have units."""
+    dimensions = {p.name: units().get(p.unit, "number") for p in design.parameters}
+    return {
+        name: values if isinstance(values, int) else in_si(list(values), dimensions.get(name, "number"), f"sweep/{name}")
+        for name, values in sweep.items()
+    }
 
 
 def grid(problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence[float]]]) -> List[Job]:
     """Every combination of the swept parameters (SI values, or how many between the bounds), the others as the design has them."""
     names = problem.parameter_names
-    columns = {}
+    swept = {}
     for name, values in sweep.items():
         k = names.index(name)
-        columns[k] = np.linspace(problem.lower[k], problem.upper[k], values) if isinstance(values, int) else np.asarray(values, float)
+        swept[k] = np.linspace(problem.lower[k], problem.upper[k], values) if isinstance(values, int) else np.asarray(values, float)
     jobs = []
-    for combination in itertools.product(*columns.values()):
+    for combination in itertools.product(*swept.values()):
         point = problem.values
-        point[list(columns)] = combination
+        point[list(swept)] = combination
+        problem.check(point)
         jobs.append(Job("evaluate", tuple(point)))
     return jobs
 
 
 def _jobs(
-    problem: _fettle.DesignProblem, sweep: Optional[Mapping[str, Union[int, Sequence[float]]]], samples: int, starts: int, seed: int
+    problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence[float]]], samples: int, starts: int, seed: int
 ) -> List[Job]:
     jobs = grid(problem, sweep) if sweep else []
     jobs += [Job("evaluate", tuple(_fettle.start_of_seed(problem, 1000 * seed + k))) for k in range(1, samples + 1)]
@@ -372,31 +447,55 @@ def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Resu
         results: List[Result] = []
         if whole:
             known = read_exploration(path)
-            if known.header != header:
+            if any(known.header.get(key) != header[key] for key in header if key != "file"):
                 raise _fail("inconsistent", path, "this file is the exploration of another design; name another file")
             results = known.results
         else:
-            _write(file, header)
-        begin = file.tell()
+            try:
+                _write(file, header)
+            except Error:
+                os.unlink(path)
+                raise
+        begin = _size(file)
         try:
             yield file, results
         except BaseException:
-            if not whole and file.tell() == begin:
+            if not whole and _size(file) == begin:
                 os.unlink(path)
             raise
 
 
+def _size(file: TextIO) -> int:
+    return os.fstat(file.fileno()).st_size
+
+
 def _write(file: TextIO, record: Result) -> None:
-    file.write(json.dumps(record, allow_nan=False) + "\n")
-    file.flush()
-    os.fsync(file.fileno())
+    """A whole line at the end, on the disk; none, and an Error, where it cannot be written."""
+    line = (json.dumps(record, allow_nan=False) + "\n").encode()
+    begin = _size(file)
+    try:
+        while line:
+            line = line[os.write(file.fileno(), line) :]
+        os.fsync(file.fileno())
+    except OSError as fault:
+        with contextlib.suppress(OSError):
+            os.ftruncate(file.fileno(), begin)
+        raise _fail("file_unwritable", file.name, f"the file cannot be written: {fault.strerror}") from fault
+
+
+class Unwritten(Error):
+    """The file cannot take what was found: `found` has all of it."""
+
+    def __init__(self, fault: Error, found: Exploration):
+        super().__init__(fault.errors)
+        self.found = found
 
 
 def explore(
-    design: Union[Design, str],
-    out: str,
+    design: Union[Design, PathLike],
+    out: PathLike,
     *,
-    sweep: Optional[Mapping[str, Union[int, Sequence[float]]]] = None,
+    sweep: Optional[Mapping[str, Union[int, Sequence[Union[float, str]]]]] = None,
     samples: int = 0,
     starts: int = 0,
     seed: int = 1,
@@ -407,26 +506,34 @@ def explore(
 ) -> Exploration:
     """Evaluates designs, or optimises from starts, in parallel, and writes each result to `out` as it comes.
 
-    design: a Design that can be pickled, or the path of a *.design.json. sweep: {parameter: SI values, or how many between its bounds}, all
-    combinations. samples: so many designs drawn from the bounds. starts: so many runs of the optimiser, the first from the design's own
-    values. seed: of samples and starts; the same seed gives the same ones on any machine. workers: processes (default: the processors).
-    dask: address of a scheduler, whose workers are used instead; one that does not answer within 10 s is an error. progress(done, of,
-    result)."""
+    design: a Design that can be pickled, or the path of a *.design.json. sweep: {parameter: values (SI, or with units, "9mm"), or how many
+    between its bounds}, all combinations. samples: so many designs drawn from the bounds. starts: so many runs of the optimiser, the first
+    from the design's own values. seed: of samples and starts; the same seed gives the same ones on any machine. workers: processes
+    (default: the processors).
+    dask: address of a scheduler, whose workers are used instead; one that does not answer within 10 s is an error. It gets the design as a
+    pickle and answers with pickles: whoever reaches it can run code on its workers, and here. progress(done, of, result).
+    Raises Unwritten, which has all that was found, where the file cannot take it (a full disk)."""
     faults = [
         Fault("out_of_range", name, f"{value} is not allowed: {least} or more is")
         for name, value, least in (("samples", samples, 0), ("starts", starts, 0), ("seed", seed, 0), ("workers", workers, 1))
         if value is not None and value < least
     ]
-    if isinstance(design, str):
+    out = os.fspath(out)
+    path = os.fspath(design) if isinstance(design, (str, os.PathLike)) else None
+    if isinstance(design, (str, os.PathLike)):
         design = _fettle.read_design(design, allow_programs=allow_programs).design
     problem = _fettle.DesignProblem(design)
-    faults += swept_faults(problem.parameter_names, sweep or {})
+    faults += too_many("samples", samples) + too_many("starts", starts)
+    in_numbers = _swept_in_si(design, sweep or {})
+    faults += swept_faults(problem.parameter_names, in_numbers)
     if faults:
         raise Error(faults)
     packed = pickle.dumps(design)
     name = _design_name(design)
-    header = {"fettle_explore": VERSION, "program": _fettle.__version__, "design": name, "parameters": problem.parameter_names}
-    jobs = _jobs(problem, sweep, samples, starts, seed)
+    header: Result = {"fettle_explore": VERSION, "program": _fettle.__version__, "design": name, "parameters": problem.parameter_names}
+    if path is not None:  # from the file of results, so that both can be moved together
+        header["file"] = os.path.relpath(path, os.path.dirname(out) or ".")
+    jobs = _jobs(problem, in_numbers, samples, starts, seed)
     del problem
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(_dask_client(dask)) if dask is not None else None
@@ -441,8 +548,13 @@ def explore(
             pool = _LocalPool(min(workers or os.cpu_count() or 1, len(wanted)), name, packed)
             stack.callback(pool.close)
             results = pool.run(wanted)
+        found = list(known)
         for result in results:
-            _write(file, result)
+            found.append(result)
+            try:
+                _write(file, result)
+            except Error as fault:
+                raise Unwritten(fault, Exploration(header, found)) from fault
             count += 1
             if progress:
                 progress(count, len(jobs), result)

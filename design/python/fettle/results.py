@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """What simulations, certifications, evaluations and optimisations answer: plain data, SI units."""
 import dataclasses
+import decimal
 import math
-from typing import List, Literal, Optional
+from typing import Any, Generic, Iterable, List, Literal, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _fettle
-from ._record import Record
+from ._record import COLUMNS, MOST_LINES, MOST_ROWS, Number, Record, Records, columns, did_you_mean, number
 
 Array = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ def _rows() -> Array:
     return np.zeros((0, 0))
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class StepReport(Record):
     newton_iterations: int = 0
     friction_rounds: int = 0
@@ -36,7 +37,7 @@ class StepReport(Record):
     path_joint_gap: float = 0.0  #: [m]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class SimulationReport(Record):
     status: Literal["ok", "blocked", "not_held", "not_converged", "interrupted"] = "ok"
     message: str = ""
@@ -45,7 +46,7 @@ class SimulationReport(Record):
     wall_seconds: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactForce(Record):
     """Between two bodies at a step's end."""
 
@@ -59,7 +60,7 @@ class ContactForce(Record):
     contacts: int = 0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class DriveForce(Record):
     """What holds or drives a body's prescribed coordinates."""
 
@@ -68,7 +69,7 @@ class DriveForce(Record):
     torque: Array = dataclasses.field(default_factory=_zero)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class JointForce(Record):
     """On body b, about the joint's point: what keeps the joint together; effort: of a motor, along its coordinate; spring, damping, friction
     and stop: of the joint's own, along its coordinate."""
@@ -83,7 +84,7 @@ class JointForce(Record):
     stop: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class StepOutputs(Record):
     time: float = 0.0  #: at the step's end [s]
     kappa: float = 0.0
@@ -100,24 +101,26 @@ class StepOutputs(Record):
     joints: List[JointForce] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Simulation(Record):
     trajectory: _fettle.Trajectory = dataclasses.field(default_factory=_fettle.Trajectory)
     report: SimulationReport = dataclasses.field(default_factory=SimulationReport)
     outputs: List[StepOutputs] = dataclasses.field(default_factory=list)  #: per step, if asked for
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class PairRequest(Record):
-    """Bodies a and b, and the clearance that is required of them [m]."""
+    """Bodies a and b, by name or number, and the clearance that is required of them."""
 
-    a: int = 0
-    b: int = 0
-    minimum: float = 0.0
-    far: float = math.inf
+    a: Union[int, str] = 0
+    b: Union[int, str] = 0
+    minimum: Number = number("length", 0.0)  #: [m]
+    far: Number = number("length", math.inf)  #: [m]
+    may_touch: bool = False  #: that they touch is accepted
+    touch_depth: Number = number("length", 0.0)  #: how deep they may be in each other and still touch [m]; 0: 1e-5 of the larger one's size
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Witness(Record):
     """Which two primitives are closest, when, and where."""
 
@@ -136,7 +139,7 @@ class Witness(Record):
     distance: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarginInterval(Record):
     step: int = -1
     segment: int = 0
@@ -146,7 +149,7 @@ class MarginInterval(Record):
     upper: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Overlap(Record):
     depth_lower: float = 0.0  #: [m]
     depth_upper: float = 0.0
@@ -156,7 +159,17 @@ class Overlap(Record):
     center: Array = dataclasses.field(default_factory=_zero)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Touch(Record):
+    """Two bodies that touch: proven to be nowhere deeper in each other than `depth`."""
+
+    area: float = 0.0  #: of the faces that lie on each other [m^2]
+    time: float = 0.0
+    depth: float = 0.0  #: [m]
+    room: float = 0.0
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class PairClearance(Record):
     """Proven: lower <= the least distance <= upper, rounding included [m]."""
 
@@ -165,13 +178,15 @@ class PairClearance(Record):
     minimum: float = 0.0
     lower: float = 0.0
     upper: float = 0.0
+    is_bounded: bool = True  #: False: nothing is proven
     is_far: bool = False
     status: Literal["clear", "violated", "undecided", "contact"] = "undecided"
     witness: Witness = dataclasses.field(default_factory=Witness)
     complete: bool = True
     intersecting: bool = False
-    solids: Literal["unproven", "disjoint", "overlap", "not closed"] = "unproven"
+    solids: Literal["unproven", "disjoint", "overlap", "not closed", "not verified"] = "unproven"
     overlap: Optional[Overlap] = None
+    touch: Optional[Touch] = None
     clash_not_before: float = 0.0
     clash_time: float = 0.0
     reason: str = ""
@@ -180,13 +195,103 @@ class PairClearance(Record):
     witnesses: List[Witness] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class JointCoordinate(Record):
+    """A joint's own coordinate, of the one that moves it: scale u + offset."""
+
+    joint: str = ""
+    is_angle: bool = False  #: [rad], else [m]
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class RangeCoordinate(Record):
+    """One of JointRanges: low <= start <= high, of the first of its joints [rad or m]."""
+
+    start: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+    is_whole_turn: bool = False  #: there are no limits: the range is one turn
+    joints: List[JointCoordinate] = dataclasses.field(default_factory=list)  #: several, where gears couple them
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class RangeClearance(Record):
+    """Proven: lower <= the least distance over all positions of the joints <= upper, rounding included [m]."""
+
+    a: int = 0
+    b: int = 0
+    minimum: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    tolerance: float = 0.0
+    status: Literal["clear", "violated", "undecided", "contact"] = "undecided"
+    witness: Witness = dataclasses.field(default_factory=Witness)
+    coordinates: List[int] = dataclasses.field(default_factory=list)  #: of JointRanges: those that move one body against the other
+    at: List[float] = dataclasses.field(default_factory=list)  #: their values at the witness
+    complete: bool = True
+    intersecting: bool = False
+    solids: Literal["unproven", "disjoint", "overlap", "not closed"] = "unproven"
+    reason: str = ""
+    bounds: int = 0  #: computed
+
+
+P = TypeVar("P", bound=Union[PairClearance, RangeClearance])
+
+
+def _metres(value: float, rounding: str) -> str:
+    """Six digits, never towards what is not proven."""
+    if not math.isfinite(value):
+        return str(value)
+    return f"{decimal.Context(prec=6, rounding=rounding).create_decimal(value):g}"
+
+
+class Pairs(Records[P], Generic[P]):
+    """What certify_clearance and certify_ranges answer: a list in the order in which pairs were asked for, that knows the bodies' names."""
+
+    def __init__(self, pairs: Iterable[P] = (), body_names: Sequence[str] = ()):
+        super().__init__(pairs)
+        self.body_names: List[str] = list(body_names)
+
+    def pair(self, a: str, b: str) -> P:
+        """The one of two bodies, by name, in either order."""
+        for name in (a, b):
+            if name not in self.body_names:
+                raise KeyError(f"there is no body {name!r}; {did_you_mean(name, self.body_names)}")
+        for each in self:
+            if {a, b} == {self.body_names[each.a], self.body_names[each.b]}:
+                return each
+        raise KeyError(f"the pair of {a!r} and {b!r} was not asked for")
+
+    def _name(self, body: int) -> str:
+        return self.body_names[body] if 0 <= body < len(self.body_names) else str(body)
+
+    def _row(self, of: P) -> Tuple[str, ...]:
+        names = f"{self._name(of.a)}:{self._name(of.b)}"
+        return names, of.status, _metres(of.lower, decimal.ROUND_FLOOR), _metres(of.upper, decimal.ROUND_CEILING), f"{of.minimum:g}"
+
+    def __repr__(self) -> str:
+        if not self:
+            return "no pairs"
+        lines = [f"{names}  {status}  {lower} .. {upper} m" for names, status, lower, upper, _ in map(self._row, self[: MOST_LINES - 1])]
+        more = [f"... and {len(self) - len(lines)} more pairs"] if len(self) > len(lines) else []
+        return "\n".join([line[:COLUMNS] for line in lines] + more)
+
+    def _repr_html_(self) -> str:
+        rows: List[Sequence[Any]] = [[*self._row(each), each.reason] for each in self[: MOST_ROWS + 1]]
+        rows += [[]] * (len(self) - len(rows))
+        title = f"{len(self)} {'pair' if len(self) == 1 else 'pairs'}: proven bounds of the least distance [m]"
+        return columns(title, ["pair", "status", "at least", "at most", "required", "reason"], rows)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CertificateFault(Record):
     where: str = ""
     message: str = ""
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CertificateReport(Record):
     faults: List[CertificateFault] = dataclasses.field(default_factory=list)
     stale: bool = False
@@ -199,7 +304,7 @@ class CertificateReport(Record):
         return not self.faults
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Measurement(Record):
     """lower <= true value <= upper; `value` is what the optimiser sees."""
 
@@ -210,15 +315,15 @@ class Measurement(Record):
     fault: str = ""
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Rows(Record):
     values: Array = dataclasses.field(default_factory=_empty)  #: (k)
     jacobian: Array = dataclasses.field(default_factory=_rows)  #: (k, n)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class DesignEvaluation(Record):
-    """A design, simulated and measured; not usable: `reason` says why."""
+    """A design, simulated and measured; not usable: `reason` says why, and objective and violation are NaN."""
 
     usable: bool = False
     reason: str = ""
@@ -226,8 +331,8 @@ class DesignEvaluation(Record):
     terms: List[Measurement] = dataclasses.field(default_factory=list)
     constraints: List[Measurement] = dataclasses.field(default_factory=list)
     relations: Rows = dataclasses.field(default_factory=Rows)
-    objective: float = 0.0
-    violation: float = 0.0  #: largest, in the constraints' units; 0: every requirement is met, proven
+    objective: float = math.nan
+    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met, proven
     gradient: Array = dataclasses.field(default_factory=_empty)  #: (n)
     jacobian: Array = dataclasses.field(default_factory=_rows)  #: (m, n)
     residuals: Array = dataclasses.field(default_factory=_empty)  #: (r)
@@ -236,7 +341,7 @@ class DesignEvaluation(Record):
     backward_seconds: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class StageReport(Record):
     model: str = ""
     evaluations: int = 0
@@ -245,7 +350,7 @@ class StageReport(Record):
     message: str = ""
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Optimality(Record):
     judged: bool = False
     predicted_gain: float = 0.0
@@ -262,7 +367,7 @@ class Optimality(Record):
     roughest: int = -1
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class OptimiserReport(Record):
     status: Literal["optimal", "feasible", "infeasible", "interrupted", "start_failed"] = "start_failed"
     message: str = ""
@@ -276,7 +381,7 @@ class OptimiserReport(Record):
     stages: List[StageReport] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class OptimiseOutcome(Record):
     report: OptimiserReport = dataclasses.field(default_factory=OptimiserReport)
     start: Array = dataclasses.field(default_factory=_empty)
@@ -288,7 +393,7 @@ class OptimiseOutcome(Record):
     replayed: int = 0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CheckRow(Record):
     quantity: str = ""
     parameter: str = ""
@@ -300,7 +405,7 @@ class CheckRow(Record):
     resolved: bool = True
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class LineRow(Record):
     """As CheckRow, along roughness.direction; slope: about 2 where the gradient is right and the quantity smooth."""
 
@@ -313,14 +418,14 @@ class LineRow(Record):
     slope: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class SweepAgreement(Record):
     disagreement: float = 0.0  #: of the reverse and the forward sweep, relative
     quantity: str = ""
     failure: str = ""
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class NoiseLevel(Record):
     noise: float = 0.0
     second_derivative: float = 0.0
@@ -330,7 +435,7 @@ class NoiseLevel(Record):
     status: Literal["detected", "spacing_too_small", "spacing_too_large"] = "spacing_too_large"
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class QuantityRoughness(Record):
     name: str = ""
     size: float = 0.0
@@ -344,7 +449,7 @@ class QuantityRoughness(Record):
     rough: bool = False
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class RoughnessReport(Record):
     measured: bool = False
     direction: Array = dataclasses.field(default_factory=_empty)
@@ -356,13 +461,13 @@ class RoughnessReport(Record):
     interrupted: bool = False
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactFeature(Record):
     kind: Literal["vertex", "edge", "face"] = "vertex"
     vertices: List[int] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactState(Record):
     a: int = 0
     b: int = 0
@@ -373,7 +478,7 @@ class ContactState(Record):
     slides: bool = False
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactDifference(Record):
     event: Literal["touch", "part", "new_features", "parallel", "crossing", "slide", "stick"] = "touch"
     step: int = 0
@@ -382,7 +487,7 @@ class ContactDifference(Record):
     others: bool = False
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ContactChange(Record):
     """The nearest change of one sort between two bodies as one parameter moves to one side: none at `from_`, one at `to` (SI, signed)."""
 
@@ -397,7 +502,7 @@ class ContactChange(Record):
     count: int = 1
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CheckReport(Record):
     rows: List[CheckRow] = dataclasses.field(default_factory=list)
     along: List[LineRow] = dataclasses.field(default_factory=list)

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""A scene as plain data (the library's core/scene/): SI units throughout, vectors of three numbers, rotations as matrices (3, 3).
+"""A scene as plain data (the library's core/scene/): SI units throughout, vectors of three numbers, rotations as matrices (3, 3). A number that
+has a dimension may be given as a text with a unit; it is in SI once it is there.
 
     table = fettle.Body("table", type="static", mesh=..., prescribed=fettle.held())
-    scene = fettle.Scene(bodies=[table, fettle.Body("cube", mesh=...)], gravity=[0, 0, -9.81])
+    scene = fettle.Scene(bodies=[table, fettle.Body("cube", mesh=...)], gravity=[0, 0, -9.81], timestep="5ms")
 """
 import dataclasses
+import os
 from typing import Any, Dict, List, Literal, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._record import Record
+from ._record import Number, Record, faults_of, number
+from .errors import Error, Fault
 
-Vector = Union[Sequence[float], NDArray[np.float64]]
+Vector = Union[Sequence[Any], NDArray[np.float64]]
+PathLike = Union[str, "os.PathLike[str]"]
 
 
 def _zero() -> NDArray[np.float64]:
@@ -23,7 +27,7 @@ def _indices(columns: int) -> Any:
     return lambda: np.zeros((0, columns), np.int32)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mesh(Record):
     """Triangles, counter-clockwise seen from outside; perhaps loose edges. Equal vertices are one (`read_mesh` welds them)."""
 
@@ -34,51 +38,51 @@ class Mesh(Record):
     shell_names: List[str] = dataclasses.field(default_factory=list)  #: one per shell; empty: "name/0", ...
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Pose(Record):
     """world = rotation @ x + position."""
 
     rotation: ArrayLike = dataclasses.field(default_factory=lambda: np.eye(3))
-    position: Vector = dataclasses.field(default_factory=_zero)  #: [m]
+    position: Vector = number("length", factory=_zero)  #: [m]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MotionCurve(Record):
     """A coordinate over time, from its start: rate t + the table through (times, values); constant after stop_time."""
 
-    rate: float = 0.0  #: [m/s] or [rad/s]
-    times: List[float] = dataclasses.field(default_factory=list)
-    values: List[float] = dataclasses.field(default_factory=list)
-    stop_time: Optional[float] = None
+    rate: Number = number("any", 0.0)  #: [m/s] or [rad/s]
+    times: List[Number] = number("time", factory=list)
+    values: List[Number] = number("any", factory=list)
+    stop_time: Optional[Number] = number("time", None)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class PoseScript(Record):
     """A kinematic body's poses at times > 0."""
 
-    times: List[float] = dataclasses.field(default_factory=list)
+    times: List[Number] = number("time", factory=list)
     poses: List[Pose] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class FrictionPair(Record):
     material_a: str = ""
     material_b: str = ""
     mu: float = 0.0
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Friction(Record):
     """Coulomb friction; rounds < 0: solves until normal forces and tangents agree."""
 
     mu: float = 0.0
     materials: Dict[str, float] = dataclasses.field(default_factory=dict)
     pairs: List[FrictionPair] = dataclasses.field(default_factory=list)
-    eps_v: float = 1e-3  #: static speed bound [m/s]
+    eps_v: Number = number("speed", 1e-3)  #: static speed bound [m/s]
     rounds: int = 1
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Damping(Record):
     """In proportion to mass and inertia."""
 
@@ -86,23 +90,23 @@ class Damping(Record):
     angular: float = 0.0  #: [1/s]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MeshProgram(Record):
     """A command that writes a mesh: {out} and {dimension} in its words stand for the file and the numbers, in `unit`."""
 
-    command: List[str] = dataclasses.field(default_factory=list)
-    directory: str = ""  #: that it runs in
+    command: List[PathLike] = dataclasses.field(default_factory=list)
+    directory: PathLike = ""  #: that it runs in
     format: Literal["stl", "obj", "off", "ply", "3mf"] = "stl"
-    unit: float = 1.0  #: [m]
-    time_limit: float = 300.0  #: [s]
+    unit: Number = number("length", 1.0, of_unit=True)  #: [m]
+    time_limit: Number = number("time", 300.0)  #: [s]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ShapeSpec(Record):
     """What makes a body's mesh: a generator, or a program."""
 
     generator: str = ""  #: its name; empty: a program makes the part
-    dimensions: Dict[str, float] = dataclasses.field(default_factory=dict)  #: [m]
+    dimensions: Dict[str, Number] = number("length", factory=dict)  #: [m]
     counts: Dict[str, int] = dataclasses.field(default_factory=dict)
     program: Optional[MeshProgram] = None
 
@@ -112,16 +116,16 @@ def held() -> List[Optional[MotionCurve]]:
     return [MotionCurve() for _ in range(6)]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Inertial(Record):
     """Mass and inertia that are given, not counted from the mesh."""
 
-    mass: float = 0.0  #: [kg]
-    centre: Vector = dataclasses.field(default_factory=_zero)  #: of mass, in the mesh file's frame [m]
+    mass: Number = number("mass", 0.0)  #: [kg]
+    centre: Vector = number("length", factory=_zero)  #: of mass, in the mesh file's frame [m]
     inertia: ArrayLike = dataclasses.field(default_factory=lambda: np.zeros((3, 3)))  #: about the centre, axes of that frame [kg m^2]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Body(Record):
     """A rigid part. `prescribed`: px py pz rx ry rz in world axes, None: free."""
 
@@ -131,71 +135,71 @@ class Body(Record):
     mesh: Mesh = dataclasses.field(default_factory=Mesh)  #: in the file's frame [m]
     shape: Optional[ShapeSpec] = None
     mesh_policy: Literal["strict", "tolerant", "lenient"] = "strict"
-    density: float = 1000.0  #: [kg/m^3], [kg/m^2], [kg/m] or [kg], by mass_kind
+    density: Number = number("density", 1000.0)  #: [kg/m^3], [kg/m^2], [kg/m] or [kg], by mass_kind
     density_given: bool = True
     mass_kind: Literal["volume", "area", "length", "vertex"] = "volume"
     inertial: Optional[Inertial] = None  #: in place of density times what the mesh has
     material: str = ""
     mu: Optional[float] = None
     pose: Pose = dataclasses.field(default_factory=Pose)
-    linear_velocity: Vector = dataclasses.field(default_factory=_zero)  #: [m/s]
-    angular_velocity: Vector = dataclasses.field(default_factory=_zero)  #: [rad/s]
+    linear_velocity: Vector = number("speed", factory=_zero)  #: [m/s]
+    angular_velocity: Vector = number("angular_speed", factory=_zero)  #: [rad/s]
     prescribed: List[Optional[MotionCurve]] = dataclasses.field(default_factory=lambda: [None] * 6)
     script: PoseScript = dataclasses.field(default_factory=PoseScript)
-    force: Vector = dataclasses.field(default_factory=_zero)  #: [N]
-    torque: Vector = dataclasses.field(default_factory=_zero)  #: [N m]
+    force: Vector = number("force", factory=_zero)  #: [N]
+    torque: Vector = number("torque", factory=_zero)  #: [N m]
     damping: Damping = dataclasses.field(default_factory=Damping)
-    reference_point: Optional[Vector] = None  #: in the file's frame [m]
+    reference_point: Optional[Vector] = number("length", None)  #: in the file's frame [m]
     group: int = -1  #: bodies of one group (>= 0) never collide
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Curve(Record):
     """What drives a motor: rate t + the table; see the library's core/scene/curve.hpp for the kinds."""
 
     kind: Literal["linear", "cubic", "trapezoid", "control_points"] = "linear"
-    rate: float = 0.0
-    times: List[float] = dataclasses.field(default_factory=list)
-    values: List[float] = dataclasses.field(default_factory=list)
-    stop_time: Optional[float] = None
+    rate: Number = number("any", 0.0)
+    times: List[Number] = number("time", factory=list)
+    values: List[Number] = number("any", factory=list)
+    stop_time: Optional[Number] = number("time", None)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Attachment(Record):
     """A point and a direction in a body's file frame; body "": of the world."""
 
     body: str = ""
-    point: Vector = dataclasses.field(default_factory=_zero)  #: [m]
+    point: Vector = number("length", factory=_zero)  #: [m]
     axis: Vector = dataclasses.field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CoordinateForces(Record):
     """Spring, damper, Coulomb friction and stops along one coordinate."""
 
-    stiffness: float = 0.0
-    rest: Optional[float] = None
-    preload: float = 0.0
+    stiffness: Number = number("any", 0.0)
+    rest: Optional[Number] = number("any", None)
+    preload: Number = number("any", 0.0)
     damping: float = 0.0
-    friction: float = 0.0
-    limits: Optional[Sequence[float]] = None
+    friction: Number = number("any", 0.0)
+    limits: Optional[Sequence[Number]] = number("any", None)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Joint(Record):
     name: str = ""
     where: str = ""
     kind: Literal["ball", "revolute", "prismatic", "cylindrical", "planar", "fixed", "screw", "gear", "rack"] = "revolute"
     a: Attachment = dataclasses.field(default_factory=Attachment)
     b: Attachment = dataclasses.field(default_factory=Attachment)
-    pitch: float = 0.0  #: screw: slide per turn [m]
+    pitch: Number = number("length", 0.0)  #: screw: slide per turn [m]
     of: Sequence[str] = ("", "")  #: gear, rack: two joints
-    ratio: float = 1.0
+    ratio: Number = number("any", 1.0)  #: of a gear; of a rack its radius [m]
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)
     collide: bool = False
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Spring(Record):
     """From point to point, or about or along a joint's coordinate."""
 
@@ -207,7 +211,7 @@ class Spring(Record):
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Motor(Record):
     """Drives a joint's coordinate ("motion"), or pushes along it ("effort")."""
 
@@ -218,16 +222,16 @@ class Motor(Record):
     curve: Curve = dataclasses.field(default_factory=Curve)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class PointLoad(Record):
     name: str = ""
     where: str = ""
     body: str = ""
-    point: Vector = dataclasses.field(default_factory=_zero)  #: in the body's file frame [m]
-    force: Vector = dataclasses.field(default_factory=_zero)  #: world [N]
+    point: Vector = number("length", factory=_zero)  #: in the body's file frame [m]
+    force: Vector = number("force", factory=_zero)  #: world [N]
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mechanism(Record):
     joints: List[Joint] = dataclasses.field(default_factory=list)
     springs: List[Spring] = dataclasses.field(default_factory=list)
@@ -235,23 +239,23 @@ class Mechanism(Record):
     loads: List[PointLoad] = dataclasses.field(default_factory=list)
 
 
-@dataclasses.dataclass(eq=False, slots=True)
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Scene(Record):
-    path: str = ""
-    length_unit: float = 1.0  #: of the file [m], for reports
+    path: PathLike = ""
+    length_unit: Number = number("length", 1.0, of_unit=True)  #: of the file [m], for reports
     bodies: List[Body] = dataclasses.field(default_factory=list)
-    gravity: Vector = dataclasses.field(default_factory=_zero)  #: [m/s^2]
-    timestep: float = 0.01  #: [s]
-    end_time: Optional[float] = None  #: [s]
-    dhat: Optional[float] = None  #: activation distance of contact [m]
-    dmin: float = 0.0  #: minimum separation [m]
-    kappa: Optional[float] = None  #: barrier stiffness [N/m]
+    gravity: Vector = number("acceleration", factory=_zero)  #: [m/s^2]
+    timestep: Number = number("time", 0.01)  #: [s]
+    end_time: Optional[Number] = number("time", None)  #: [s]
+    dhat: Optional[Number] = number("length", None)  #: activation distance of contact [m]
+    dmin: Number = number("length", 0.0)  #: minimum separation [m]
+    kappa: Optional[Number] = number("stiffness", None)  #: barrier stiffness [N/m]
     area_weighted: bool = False
-    contact_damping_time: float = 0.0  #: [s]
+    contact_damping_time: Number = number("time", 0.0)  #: [s]
     friction: Friction = dataclasses.field(default_factory=Friction)
     mechanism: Mechanism = dataclasses.field(default_factory=Mechanism)
     integrator: Literal["implicit_euler", "bdf2", "newmark", "quasi_static"] = "implicit_euler"
-    velocity_tolerance: Optional[float] = None  #: [m/s]
+    velocity_tolerance: Optional[Number] = number("speed", None)  #: [m/s]
     max_newton_iterations: int = 3000
     warnings: List[str] = dataclasses.field(default_factory=list)
 
@@ -261,3 +265,47 @@ class Scene(Record):
         if name not in names:
             raise KeyError(f"there is no body {name!r}; there are {', '.join(names)}")
         return names.index(name)
+
+    def _prepared(self) -> "Scene":
+        """Raises Error where a number was given in a unit of another dimension than its joint, motor or coordinate has."""
+        faults = list(_faults_of_units(self))
+        if faults:
+            raise Error(faults)
+        return self
+
+
+_OF_COORDINATE = {
+    "length": {"rate": "speed", "stiffness": "stiffness", "preload": "force", "friction": "force"},
+    "angle": {"rate": "angular_speed", "stiffness": "", "preload": "torque", "friction": "torque"},
+}
+_COORDINATES = {"revolute": "angle", "screw": "angle", "prismatic": "length", "cylindrical": "length"}
+_EFFORTS = {"length": "force", "angle": "torque"}
+
+
+def _faults_of_units(scene: Scene) -> List[Fault]:
+    faults: List[Fault] = []
+
+    def check(record: Any, coordinate: str, where: str, members: Sequence[str]) -> None:
+        for member in members:
+            dimension = _OF_COORDINATE[coordinate].get(member, coordinate)
+            faults.extend(faults_of(getattr(record, member), dimension, f"{where}/{member}"))
+
+    laws = ("stiffness", "rest", "preload", "friction", "limits")
+    for body in scene.bodies:
+        for k, curve in enumerate(body.prescribed):
+            if curve is not None:
+                check(curve, "length" if k < 3 else "angle", f"body `{body.name}`/prescribed/{k}", ("rate", "values"))
+    coordinates = {joint.name: _COORDINATES.get(joint.kind, "length") for joint in scene.mechanism.joints}
+    for joint in scene.mechanism.joints:
+        check(joint.forces, coordinates[joint.name], f"joint `{joint.name}`/forces", laws)
+        faults += faults_of(joint.ratio, "length" if joint.kind == "rack" else "number", f"joint `{joint.name}`/ratio")
+    for spring in scene.mechanism.springs:
+        check(spring.forces, coordinates.get(spring.joint, "length"), f"spring `{spring.name}`/forces", laws)
+    for motor in scene.mechanism.motors:
+        coordinate, where = coordinates.get(motor.joint, "length"), f"motor `{motor.name}`/curve"
+        if motor.kind == "motion":
+            check(motor.curve, coordinate, where, ("rate", "values"))
+        else:
+            faults += faults_of(motor.curve.values, _EFFORTS[coordinate], f"{where}/values")
+            faults += faults_of(motor.curve.rate, "", f"{where}/rate")
+    return faults

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/tests/core/clearance/four_bar_motion.hpp"
 
@@ -129,14 +130,49 @@ TEST_CASE("jointed clearance: bodies with prescribed coordinates beside joints a
     const auto joints = ideal_joints(model, {});
     REQUIRE(!joints);
     CHECK(contains(joints.errors()[0].message, "'rocker' has prescribed coordinates beside joints"));
+}
+
+TEST_CASE("jointed clearance: where the joints have bodies is not proven, so their pairs have no bounds and no certificate",
+          "[mechanism][clearance]") {
     const Looked at = look(1, 1e-5, 0);
+    model::Model model = at.model;  // and two bodies that no joint moves: a post below the plate
+    model.bodies.push_back(model.bodies[plate_body]);
+    model.bodies.back().name = "post";
+    model.bodies.back().pose_start.position.y() += 0.3;
+    stepper::Trajectory trajectory = at.trajectory;
+    trajectory.body_names.push_back("post");
+    for (auto& poses : trajectory.poses) poses.push_back(model.bodies.back().pose_start);
+    for (auto& step : trajectory.steps)
+        for (auto& node : step.nodes) node.push_back({model.bodies.back().pose_start.position, Vector3::Zero()});
+    const int post = plate_body + 1;
+    certificate::Certificate certificate;
     ClearanceOptions options;
-    options.motion = true;
+    options.motion = options.margin_curve = true;
     options.tolerance = 1e-5;
-    const PairClearance untold =
-        certify_jointed(at.model, at.trajectory, {{coupler_body, plate_body, 1e-3}}, options, {std::nullopt, "why"}).front();
-    CHECK(untold.status == PairStatus::undecided);
-    CHECK(contains(untold.reason, "why"));
+    options.certificate = &certificate;
+    CHECK(jointed_bodies(model, {}) == std::vector<int>{crank_body, coupler_body, rocker_body});
+    CHECK(jointed_bodies(model, {"crank", "coupler", "rocker"}).empty());
+    const JointedPath unproven{std::nullopt, "why", jointed_bodies(model, {})};
+    const std::vector<PairRequest> pairs{{coupler_body, plate_body, 1e-3}, {plate_body, post, 0.1}, {crank_body, rocker_body, 0}};
+    const auto results = certify_jointed(model, trajectory, pairs, options, unproven);
+    for (const int k : {0, 2}) {
+        const PairClearance& untold = results[static_cast<std::size_t>(k)];
+        CAPTURE(k, untold.reason);
+        CHECK(untold.status == PairStatus::undecided);
+        CHECK(contains(untold.reason, "why"));
+        CHECK(!untold.is_bounded);
+        CHECK(untold.lower == 0);
+        CHECK(untold.upper == base::infinity);
+        CHECK(untold.margin.empty());
+        CHECK(untold.minimum == pairs[static_cast<std::size_t>(k)].minimum);
+    }
+    CHECK(results[1].status == PairStatus::clear);
+    CHECK(results[1].is_bounded);
+    CHECK(results[1].lower == Approx(0.2).margin(1e-4));
+    REQUIRE(certificate.pairs.size() == 1);
+    CHECK(certificate.pairs[0].a == plate_body);
+    CHECK(certificate.is_of_path);
+    CHECK(check_certificate(certificate, model, trajectory).accepted());
 }
 
 }  // namespace fettle::core::clearance::jointed_clearance_test

@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <map>
+#include <thread>
 
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -38,12 +40,102 @@ TEST_CASE("a write that fails leaves things as they were, and says why", "[base]
     fs::create_directories(folder.path / "taken" / "inside");
     const Errors errors = write_file_atomically(folder.path / "taken", "x");  // a folder cannot be replaced by a file
     REQUIRE(errors.size() == 1);
-    CHECK(errors[0].code == ErrorCode::file_unreadable);
+    CHECK(errors[0].code == ErrorCode::file_unwritable);
     CHECK(errors[0].where == (folder.path / "taken").string());
     CHECK(fs::is_directory(folder.path / "taken" / "inside"));
     CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
     REQUIRE(write_file_atomically(folder.path / "file", "x").empty());
     CHECK_FALSE(write_file_atomically(folder.path / "file" / "below", "x").empty());
+}
+
+TEST_CASE("files of a set take their names together, and others go with them", "[base]") {
+    const TemporaryFolder folder;
+    REQUIRE(write_file_atomically(folder.path / "table", "old").empty());
+    REQUIRE(write_file_atomically(folder.path / "answer", "old").empty());
+    REQUIRE(write_file_atomically(folder.path / "picture", "old").empty());
+    REQUIRE(write_file_atomically(folder.path / "run", "old").empty());
+    FilesTogether files;
+    files.keep_as(folder.path / "run", folder.path / "run.1");
+    files.take_away(folder.path / "table");
+    files.take_away(folder.path / "picture");
+    files.take_away(folder.path / "never there");
+    NewFile long_one(folder.path / "run");
+    long_one.write("new ");
+    CHECK(read_file(folder.path / "run").value() == "old");
+    long_one.write("run");
+    REQUIRE(files.add(std::move(long_one)).empty());
+    REQUIRE(files.add(folder.path / "table", "new").empty());
+    REQUIRE(files.add(folder.path / "answer", "new").empty());
+    CHECK(read_file(folder.path / "table").value() == "old");
+    CHECK(read_file(folder.path / "answer").value() == "old");
+    REQUIRE(files.take_names().empty());
+    CHECK(read_file(folder.path / "run").value() == "new run");
+    CHECK(read_file(folder.path / "run.1").value() == "old");
+    CHECK(read_file(folder.path / "table").value() == "new");
+    CHECK(read_file(folder.path / "answer").value() == "new");
+    CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 4);
+}
+
+TEST_CASE("a set of files that cannot be replaced leaves all of them as they were", "[base]") {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name) { REQUIRE(write_file_atomically(folder.path / name, "old").empty()); };
+    for (const char* name : {"a", "b", "gone", "kept", "answer"}) write(name);
+    const auto contents = [&] {
+        std::map<std::string, std::string> found;
+        for (const auto& entry : fs::directory_iterator(folder.path))
+            found[entry.path().filename().string()] = entry.is_directory() ? "folder" : read_file(entry.path()).value();
+        return found;
+    };
+    const auto set = [&](FilesTogether& files) {
+        files.keep_as(folder.path / "kept", folder.path / "kept.1");
+        files.take_away(folder.path / "gone");
+        for (const char* name : {"a", "new", "b", "answer"}) REQUIRE(files.add(folder.path / name, "new").empty());
+    };
+    const auto before = contents();
+    SECTION("never taken") {
+        FilesTogether files;
+        set(files);
+    }
+    SECTION("one of them cannot be written") {
+        FilesTogether files;
+        set(files);
+        fs::create_directory(folder.path / "taken");
+        CHECK(files.add(folder.path / "taken", "new").at(0).code == ErrorCode::file_unwritable);
+        fs::remove(folder.path / "taken");
+    }
+    SECTION("one of them cannot be renamed, after others have been") {
+        FilesTogether files;
+        set(files);
+        fs::rename(folder.path / "b", folder.path / "b.away");
+        fs::create_directories(folder.path / "b" / "inside");  // a file cannot replace it
+        const Errors errors = files.take_names();
+        REQUIRE(errors.size() == 1);
+        CHECK(errors[0].code == ErrorCode::file_unwritable);
+        CHECK(errors[0].where == (folder.path / "b").string());
+        CHECK(fs::is_directory(folder.path / "b" / "inside"));
+        fs::remove_all(folder.path / "b");
+        fs::rename(folder.path / "b.away", folder.path / "b");
+    }
+    SECTION("what was to be kept is not there") {
+        FilesTogether files;
+        set(files);
+        files.keep_as(folder.path / "nothing", folder.path / "nothing.1");
+        CHECK(files.take_names().at(0).code == ErrorCode::file_unwritable);
+    }
+    CHECK(contents() == before);
+}
+
+TEST_CASE("a pipe is written to, not replaced", "[base]") {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder.path / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    std::string got;
+    std::thread reader([&] { got = read_file(pipe).value(); });
+    const Errors errors = write_file_atomically(pipe, "through");
+    reader.join();
+    CHECK(errors.empty());
+    CHECK(got == "through");
+    CHECK(fs::is_fifo(pipe));
 }
 
 TEST_CASE("files that are not there, and folders, are not read", "[base]") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/json_text.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -31,7 +32,11 @@ TEST_CASE("Faults of syntax have a line and a column", "[scene]") {
     const auto error = only_error(missing_comma.errors());
     CHECK(error.code == ErrorCode::parse);
     CHECK(contains(error.where, "a.json:3:"));
-    CHECK(only_error(JsonDocument::parse("", "a.json").errors()).code == ErrorCode::parse);
+    for (const char* empty : {"", "  \r\n\t"}) {
+        const auto nothing = only_error(JsonDocument::parse(empty, "a.json").errors());
+        CHECK(nothing.code == ErrorCode::parse);
+        CHECK(contains(nothing.message, "is empty"));
+    }
     CHECK(only_error(JsonDocument::read("/nonexistent/a.json").errors()).code == ErrorCode::file_not_found);
 }
 
@@ -76,6 +81,44 @@ TEST_CASE("Two equal keys in one object are refused", "[scene]") {
     const auto error = only_error(JsonDocument::parse(R"({"a": {"mass": 1, "mass": 2}, "mass": 3})", "a.json").errors());
     CHECK(error.code == ErrorCode::inconsistent);
     CHECK(contains(error.message, "mass"));
+    CHECK(error.where == "a.json#/a/mass");
+    const auto deep = only_error(JsonDocument::parse(R"([{"x/y": [1, [2], {"b": 1, "b": 1}]}])", "a.json").errors());
+    CHECK(deep.where == "a.json#/0/x~1y/2/b");
+}
+
+TEST_CASE("A NUL ends nothing", "[scene]") {
+    const std::string nul(1, '\0');
+    for (const std::string& text :
+         {"{\"a\": 1}" + nul, "{\"a\": 1}\n" + nul + " garbage", "{\"a" + nul + "\": 1}", nul, "{\"a\":" + nul + " 1}"}) {
+        const auto error = only_error(JsonDocument::parse(text, "a.json").errors());
+        CHECK(error.code == ErrorCode::parse);
+        CHECK(contains(error.message, "NUL"));
+        CHECK_FALSE(is_safe_json_text(text));
+    }
+    CHECK(JsonDocument::parse("{\"a\": \"\\u0000\"}", "a.json"));  // written as JSON wants it
+}
+
+TEST_CASE("Lists and objects nested too deep are refused, by whoever reads them", "[scene]") {
+    const auto nested = [](std::size_t depth, const std::string& open, const std::string& close) {
+        std::string text;
+        for (std::size_t i = 0; i < depth; ++i) text += open;
+        text += "1";
+        for (std::size_t i = 0; i < depth; ++i) text += close;
+        return text;
+    };
+    for (const std::string open : {"[", "{\"# why\":"}) {
+        const std::string close = open == "[" ? "]" : "}";
+        CHECK(JsonDocument::parse(nested(deepest_json, open, close), "a.json"));
+        CHECK(is_safe_json_text(nested(deepest_json, open, close)));
+        for (const std::size_t depth : {deepest_json + 1, std::size_t{1'000'000}}) {
+            const auto error = only_error(JsonDocument::parse(nested(depth, open, close), "a.json").errors());
+            CHECK(error.code == ErrorCode::out_of_range);
+            CHECK(contains(error.message, "nested deeper than 100"));
+            CHECK(contains(error.where, open == "[" ? "a.json#/0/0/0/..." : "a.json#/# why/# why/# why/..."));
+            CHECK_FALSE(is_safe_json_text(nested(depth, open, close)));
+        }
+    }
+    CHECK(is_safe_json_text("[\"" + std::string(1000, '[') + "\", \"\\\"[\"]"));  // in strings nothing is nested
 }
 
 TEST_CASE("Every fault is collected, each with its place", "[scene]") {

@@ -92,6 +92,29 @@ TEST_CASE("triangles that are turned over are turned back, whole solids too") {
     CHECK(volume(hollow) == Approx(125 - 27));
 }
 
+TEST_CASE("a hollow solid that is inside out is turned as a whole") {
+    const auto block = [](double low, double high) { return tests::box_mesh({low, low, low}, {high, high, high}); };
+    const Mesh hollow = tests::joined(block(0, 10), tests::inside_out(block(2, 8)));
+    Mesh turned = tests::inside_out(hollow);
+    CHECK(mentions(repair_mesh(turned), "the solid was inside out: 24 triangles are turned"));
+    CHECK(volume(turned) == Approx(784));
+    CHECK(validate_mesh(turned, {}).empty());
+    CHECK_FALSE(point_in_solid({5, 5, 5}, turned.vertices, turned.triangles));
+
+    // Two cavities, one of them with a core that is hollow itself; beside it a sound block with a solid in it, which may be meant.
+    const Mesh core = tests::joined(block(11, 14), tests::inside_out(block(12, 13)));
+    const Mesh several =
+        tests::joined(tests::joined(tests::joined(block(0, 20), tests::inside_out(block(10, 15))), core), tests::inside_out(block(2, 4)));
+    Mesh nested = tests::joined(tests::inside_out(several), tests::joined(block(30, 40), block(32, 34)));
+    CHECK(mentions(repair_mesh(nested), "60 triangles are turned"));
+    CHECK(volume(nested) == Approx(8000 - 125 + 27 - 1 - 8 + 1000 + 8));
+    CHECK(judge_mesh(nested, true).warnings.size() == 1);
+
+    Mesh core_alone = tests::joined(hollow, tests::inside_out(block(4, 6)));  // sound but for what is in the cavity
+    CHECK(mentions(repair_mesh(core_alone), "12 triangles are turned"));
+    CHECK(volume(core_alone) == Approx(784 + 8));
+}
+
 TEST_CASE("where which side is turned over cannot be told, it is an error") {
     // A Moebius strip, closed by nothing.
     Mesh strip;
@@ -204,8 +227,10 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     const Mesh nested = tests::joined(tests::box_mesh({0, 0, 0}, {5, 5, 5}), tests::box_mesh({1, 1, 1}, {4, 4, 4}));
     Mesh mesh = nested;
     CHECK(repair_mesh(mesh).empty());
-    CHECK(mentions(judge_mesh(mesh, true).warnings, "a solid within a solid, so that its volume counts twice"));
-    CHECK(point_in_solid({2, 2, 2}, mesh.vertices, mesh.triangles));  // its parity would say outside
+    const std::vector<std::string> warnings = judge_mesh(mesh, true).warnings;
+    CHECK(mentions(warnings, "a solid within a solid, so that its volume counts twice"));
+    CHECK(mentions(warnings, "which changes its mass by at most 55%"));  // 125 + 27 for 125 - 27
+    CHECK(point_in_solid({2, 2, 2}, mesh.vertices, mesh.triangles));     // its parity would say outside
     CHECK(winding_number({2, 2, 2}, mesh.vertices, mesh.triangles) == 2);
 }
 

@@ -207,16 +207,6 @@ TEST_CASE("STL: text and binary, welded") {
     CHECK(from_binary.shell_names == std::vector<std::string>{"b.stl/0"});
 }
 
-TEST_CASE("PLY through assimp") {
-    const Folder folder;
-    const std::string text =
-        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
-        "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-    const Mesh mesh = read_mesh(folder.write("a.ply", text), {0.5, true}).value();
-    CHECK(core::geometry::validate_mesh(mesh, {}).empty());
-    CHECK(volume(mesh) == Approx(0.125 / 6).epsilon(1e-14));
-}
-
 TEST_CASE("3MF: its own unit, its build transform") {
     const Folder folder;
     const std::map<std::string, double> units = {{"unit=\"millimeter\"", 1e-3}, {"", 1e-3},
@@ -238,6 +228,42 @@ TEST_CASE("3MF: its own unit, its build transform") {
     CHECK(only_error(folder.write("n.3mf", "not a zip")).code == ErrorCode::parse);
 }
 
+TEST_CASE("Polygons are cut in time of the second order, the same way as ever; too many corners are refused") {
+    const Folder folder;
+    const auto comb = [&](int teeth) {  // every second corner is a notch: few ears at a time
+        std::string text, face = "f";
+        for (int i = 0; i < teeth; ++i) text += "v " + std::to_string(i) + " " + std::to_string(i % 2 * (10 + i % 7)) + " 0\n";
+        text += "v " + std::to_string(teeth) + " -5 0\nv -1 -5 0\n";
+        for (int i = teeth + 2; i > 0; --i) face += " " + std::to_string(i);
+        return text + face + "\n";
+    };
+    const auto mesh = read_mesh(folder.write("comb.obj", comb(4000)));
+    REQUIRE(mesh);
+    CHECK(mesh->triangles.size() == 4000);
+    double area = 0;
+    for (const Triangle& t : mesh->triangles) {
+        const Vector3 a = mesh->vertices.col(t[0]), b = mesh->vertices.col(t[1]), c = mesh->vertices.col(t[2]);
+        const double twice = (b - a).cross(c - a).z();
+        CHECK(twice > 0);
+        area += twice / 2;
+    }
+    double outline = 0;  // by the trapezoids under it
+    for (int i = 0; i + 1 < 4000; ++i) outline += ((i % 2 ? 10 + i % 7 : 0) + ((i + 1) % 2 ? 10 + (i + 1) % 7 : 0)) / 2.0;
+    const double last = 3999 % 2 ? 10 + 3999 % 7 : 0;
+    outline += 5.0 * 4001 + 0.5 * (last + -5) + 0.5 * (0 + -5);  // down to y = -5, and the two slopes at the ends
+    CHECK(area == Approx(outline));
+    const Error many = only_error(folder.write("many.obj", comb(10'001)));
+    CHECK(many.code == ErrorCode::out_of_range);
+    CHECK(contains(many.message, "a polygon of 10003 vertices; at most 10000"));
+}
+
+TEST_CASE("Ten thousand groups of OBJ are read in time of the first order") {
+    const Folder folder;
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 100'000; ++i) text += "g a_long_name_of_a_group_" + std::to_string(i) + "\n";
+    CHECK(read_mesh(folder.write("groups.obj", text + "f 1 2 3\n")).value().shell_names.front() == "a_long_name_of_a_group_99999");
+}
+
 TEST_CASE("errors say what is wrong and where") {
     const Folder folder;
     const auto check = [&](const std::string& name, const std::string& text, ErrorCode code, const std::string& where,
@@ -254,7 +280,7 @@ TEST_CASE("errors say what is wrong and where") {
     CHECK(contains(missing.message, std::filesystem::current_path().string() + "/no/such/gear.obj"));
     std::filesystem::create_directories(folder.path / "folder.stl");
     CHECK(only_error(folder.file("folder.stl")).code == ErrorCode::file_unreadable);
-    check("a.step", "x", ErrorCode::unsupported, "a.step", ".stl .obj .off .ply .3mf");
+    check("a.step", "x", ErrorCode::unsupported, "a.step", ".stl .obj .off .ply .3mf .dae .gltf .glb .3ds .amf");
     check("a.obj", "v 0 0 0\nv 1 x 0\n", ErrorCode::parse, "a.obj:2", "`x` is not a number");
     check("a.obj", "v 0 0 0\nf 1 2 3\n", ErrorCode::out_of_range, "a.obj:2", "vertex 3, but the file has 1");
     check("a.obj", "v 0 0 0\nf 1 -2 1\n", ErrorCode::out_of_range, "a.obj:2", "`-2` is not a vertex");
@@ -268,8 +294,9 @@ TEST_CASE("errors say what is wrong and where") {
     check("a.off", "OFF 1 1 0\n0 0 0\n3 0 1 2\n", ErrorCode::out_of_range, "a.off:3", "`1` is not a vertex index in 0 to 0");
     check("a.off", "OFF BINARY\n", ErrorCode::unsupported, "a.off", "binary");
     check("a.off", "hello\n", ErrorCode::parse, "a.off:1", "OFF");
-    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "cannot be read as a mesh");
-    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "cannot be read as a mesh");
+    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "it is no PLY file");
+    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "is no STL file, or a damaged one");
+    check("a.glb", "garbage", ErrorCode::parse, "a.glb", "cannot be read as a mesh");
 }
 
 TEST_CASE("3MF: components are placed, objects outside the build are left out") {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // STL, OBJ and 3MF as written, read back by our readers, by assimp and by minizip.
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+
 #include <minizip/unzip.h>
 
 #include <catch2/catch.hpp>
@@ -78,12 +81,12 @@ TEST_CASE("3MF: objects in their own frames with names and colours, build items 
 
     const auto archive = ZipArchive::open(*bytes, "a.3mf");
     REQUIRE(archive);
-    const std::string model = archive->unpacked("3D/3dmodel.model").value();
+    const std::string model = archive->unpacked("3D/3dmodel.model", 1 << 30).value();
     CHECK(contains(model, "unit=\"millimeter\""));
     CHECK(contains(model, "displaycolor=\"#010203\""));
     CHECK(contains(model, "displaycolor=\"#FF0010\""));
     CHECK(contains(model, "pid=\"1\" pindex=\"1\""));
-    CHECK(archive->unpacked("[Content_Types].xml").has_value());
+    CHECK(archive->unpacked("[Content_Types].xml", 1 << 30).has_value());
     CHECK(bytes->substr(0, 4) == "PK\3\4");
 }
 
@@ -97,7 +100,7 @@ TEST_CASE("3MF: what is open is a surface, what has no triangle is left out") {
     const Mesh closed = awkward_box(0.01);
     const auto bytes = threemf_bytes({{"open", &open}, {"wire", &wire}, {"closed", &closed}});
     REQUIRE(bytes);
-    const std::string model = ZipArchive::open(*bytes, "").value().unpacked("3D/3dmodel.model").value();
+    const std::string model = ZipArchive::open(*bytes, "").value().unpacked("3D/3dmodel.model", 1 << 30).value();
     CHECK(contains(model, "type=\"surface\" name=\"open\""));
     CHECK(contains(model, "type=\"model\" name=\"closed\""));
     CHECK_FALSE(contains(model, "wire"));
@@ -132,7 +135,7 @@ TEST_CASE("Zip: minizip unpacks what was packed, and equal entries make equal ar
     unzClose(file);
 }
 
-TEST_CASE("STL: read by assimp, in millimetres, rounded as it says") {
+TEST_CASE("STL: read by us and by assimp alike, in millimetres, rounded as it says") {
     const TemporaryFolder folder;
     const Mesh box = awkward_box(0.1), other = awkward_box(0.02);
     const std::vector<MeshPart> parts{placed("a", box), {"b", &other}};
@@ -141,6 +144,17 @@ TEST_CASE("STL: read by assimp, in millimetres, rounded as it says") {
     REQUIRE(read->vertices.cols() == 16);
     CHECK(read->triangles.size() == 24);
     CHECK(geometry::validate_mesh(*read, {}).empty());
+    const aiScene* scene = aiImportFile(folder.file("a.stl").c_str(), 0);
+    REQUIRE(scene != nullptr);
+    int corners = 0;
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+        for (unsigned v = 0; v < scene->mMeshes[m]->mNumVertices; ++v, ++corners) {
+            const aiVector3D& x = scene->mMeshes[m]->mVertices[v];
+            CHECK((read->vertices.colwise() - 1e-3 * Vector3(x.x, x.y, x.z)).colwise().norm().minCoeff() == 0);
+        }
+    }
+    aiReleaseImport(scene);
+    CHECK(corners == 72);
     double largest = 0;
     for (const auto& x : read->vertices.colwise()) {
         double nearest = 1;

@@ -152,6 +152,61 @@ TEST_CASE("3MF: what is wrong is told, and nothing is taken on trust") {
     CHECK(code(parse_3mf(zip64({{"3D/3dmodel.model", "<model/>"}}, 1 << 20), "a.3mf")) == ErrorCode::parse);
 }
 
+TEST_CASE("3MF: what a small file asks for has limits that are told, and takes linear time") {
+    const auto items = [](int count) {
+        std::string all;
+        for (int i = 0; i < count; ++i) all += "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 " + std::to_string(2 * i) + " 0 0\"/>\n";
+        return model(wheel, all);
+    };
+    const Error many = only_error(parsed(items(20'000)));
+    CHECK(many.code == ErrorCode::out_of_range);
+    CHECK(contains(many.message, "more than 10,000 items"));
+    const tests::support::TemporaryFolder folder;
+    const auto parts = read_mesh_parts(folder.write("a.3mf", zip64({{"3D/3dmodel.model", items(10'000)}})));
+    REQUIRE(parts);
+    REQUIRE(parts->size() == 10'000);
+    CHECK(parts->back().name == parts->front().name);
+    CHECK(parts->back().shell_names == parts->front().shell_names);
+    CHECK(parts->back().vertices.row(0).minCoeff() == Approx(2 * 9999));
+    // A wide object of many components, each on a line of its own.
+    std::string wide = wheel + "<object id=\"2\"><components>";
+    for (int i = 0; i < 50'000; ++i) wide += "<component objectid=\"1\"/>\n";
+    CHECK(parsed(model(wide + "</components></object>", "<item objectid=\"2\"/>"))->polygon_ends.size() == 200'000);
+    // Two components each, 31 levels deep, and nothing, or support alone, at the end: two thousand million placings.
+    for (const std::string last : {"<object id=\"1\"></object>", "<object id=\"1\" type=\"support\"></object>"}) {
+        std::string tree = last;
+        for (int level = 2; level < 33; ++level) {
+            const std::string inner = "<component objectid=\"" + std::to_string(level - 1) + "\"/>";
+            tree += "<object id=\"" + std::to_string(level) + "\"><components>" + inner + inner + "</components></object>";
+        }
+        CHECK(contains(only_error(parsed(model(tree, "<item objectid=\"32\"/>"))).message, "or a million objects"));
+    }
+    // 80 MB of blanks, a thousandth of it packed; and 30 MB three times, in parts of their own.
+    CHECK(contains(only_error(parsed(model(std::string(80'000'000, ' '), ""))).message, "unpacks to 800"));
+    const std::string blank = model(std::string(30'000'000, ' '), "");
+    std::string three = "<object id=\"1\"><components>";
+    for (const char* part : {"a", "b", "c"}) three += "<component objectid=\"1\" p:path=\"" + std::string(part) + "\"/>";
+    three += "</components></object>";
+    const auto whole = parse_3mf(zip64({{"3D/3dmodel.model", model(three, "")}, {"a", blank}, {"b", blank}, {"c", blank}}), "a.3mf");
+    CHECK(only_error(whole).code == ErrorCode::out_of_range);
+}
+
+TEST_CASE("XML: a NUL, and a tag with too many attributes, are refused; lines are counted right in any order") {
+    XmlReader nul(std::string_view("<a></a>\0 garbage", 16), "x");
+    CHECK_FALSE(nul.next());
+    CHECK(contains(nul.errors().front().message, "NUL"));
+    std::string many = "<a";
+    for (int i = 0; i < 101; ++i) many += " a" + std::to_string(i) + "=\"\"";
+    many += "/>";
+    XmlReader attributes(many, "x");
+    CHECK_FALSE(attributes.next());
+    CHECK(contains(attributes.errors().front().message, "more than 100 attributes"));
+    XmlReader lines("<a>\n\n<b/>\n<c\nd='1'/></a>", "x");
+    std::vector<std::string> places;
+    while (lines.next()) places.push_back(lines.where());
+    CHECK(places == std::vector<std::string>{"x:1", "x:3", "x:3", "x:4", "x:4", "x:5"});
+}
+
 TEST_CASE("3MF: cut and damaged archives are read or refused, never out of bounds") {
     const std::string good = zip64({{"_rels/.rels", "<Relationships/>"}, {"3D/3dmodel.model", model(wheel, "<item objectid=\"1\"/>")}});
     REQUIRE(parse_3mf(good, "a.3mf"));

@@ -132,6 +132,18 @@ TEST_CASE("start velocities that nobody gave follow joints and motors without a 
     CHECK(contains(warnings_of(built(scene)), "start velocities of `bar` were changed"));
 }
 
+TEST_CASE("names that stand twice in a list are refused", "[mechanism]") {
+    scene::Scene scene = hinged_bar();
+    scene.mechanism.motors = {motor("drive", "hinge", at_rate(1)), motor("drive", "hinge", at_rate(1))};
+    CHECK(contains(errors_of(scene), "another motor is called `drive` already"));
+    scene = hinged_bar();
+    scene.mechanism.loads = {{"push", "", "bar", Vector3::Zero(), Vector3::UnitX()},
+                             {"push", "", "bar", Vector3::Zero(), Vector3::UnitY()}};
+    CHECK(contains(errors_of(scene), "another load is called `push` already"));
+    for (scene::PointLoad& load : scene.mechanism.loads) load.name.clear();  // those that nobody asks for need none
+    CHECK(build_model(scene));
+}
+
 TEST_CASE("names that are not there are refused", "[mechanism]") {
     scene::Scene scene = hinged_bar();
     scene.mechanism.joints[0].b.body = "beam";

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -48,6 +49,40 @@ TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
     CHECK(contains(only_error(build_model(scene_of({cube}))).where, "/prescribed"));
 }
 
+TEST_CASE("A size or a density that is hardly meant is a warning, with its place and what to look at", "[model]") {
+    const auto warnings = [](std::vector<scene::Body> bodies) { return build_model(scene_of(std::move(bodies))).value().warnings; };
+    const auto told = [&](std::vector<scene::Body> bodies, const std::string& part) {
+        const std::vector<std::string> all = warnings(std::move(bodies));
+        return std::any_of(all.begin(), all.end(), [&](const std::string& warning) { return contains(warning, part); });
+    };
+    const auto box = [](const std::string& name, double size, double at) {
+        return box_body(name, {at, 0, 0}, {at + size, 0.2 * size, 0.1 * size});
+    };
+    // A rod whose millimetres were taken for metres, alone and among others.
+    CHECK(
+        told({box("rod", 58, 0)}, "a.scene.json#/bodies/rod: body `rod`: its size is 58 m and its mass 3.9e+06 kg, which is hardly meant"));
+    CHECK(told({box("rod", 58, 0)}, "`mesh_unit`"));
+    CHECK(told({box("pin", 5e-3, -1), box("crank", 8e-3, -2), box("rod", 5.8, 0)}, "body `rod`: its size is 5.8 m"));
+    CHECK(told({box("pin", 5e-3, -1), box("crank", 8e-3, -2), box("rod", 5.8, 0)}, "where others are about 8 mm"));
+    CHECK(told({box("pin", 5e-6, -1), box("crank", 8e-3, -2), box("rod", 9e-3, 0)}, "body `pin`: its size is 5 um"));
+    scene::Body still = box("block", 94, 0);
+    still.type = BodyType::static_body;
+    CHECK(told({still}, "body `block`: its size is 94 m"));
+    // What is meant: parts of all usual sizes, and a large ground under small ones.
+    CHECK(warnings({box("pin", 5e-3, -1), box("crank", 0.3, -2), box("frame", 1, 0)}).empty());
+    scene::Body ground = box("ground", 9, 0);
+    ground.type = BodyType::static_body;
+    CHECK(warnings({ground, box("marble", 0.01, -1)}).empty());
+    scene::Body light = box("light", 0.1, 0);
+    light.density = 1.24;
+    CHECK(told({light}, "a density of 1.24 kg/m^3 is hardly meant"));
+    light.mass_kind = scene::MassKind::area;  // per m^2 it may be
+    CHECK(warnings({light}).empty());
+    scene::Body paper = box("rod", 58, 0);  // scenes of the source paper are taken as they are
+    paper.mesh_policy = scene::MeshPolicy::lenient;
+    CHECK(warnings({paper}).empty());
+}
+
 TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {
     scene::Body twins = box_body("twins", {0, 0, 0}, {1, 1, 1});
     twins.mesh = tests::joined(twins.mesh, tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
@@ -58,6 +93,18 @@ TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]"
     REQUIRE(model->warnings.size() == 1);
     CHECK(contains(model->warnings[0], "body `twins`"));
     CHECK(contains(model->warnings[0], "triangles intersect"));
+}
+
+TEST_CASE("Names that a terminal, a table or a file of another program would take for something else are refused", "[model]") {
+    for (const char* name : {"a\033[2Jb", "a\nb", "a\xff", "a\xC2\x9B"}) {
+        scene::Body body = box_body("box", {0, 0, 0}, {1, 1, 1});
+        body.name = name;
+        const base::Errors errors = check_scene(scene_of({body}), true).errors;
+        REQUIRE(errors.size() == 1);
+        CHECK(errors[0].code == base::ErrorCode::out_of_range);
+        CHECK(errors[0].message.find("a name is text on one line") != std::string::npos);
+        CHECK(base::name_fault(errors[0].message).empty());
+    }
 }
 
 TEST_CASE("A density that is not positive is refused with body and place", "[model]") {
@@ -86,6 +133,18 @@ TEST_CASE("Every copy of a bad mesh is refused", "[model]") {
     const base::Errors errors = build_model(scene_of(bodies)).errors();
     for (const std::string name : {"`a`", "`b`"})
         CHECK(std::count_if(errors.begin(), errors.end(), [&](const base::Error& e) { return contains(e.message, name); }) == 3);
+}
+
+TEST_CASE("Two bodies of one name are refused", "[model]") {
+    const scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
+    scene::Body again = cube;
+    again.pose.position = {5, 0, 0};
+    const base::Error error = only_error(build_model(scene_of({cube, again})));
+    CHECK(error.code == ErrorCode::inconsistent);
+    CHECK(contains(error.where, "/bodies/cube"));
+    CHECK(contains(error.message, "another body is called `cube` already"));
+    again.name = "other";
+    CHECK(build_model(scene_of({cube, again})));
 }
 
 TEST_CASE("Copies of a part are measured once, and alike", "[model]") {

@@ -31,7 +31,7 @@ model::Model two_boxes() {
     scene::Scene scene;
     scene.length_unit = 0.001;
     scene.dmin = 1.0 / 3e5;
-    for (const char* name : {"left \"quoted\"", "right\\\n"}) {
+    for (const char* name : {"left \"quoted\"", "right\\ \u00e9"}) {
         scene::Body body;
         body.name = name;
         body.mesh = tests::box_mesh({0, 0, 0}, {0.1, 0.2, 1.0 / 3});

@@ -27,9 +27,9 @@ scene::Scene slider(Integrator integrator, double h) {
 
 Balance balance(const scene::Scene& scene, int steps) {
     const model::Model model = built(scene);
-    const auto found = balance_of(model, run(model, steps));
-    REQUIRE(found);
-    return *found;
+    const Simulation out = run(model, steps);
+    REQUIRE(out.balance);
+    return *out.balance;
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ TEST_CASE("energy that comes from nowhere, and momentum that goes, are warned of
         scene.integrator = integrator;
         scene.velocity_tolerance = tolerance;
         const model::Model model = built(scene);
-        const auto found = balance_of(model, run(model, 1000));
+        const auto found = run(model, 1000).balance;
         REQUIRE(found);
         CHECK(found->momentum_error < 1e-12);
         return balance_warning(model, *found);

@@ -50,6 +50,26 @@ TEST_CASE("jointed motion: a slider-crank over a turn and a half, by trigonometr
     }
 }
 
+TEST_CASE("jointed motion: what joints may part by goes with the mechanism's size, whatever stands beside it", "[mechanism]") {
+    scene::Scene scene = slider_crank();
+    const double gap = default_joint_gap(built(scene));
+    CHECK(gap > 1e-6 * rod);
+    CHECK(gap < 1e-4 * rod);
+    for (scene::Body& body : scene.bodies) {
+        body.mesh.vertices *= 1e-3;
+        body.pose.position *= 1e-3;
+    }
+    for (scene::Joint& joint : scene.mechanism.joints)
+        for (Vector3* point : {&joint.a.point, &joint.b.point}) *point *= 1e-3;
+    CHECK(default_joint_gap(built(scene)) == Approx(1e-3 * gap));
+    scene::Body floor;
+    floor.name = "floor";
+    floor.mesh = tests::support::box_mesh(Vector3(-50, -50, -2), Vector3(50, 50, -1));
+    floor.type = scene::BodyType::static_body;
+    scene.bodies.push_back(floor);
+    CHECK(default_joint_gap(built(scene)) == Approx(1e-3 * gap));
+}
+
 TEST_CASE("jointed motion: joints part between nodes by less than is told, and a finer path is asked for by a smaller gap", "[mechanism]") {
     const model::Model model = built(slider_crank());
     const auto coarse = follow_joints(model, 50, 1), fine = follow_joints(model, 50, 1e-5);

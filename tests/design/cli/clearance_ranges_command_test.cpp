@@ -232,12 +232,55 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
         run("validate " + folder.write("less.certificate.json", doctored.dump()) + " --trajectory " + folder.file("fit.trajectory.json"));
     CHECK(rejected.code == 1);
     CHECK(rejected.says("joints may have the body farther from the path than is claimed"));
+    doctored = Json::parse(text_of(proof));
+    doctored.erase("joints");
+    for (const bool with_source : {true, false}) {  // then nothing says what its bounds are worth
+        if (!with_source) doctored.erase("source");
+        const std::string file =
+            folder.write("none.certificate.json", doctored.dump()) + " --trajectory " + folder.file("fit.trajectory.json");
+        const Answer doubtful = run("validate " + file + " --minimum 1mm --json");
+        CHECK(doubtful.code == 2);
+        CHECK(doubtful.json()["judgement"] == "undecided");
+        CHECK(doubtful.json()["pairs"][0]["status"] == "undecided");
+        CHECK(doubtful.says("it has no joints"));
+    }
     scene["motors"][0]["name"] = "other";  // a name is none of the mathematics; a joint's place is
     folder.write("small.scene.json", scene.dump());
     CHECK(run("validate " + proof).code == 0);
     scene["joints"].back()["ratio"] = 0.6;
     folder.write("small.scene.json", scene.dump());
     CHECK(run("validate " + proof).says("stale: the joints or motors"));
+}
+
+TEST_CASE("kinematic: where joints are not proven to have bodies there is no bound, and no certificate of them") {
+    // One arm alone is driven; its hand has a prescribed coordinate beside its joints, of which nothing can be proven.
+    Json scene = Json::parse(text_of(two_arms));
+    scene.erase("springs");
+    scene["motors"] = {{{"name", "drive"}, {"joint", "left_shoulder"}, {"angle", {{"rate", -20}}}}};
+    scene["joints"].push_back({{"name", "gear"}, {"type", "gear"}, {"of", {"left_shoulder", "left_elbow"}}, {"ratio", 0.5}});
+    for (Json& body : scene["bodies"])
+        if (body["name"] == "left_hand") body["prescribed"] = {{"pz", {{"rate", 0}}}};
+    scene["bodies"].push_back({{"name", "wall"},
+                               {"type", "static"},
+                               {"shape", {{"generator", "box"}, {"dimensions", {{"size_x", 1}, {"size_y", 1}, {"size_z", 1}}}}},
+                               {"position", {900, 0, 0}}});
+    const DesignFolder folder(small_design, scene.dump());
+    const std::string proof = folder.file("fit.certificate.json");
+    const Answer answer = run("clearance " + folder.file("small.scene.json") +
+                              " --kinematic --steps 5 --json --minimum 1mm --pairs post:left_hand,post:wall --certificate " + proof);
+    INFO(answer.out);
+    CHECK(answer.code == 2);
+    const Json pair = answer.pair("post", "left_hand");
+    REQUIRE(!pair.is_null());
+    CHECK(pair["status"] == "undecided");
+    for (const char* bound : {"lower", "upper", "gap", "joint_charge"}) CHECK(pair[bound].is_null());
+    CHECK(answer.json()["least"].is_null());
+    CHECK(answer.pair("post", "wall")["status"] == "clear");
+    CHECK(answer.pair("post", "wall")["lower"].get<double>() > 0.8);
+    const Answer valid = run("validate " + proof + " --minimum 1mm --json");
+    CHECK(valid.code == 0);
+    REQUIRE(valid.json()["pairs"].size() == 1);
+    CHECK(valid.json()["pairs"][0]["b"] == "wall");
 }
 
 }  // namespace fettle::design::cli::clearance_ranges_command_test

@@ -65,6 +65,12 @@ TEST_CASE("export: one file by its extension, parts in files of their own, a pla
     CHECK(run("export " + in + " --to " + folder.file("parts") + " --format stl,3mf --arrange parts").code == 0);
     CHECK(names(folder.path / "parts") == std::vector<std::string>{"low_er.3mf", "low_er.stl", "upper.3mf", "upper.stl"});
     CHECK(run("validate " + folder.file("parts/upper.3mf") + " --json").json()["size"] == nlohmann::json({10, 10, 20}));
+    // Each where it stands: judged as meshes they are as far apart as in the scene.
+    CHECK(run("export " + in + " --to " + folder.file("placed") + " --format stl --arrange separate --in-place").code == 0);
+    CHECK(names(folder.path / "placed") == std::vector<std::string>{"low_er.stl", "upper.stl"});
+    const double apart = run("clearance " + in + " --json").json()["least"].get<double>();
+    CHECK(run("clearance " + folder.file("placed") + " --unit mm --json").json()["least"].get<double>() == Approx(apart).margin(3e-6));
+    CHECK(run("export " + in + " --to " + folder.file("x.stl") + " --in-place").code == 3);
     CHECK(run("export " + in + " --to " + folder.file("plate.3mf") + " --arrange plate").code == 0);
     const Answer plate = run("clearance " + folder.file("plate.3mf") + " --json");
     CHECK(plate.json()["pairs"][0]["lower"].get<double>() >= 0.0049);
@@ -75,7 +81,8 @@ TEST_CASE("export: one file by its extension, parts in files of their own, a pla
                                            " --to " + folder.file("z.3mf") + " --format stl"};
     for (const std::string& wrong : refused) CHECK(run("export " + in + wrong).code == 3);
     CHECK(run("export " + in + " --to " + folder.file("a.folder/") + " --format glb").code == 0);
-    CHECK(run("export " + folder.file("a.folder") + " --to x.glb", true).says("no trajectory.json"));
+    std::filesystem::create_directory(folder.file("empty"));
+    CHECK(run("export " + folder.file("empty") + " --to x.glb", true).says("no trajectory.json"));
 }
 
 TEST_CASE("export: a certificate names files of its bodies, and is stale when one changes") {
@@ -132,9 +139,20 @@ TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
     const Answer worst = run("draw " + out + " --worst --out " + folder.file("c.svg") + " --json");
     CHECK(worst.json()["time"].get<double>() == Approx(0.006));  // it falls all the while
     CHECK(worst.json()["worst"]["upper"].get<double>() < 0.001);
-    CHECK(contents(folder.file("c.svg")).find("id=\"witness\"") != std::string::npos);
+    CHECK(contents(folder.file("c.svg")).find("class=\"witness\"") != std::string::npos);
+    folder.write("deep.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "low", "type": "static", "position": [-15, 0, 14.5],
+         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}},
+        {"name": "deep", "type": "static", "position": [15, 0, 10],
+         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+    const Answer deep = run("draw " + folder.file("deep.scene.json") + " --out " + folder.file("deep.svg") + " --json");
+    CHECK(deep.json()["worst"]["b"] == "deep");  // the deepest of two
+    CHECK(contents(folder.file("deep.svg")).find("plate:deep interference, ") != std::string::npos);
+    CHECK(contents(folder.file("deep.svg")).find(" mm deep") != std::string::npos);
+    CHECK(contents(folder.file("deep.svg")).find("<svg x=") != std::string::npos);  // the inset
     CHECK(run("draw " + in + " --plain --out " + folder.file("d.svg")).code == 0);
-    CHECK(contents(folder.file("d.svg")).find("id=\"witness\"") == std::string::npos);
+    CHECK(contents(folder.file("d.svg")).find("class=\"witness\"") == std::string::npos);
     for (const char* wrong :
          {"--out x.gif", "--out x.png --view izo", "--out x.png --size 3x3", "--out x.png --size 3", "--out x.png --up w"})
         CHECK(run("draw " + in + " " + wrong).code == 3);

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
@@ -93,6 +94,12 @@ TEST_CASE("simulate: a killed run leaves its steps, and goes on with the same bi
     REQUIRE(run("simulate " + in + " --steps " + goal + " --out " + whole).code == 0);
     CHECK(contents(folder.path / "cut/trajectory.json") == contents(folder.path / "whole/trajectory.json"));
     CHECK(contents(folder.path / "cut/motion.glb") == contents(folder.path / "whole/motion.glb"));
+    // Its tables begin where it was taken up, for a killed run leaves none; what is there is the same.
+    const std::string steps = contents(folder.path / "whole/steps.csv"), taken_up = contents(folder.path / "cut/steps.csv");
+    const std::string rows = taken_up.substr(taken_up.find('\n') + 1);
+    CHECK(rows.size() > 100);
+    CHECK(steps.ends_with(rows));
+    CHECK(static_cast<int>(std::count(steps.begin(), steps.end(), '\n')) == std::stoi(goal) + 1);
     CHECK_FALSE(std::filesystem::exists(running));
     // A folder whose run is whole is continued from its trajectory.
     CHECK(run("simulate " + in + " --steps " + std::to_string(std::stoi(goal) + 5) + " --out " + cut + " --continue " + cut).code == 0);

@@ -65,7 +65,7 @@ TEST_CASE("clearance: what meshes need is asked for, what they have not is refus
     CHECK(run("clearance " + base + " --unit parsec").code == 3);
     CHECK(run("clearance examples/slider_crank/slider_crank.scene.json " + base).code == 3);
     CHECK(run("clearance examples/slider_crank/slider_crank.scene.json --unit mm").code == 3);
-    CHECK(run("clearance " + base + " --unit mm --minimum 1mm --json").json()["status"] == "undecided");  // one part: nothing is judged
+    CHECK(run("clearance " + base + " --unit mm --minimum 1mm").code == 3);  // one part: there is nothing to judge
 }
 
 TEST_CASE("clearance: a folder of meshes, all pairs of it") {
@@ -104,6 +104,76 @@ TEST_CASE("clearance: a 3MF's build items are the placement, and names that are 
     CHECK(answer.code == 0);
     CHECK(answer.pair("wheel", "wheel 2")["upper"].get<double>() == Approx(0.0007).margin(2e-6));
     CHECK(answer.pair("wheel", "a_b_c")["upper"].get<double>() == Approx(0.0001).margin(2e-6));
+}
+
+TEST_CASE("clearance: a part in a mesh that is not closed is not clear of it, nor does its certificate say so") {
+    const Boxes boxes;
+    core::geometry::Mesh open = boxes.a;
+    const core::geometry::Mesh part = box_mesh({0.004, 0.004, 0.004}, {0.006, 0.006, 0.006});
+    open.triangles.pop_back();
+    open = core::geometry::make_mesh("open", open.vertices, open.triangles);
+    boxes.write("open.stl", core::mesh_files::stl_bytes({{"open", &open}}));
+    boxes.write("part.stl", core::mesh_files::stl_bytes({{"part", &part}}));
+    const std::string files = boxes.file("open.stl") + " " + boxes.file("part.stl") + " --unit mm --minimum 0.1mm";
+    const Answer answer = run("clearance " + files + " --json --certificate " + boxes.file("fit.certificate.json"));
+    CAPTURE(answer.out);
+    CHECK(answer.code == 2);
+    const nlohmann::json pair = answer.pair("open", "part");
+    CHECK(pair["status"] == "undecided");
+    CHECK(pair["solids"] == "not verified");
+    CHECK(pair["lower"].get<double>() > 0.0035);
+    CHECK(pair["reason"].get<std::string>().find("close the mesh") != std::string::npos);
+    const Answer valid = run("validate " + boxes.file("fit.certificate.json") + " --minimum 0.1mm --json");
+    CHECK(valid.code == 2);
+    CHECK(valid.json()["judgement"] == "undecided");
+    const Answer beside =
+        run("clearance " + boxes.file("open.stl") + " " + boxes.file("cad/lid.stl") + " --unit mm --minimum 0.1mm --json");
+    CHECK(beside.code == 0);
+    CHECK(beside.pair("open", "lid")["solids"] == "not closed");
+}
+
+TEST_CASE("clearance: a lid on its base is told as touching, is accepted where that is allowed, and found where it is in it") {
+    const Boxes boxes;
+    const auto written = [&](const std::string& name, const Vector3& low, const Vector3& high) {
+        const core::geometry::Mesh mesh = box_mesh(low, high);
+        boxes.write(name + ".stl", core::mesh_files::stl_bytes({{name, &mesh}}));
+        return boxes.file(name + ".stl") + " ";
+    };
+    const std::string base = written("base", {0, 0, 0}, {0.06, 0.04, 0.0101}),
+                      lid = written("lid", {0.013, 0.007, 0.0101}, {0.043, 0.015, 0.02}),
+                      post = written("post", {0.05, 0.02, 0.015}, {0.055, 0.03, 0.02}),
+                      deep = written("deep", {0.01, 0.02, 0.0099}, {0.02, 0.03, 0.02});
+    const auto clearance = [&](const std::string& files, const std::string& options) {
+        return run("clearance " + files + "--unit mm " + options);
+    };
+    const Answer refused = clearance(base + lid + post, "--minimum 0.3mm --json");
+    CAPTURE(refused.out);
+    CHECK(refused.code == 1);
+    const nlohmann::json pair = refused.pair("base", "lid");
+    CHECK(pair["finding"] == "touching");
+    CHECK(pair["status"] == "violated");
+    CHECK(pair["touching"]["area"].get<double>() == Approx(240e-6).epsilon(1e-5));
+    CHECK(pair["touching"]["allowed"] == false);
+    CHECK(clearance(base + lid, "--minimum 0.3mm").says("over 240 mm^2"));
+    CHECK(clearance(base + lid, "--minimum 0.3mm").says("--allow-touch base:lid"));
+    CHECK(clearance(base + lid, "--json").code == 2);
+    for (const std::string allowed : {"base:lid", "lid:base", "'ba*:*'", "base:lid=0.01mm"}) {
+        const Answer accepted = clearance(base + lid + post, "--minimum 0.3mm --json --allow-touch " + allowed);
+        CAPTURE(allowed, accepted.out);
+        CHECK(accepted.code == 0);
+        CHECK(accepted.pair("base", "lid")["finding"] == "touching");
+        CHECK(accepted.pair("base", "lid")["status"] == "contact");
+        CHECK(accepted.pair("base", "lid")["minimum"].is_null());
+        CHECK(accepted.pair("post", "lid")["status"] == "clear");
+    }
+    const Answer found = clearance(base + deep, "--minimum 0.3mm --json --allow-touch base:deep");
+    CHECK(found.code == 1);
+    CHECK(found.pair("base", "deep")["finding"] == "clash");
+    CHECK(clearance(base + deep, "--minimum 0.3mm --allow-touch base:deep=1mm").code == 0);
+    CHECK(clearance(base + lid + deep, "--minimum 0.3mm --allow-touch base:lid --allow-touch base:deep=1mm").code == 0);
+    for (const std::string wrong : {"base:lib", "base", "base:base", "base:lid=0mm", "base:lid=-1mm", "'x*:lid'"})
+        CHECK(clearance(base + lid, "--allow-touch " + wrong).code == 3);
+    CHECK(clearance(base + lid, "--pairs base:lid=0.3mm --allow-touch base:lid").code == 3);
 }
 
 TEST_CASE("clearance: a certificate of meshes names their files, and is stale when one changes") {

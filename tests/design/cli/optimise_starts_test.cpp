@@ -104,6 +104,25 @@ TEST_CASE("many starts: a table, the best one kept, each run as it is alone") {
     CHECK(!std::filesystem::exists(out / "history.1.jsonl"));
 }
 
+TEST_CASE("--starts: a link where a log goes is not followed, and runs that leave no result are told") {
+    const DesignFolder folder;
+    const std::string kept = folder.write("kept.txt", "mine"), out = folder.file("many");
+    std::filesystem::create_directories(out + "/start-0");
+    std::filesystem::create_symlink(kept, out + "/start-0/log.txt");
+    const std::string quick = replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 1");
+    folder.write("quick.design.json", quick);
+    CHECK(run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --out " + out).code <= 2);
+    CHECK(contents(kept) == "mine");
+    CHECK_FALSE(std::filesystem::is_symlink(out + "/start-0/log.txt"));
+
+    const std::string none = folder.file("none");
+    folder.write("none/start-0", "a file where a folder is wanted");
+    const Answer failed = run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --json --out " + none);
+    CHECK(failed.code == 3);
+    CHECK(failed.json().at("starts").at(0).at("status") == "failed");
+    CHECK(failed.json().at("message").get<std::string>().find("cannot be written") != std::string::npos);
+}
+
 TEST_CASE("many starts, killed and resumed, end as they do undisturbed; so do they when they are asked to stop") {
     const DesignFolder folder;
     const std::string whole = (folder.path / "whole").string(), cut = (folder.path / "cut").string();

@@ -67,7 +67,7 @@ TEST_CASE("validate: what can hardly be meant is doubted") {
     folder.write("part.obj", obj_of(part));
     const Json metres = run("validate --json " + folder.write("m.scene.json", scene_of("m", "1240"))).json();
     CHECK(metres.at("status") == "ok");
-    CHECK(mentions(metres["warnings"], "body `part`: its size is 60 m; are its lengths in millimetres?"));
+    CHECK(mentions(metres["warnings"], "body `part`: its size is 60 m and its mass 3.57e+07 kg, which is hardly meant"));
     const Json light = run("validate --json " + folder.write("l.scene.json", scene_of("mm", "1.24"))).json();
     CHECK(mentions(light.at("warnings"), "a density of 1.24 kg/m^3 is hardly meant"));
 }
@@ -109,11 +109,12 @@ TEST_CASE("files of other kinds are told what is read") {
     const Answer stl = run("simulate " + mesh, true);
     CHECK(stl.code == 3);
     CHECK(stl.says("is a mesh, not a scene or design"));
-    for (const char* name : {"a.scad", "a.amf", "a.csv"}) {
+    for (const char* name : {"a.scad", "a.sldprt", "a.csv"}) {
         const Answer other = run("validate " + folder.write(name, "<cube/>"), true);
         CHECK(other.code == 3);
-        CHECK(other.says(
-            "is not read; scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are .stl .obj .off .ply .3mf"));
+        CHECK(
+            other.says("is not read; scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are .stl .obj .off "
+                       ".ply .3mf .dae .gltf .glb .3ds .amf"));
         CHECK_FALSE(other.says("not valid JSON"));
     }
 }

@@ -52,7 +52,7 @@ Turn simulated(const Json& scene, const std::string& table, const std::string& d
     constexpr double settled = 0.1;
     double low = 1e9, high = -1e9;
     for (const auto& row : rows_of(folder.file("poses.csv"))) {
-        if (row.size() < 3 || row[1] != "\"piston\"" || std::stod(row[0]) < settled) continue;
+        if (row.size() < 3 || row[1] != "piston" || std::stod(row[0]) < settled) continue;
         low = std::min(low, std::stod(row[2]));
         high = std::max(high, std::stod(row[2]));
     }

@@ -76,6 +76,7 @@ TEST_CASE("the slider-crank is tuned to its stroke", "[slow]") {
     CHECK(stroke.at("as_written").get<double>() == Approx(0.03).margin(0.00005));
     CHECK(stroke.at("play_taken_up").get<double>() == Approx(0.029).margin(0.0005));
     CHECK(stroke.at("play_taken_up") != stroke.at("as_written"));
+    CHECK(json.at("by_models").at("in_doubt") == nlohmann::json({"stroke piston"}));
 }
 
 TEST_CASE("the four-bar linkage is tuned to its path", "[slow]") {

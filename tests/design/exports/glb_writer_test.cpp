@@ -10,7 +10,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/mesh_files/assimp_library.hpp"
+#include "fettle/design/exports/palette.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/test_models.hpp"
@@ -62,11 +62,11 @@ Moving tumbling() {
 
 struct Imported {
     const aiScene* scene;
-    explicit Imported(const std::string& path) : scene(core::mesh_files::assimp_library().import_file(path.c_str(), 0)) {
-        INFO(core::mesh_files::assimp_library().error_string());
+    explicit Imported(const std::string& path) : scene(aiImportFile(path.c_str(), 0)) {
+        INFO(aiGetErrorString());
         REQUIRE(scene != nullptr);
     }
-    ~Imported() { core::mesh_files::assimp_library().release_import(scene); }
+    ~Imported() { aiReleaseImport(scene); }
     Imported(const Imported&) = delete;
     Imported& operator=(const Imported&) = delete;
 };
@@ -112,6 +112,8 @@ TEST_CASE("GLB: assimp reads names, meshes, colours, and the root turns Z up to 
     const aiVector3D up = root->mTransformation * aiVector3D(0, 0, 1);
     CHECK((up - aiVector3D(0, 1, 0)).Length() < 1e-6F);
     REQUIRE(read.scene->mNumMeshes == 2);
+    const std::vector<Colour> colours = part_colours(moving.model);
+    CHECK(colours[0] != colours[1]);
     for (int b = 0; b < 2; ++b) {
         const aiNode* node = find_node(read.scene->mRootNode, moving.model.bodies[static_cast<std::size_t>(b)].name);
         REQUIRE(node != nullptr);
@@ -129,8 +131,9 @@ TEST_CASE("GLB: assimp reads names, meshes, colours, and the root turns Z up to 
             }
         }
         CHECK(largest < 1e-8);
-        CHECK(blue(*read.scene->mMaterials[mesh.mMaterialIndex]) ==
-              Approx(b == 0 ? 0.4452 : 0.0).margin(1e-3));  // 178/255, 0 as linear light
+        const double shade = colours[static_cast<std::size_t>(b)][2] / 255.0;
+        const double light = shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);  // sRGB to linear
+        CHECK(blue(*read.scene->mMaterials[mesh.mMaterialIndex]) == Approx(light).margin(1e-3));
     }
 }
 

@@ -219,6 +219,7 @@ TEST_CASE("what is no number is no evaluation, and its reason names what it is o
             REQUIRE(problem);
             const DesignEvaluation at = problem->evaluate(values_of(design->parameters));
             CHECK_FALSE(at.usable);
+            CHECK((std::isnan(at.objective) && std::isnan(at.violation)));  // no number stands in for what is not known
             const bool of_sum = design == &aimed && std::isnan(c.of_mesh);  // of what a model alone moves
             CHECK(at.reason == (of_sum ? "objective" : name) + c.reason);
         }
@@ -328,6 +329,7 @@ TEST_CASE("a trial whose shape is no solid, or has other triangles, cannot be bu
     p[0] = 11e-3;
     const DesignEvaluation high = problem->evaluate(p);
     CHECK_FALSE(high.usable);
+    CHECK((std::isnan(high.objective) && std::isnan(high.violation)));
     CHECK(high.reason.find("part") != std::string::npos);
     p[0] = 6.5e-3;
     const DesignEvaluation low = problem->evaluate(p);

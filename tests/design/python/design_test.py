@@ -56,11 +56,20 @@ def test_optimised_and_again_the_same_bits(tilted):
     assert pickle.loads(pickle.dumps(again)).report == again.report
 
 
-def test_a_shape_refuses_and_a_quantity_raises(tilted):
+def with_wide_foot():
+    """The tilted plate, whose bounds allow for a part that cannot be made."""
+    design = tilted_plate()
+    design.parameters[1].lower = "-1mm"
+    return design
+
+
+def test_a_shape_refuses_and_a_quantity_raises():
+    tilted = fettle.DesignProblem(with_wide_foot())
     p = tilted.values
     p[1] = -1e-3
     at = tilted.evaluate(p)
     assert not at.usable
+    assert np.isnan(at.objective) and np.isnan(at.violation)  # no number stands in for what is not known
     assert "part" in at.reason and "above 0" in at.reason
     with pytest.raises(fettle.EvaluationError, match="above 0"):
         tilted.value_and_gradient(p)

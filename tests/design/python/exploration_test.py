@@ -130,8 +130,111 @@ def test_the_command(tmp_path):
     answer = json.loads(done.stdout)
     assert answer["results"] == 3 and answer["best"] is None
     assert sorted(fettle.read_exploration(str(out)).column("crank_radius")) == pytest.approx([13e-3, 13.5e-3, 14e-3])
+    assert fettle.read_exploration(str(out)).header["file"] == "short.design.json"  # from its folder, so that its report finds it
     wrong = subprocess.run([sys.executable, "-m", "fettle", "explore", str(design), "--out", str(out)], capture_output=True, text=True, check=False)
     assert wrong.returncode == 3 and "nothing to explore" in wrong.stderr
+
+
+# The program that hands over to the package, where both were built.
+PROGRAM = pathlib.Path(fettle.__file__).parents[2] / "bin" / "fettle"
+needs_program = pytest.mark.skipif(not PROGRAM.exists(), reason="the program was not built beside the package")
+
+
+def hostile_folder(place):
+    """A folder whose modules are called as those that an exploration imports; each leaves its name in `place` when it is run."""
+    place.mkdir()
+    loud = f"import pathlib\npathlib.Path({str(place / 'seen')!r}).open('a').write(__name__ + ' ')\nraise SystemExit('caught')\n"
+    for name in ("argparse", "numpy", "json", "pickle", "multiprocessing", "signal", "sitecustomize", "usercustomize", "distributed", "random"):
+        (place / f"{name}.py").write_text(loud)
+    for name in ("fettle", "encodings"):
+        (place / name).mkdir()
+        (place / name / "__init__.py").write_text(loud)
+    return place
+
+
+@needs_program
+def test_the_current_folder_is_no_place_of_modules(tmp_path):
+    design = short_file(tmp_path)
+    place = hostile_folder(tmp_path / "hostile")
+    for number, given in enumerate((None, "", ":", f":{tmp_path}:", ".", "../hostile")):
+        environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "PYTHONSAFEPATH")}
+        environment.update({} if given is None else {"PYTHONPATH": given})
+        words = [PROGRAM, "explore", design, "--out", f"{number}.jsonl", "--samples", "1", "--workers", "1", "--quiet", "--json"]
+        done = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, check=False)
+        assert not (place / "seen").exists(), (given, (place / "seen").read_text())
+        assert json.loads(done.stdout)["results"] == 1, done.stderr
+
+
+def test_nor_is_it_for_the_workers_of_a_script(tmp_path):
+    script = tmp_path / "script.py"
+    design = short_file(tmp_path)
+    script.write_text(
+        "import os, sys\nimport fettle\nif __name__ == '__main__':\n"
+        "    before = dict(os.environ)\n"
+        "    print(len(fettle.explore(sys.argv[1], sys.argv[2], samples=1, workers=1)), before == dict(os.environ))\n"
+    )
+    place = hostile_folder(tmp_path / "hostile")
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONSAFEPATH"}
+    words = [sys.executable, script, design, tmp_path / "out.jsonl"]
+    done = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, check=False)
+    assert not (place / "seen").exists(), (place / "seen").read_text()
+    assert done.stdout == "1 True\n", done.stderr
+
+
+class Environment(MeanHeight):
+    """Is the variable there that keeps modules of the current folder away?"""
+
+    def value(self, simulated):
+        return super().value(simulated) + (1.0 if exploration.SAFE_PATH in os.environ else 0.0)
+
+
+def test_programs_of_a_worker_have_the_environment_that_was_given(tmp_path, monkeypatch):
+    monkeypatch.delenv(exploration.SAFE_PATH, raising=False)
+    (found,) = fettle.explore(short_design(Environment(1)), str(tmp_path / "a.jsonl"), samples=1, workers=1).results
+    assert found["constraints"]["height"] < 0.5
+
+
+def interrupted_exploration(words, cwd, when, number=signal.SIGINT):
+    """(exit code, stdout, stderr) of a command whose whole group gets a signal, as by a terminal, once `when()`."""
+    with subprocess.Popen(words, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        deadline = time.monotonic() + 60
+        while not when() and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.01)
+        os.killpg(process.pid, number)
+        out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+@needs_program
+@pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM))
+def test_ctrl_c_keeps_what_was_done_and_says_how_to_go_on(tmp_path, number):
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    samples = 100_000
+    words = [str(PROGRAM), "explore", str(design), "--out", str(out), "--samples", str(samples), "--workers", "2", "--quiet"]
+    code, said, err = interrupted_exploration(words, tmp_path, lambda: out.exists() and out.read_text().count("\n") > 2, number)
+    done = len(fettle.read_exploration(str(out)))
+    assert (code, err) == (128 + number, "")
+    assert said == f"interrupted: {done} designs are in {out}; the same command goes on with the others\n" and 2 <= done < samples
+    # Again, now told as JSON: it goes on.
+    code, said, err = interrupted_exploration([*words, "--json"], tmp_path, lambda: out.read_text().count("\n") > done + 2, number)
+    answer = json.loads(said)
+    assert (code, err) == (128 + number, "")
+    assert answer["status"] == "interrupted" and answer["results"] == len(fettle.read_exploration(str(out))) > done
+
+
+@needs_program
+def test_ctrl_c_at_any_time_is_no_traceback(tmp_path):
+    """Also while Python and its workers start."""
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    words = [str(PROGRAM), "explore", str(design), "--out", str(out), "--samples", "100000", "--workers", "2", "--quiet"]
+    for pause in (0.02, 0.1, 0.2, 0.4):
+        end = time.monotonic() + pause
+        code, said, err = interrupted_exploration(words, tmp_path, lambda: time.monotonic() > end)
+        if code == -signal.SIGINT:  # it came before the program had begun
+            assert pause == 0.02
+            continue
+        assert (code, err) == (130, ""), pause
+        assert said.startswith("interrupted"), pause
 
 
 def told(capsys, *words):
@@ -270,3 +373,66 @@ def test_on_a_dask_cluster_one_of_whose_workers_is_killed(tmp_path, cluster):
     assert {r["status"] for r in found.results} <= {"feasible", "infeasible"}
     local = fettle.explore(short_design(MeanHeight(1)), str(tmp_path / "local.jsonl"), samples=8, workers=1)
     assert {r["key"]: r["objective"] for r in found.results} == {r["key"]: r["objective"] for r in local.results}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "null",
+        "[]",
+        "7",
+        '{"status": "feasible"}',
+        '{"key": "k", "status": 5}',
+        '{"key": "k", "status": "feasible", "objective": "low"}',
+        '{"key": "k", "status": "feasible", "objective": NaN, "violation": 0}',
+        '{"key": "k", "status": "feasible", "objective": 1, "violation": 0, "parameters": []}',
+        '{"key": "k", "status": "feasible", "parameters": {"height": "x"}}',
+        "[" * 100000,
+        "{broken",
+    ],
+)
+def test_a_damaged_line_is_bad_input_and_no_verdict(tmp_path, capsys, line):
+    design, out = short_file(tmp_path), tmp_path / "damaged.jsonl"
+    fettle.explore(short_design(), str(out), samples=1, workers=1)
+    out.write_text(out.read_text() + line + "\n")
+    with pytest.raises(fettle.Error) as fault:
+        fettle.read_exploration(str(out))
+    assert fault.value.where == f"{out}:3" and "damaged" in str(fault.value)
+    header = json.loads(out.read_text().split("\n")[0])
+    name = exploration._design_name(fettle.read_design(str(design)).design)
+    names = fettle.DesignProblem(fettle.read_design(str(design)).design).parameter_names
+    out.write_text(json.dumps({**header, "design": name, "parameters": names}) + "\n" + line + "\n")
+    assert main(["explore", str(design), "--out", str(out), "--samples", "1", "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["errors"][0]["where"] == f"{out}:2"
+
+
+def test_more_than_can_be_planned_is_refused_at_once(tmp_path):
+    for request in ({"samples": 10**9}, {"starts": 10**9}, {"sweep": {"height": 10**9}}):
+        with pytest.raises(fettle.Error, match="up to 1000000 are"):
+            fettle.explore(short_design(), str(tmp_path / "many.jsonl"), **request)
+
+
+def limited(code, size, tmp_path):
+    """Runs a program whose files end at so many bytes, as on a full disk."""
+    program = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))\n{code}"
+    return subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, env=os.environ)
+
+
+def test_a_full_disk_costs_the_file_and_not_what_was_found(tmp_path):
+    design, out = short_file(tmp_path), tmp_path / "full.jsonl"
+    run = f"from fettle.__main__ import main; raise SystemExit(main(['explore', {str(design)!r}, '--out', {str(out)!r}, "
+    first = limited(run + "'--samples', '1', '--workers', '1', '--json']))", 10**6, tmp_path)
+    assert first.returncode in (0, 1), first.stderr
+    before = out.read_text()
+    told = limited(run + "'--samples', '3', '--workers', '1', '--json', '--quiet']))", len(before) + 20, tmp_path)
+    assert told.returncode == 3
+    answer = json.loads(told.stdout)
+    assert answer["results"] == 2 and answer["unwritten"][0]["code"] == "file_unwritable" and answer["unwritten"][0]["where"] == str(out)
+    assert str(out) in told.stderr
+    assert out.read_text() == before  # no part of a line is left
+    started = limited(run.replace("full.jsonl", "new.jsonl") + "'--samples', '1', '--json', '--quiet']))", 10, tmp_path)
+    assert started.returncode == 3 and not (tmp_path / "new.jsonl").exists()
+    with open("/dev/full", "w") as full:
+        words = [sys.executable, "-m", "fettle", "explore", str(design), "--out", str(out), "--samples", "1", "--json"]
+        lost = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, env=os.environ)
+    assert lost.returncode == 3 and "standard output" in lost.stderr and "Traceback" not in lost.stderr

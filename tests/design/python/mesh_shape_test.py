@@ -46,6 +46,9 @@ def test_a_design_with_a_function_of_meshes():
     expected, expected_gradient = exact.value_and_gradient(exact.values)
     assert value == pytest.approx(expected, rel=1e-9)
     assert gradient == pytest.approx(expected_gradient, rel=1e-6)
+    wide = tilted_plate(shape=fettle.MeshShape(frustum_mesh, DRAWN))
+    wide.parameters[1].lower = -1e-3
+    made = fettle.DesignProblem(wide)
     p = made.values
     p[1] = -1e-3
     assert "above 0" in made.evaluate(p).reason

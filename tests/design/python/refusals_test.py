@@ -125,12 +125,42 @@ def test_misspelt_members():
     for made in (fettle.GeneratedPart("box"), fettle.FunctionShape(None, {}), fettle.Design(), fettle.PairRequest()):
         with pytest.raises(AttributeError, match="no member"):
             made.mine = 1
+    with pytest.raises(AttributeError, match="Scene has no member 'gravitty'; did you mean 'gravity'"):
+        fettle.Scene().gravitty = [0, 0, -9.81]
+    with pytest.raises(AttributeError, match="Scene has no member 'timestepp'; did you mean 'timestep'"):
+        _ = fettle.Scene().timestepp
+    with pytest.raises(TypeError, match="gravitty"):
+        fettle.Scene(gravitty=[0, 0, -9.81])
     for made in (falling_cube(), fettle.DesignProblem(tilted_plate()), fettle.Trajectory()):
         with pytest.raises(AttributeError):
             made.mine = 1
     own = MeanHeight(1)  # what derives from the two interfaces has what members it likes
     own.mine = 1
     Frustum(1, 1, 1).mine = 1
+
+
+def test_two_of_one_name():
+    """Pairs, joints, files find things by their names."""
+    twins = [fettle.Body("cube", mesh=box(0.01, 0.01, 0.01)), fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))]
+    twins[1].pose.position = ["1m", 0, 0]
+    scene = fettle.Scene(bodies=twins)
+    refused(lambda: fettle.build_model(scene), "inconsistent", "body `cube`", "another body is called `cube` already")
+    refused(lambda: fettle.DesignProblem(fettle.Design(scene=scene)), "inconsistent", "body `cube`", "names are unique")
+    twins[1].name = twins[0].name = ""
+    refused(lambda: fettle.build_model(scene), "inconsistent", "body ``")
+    twins[0].name, twins[1].name = "a", "b"
+    joint = fettle.Joint("pin", b=fettle.Attachment("a"))
+    scene.mechanism = fettle.Mechanism(joints=[joint])
+    assert fettle.build_model(scene)
+    for member, made in (("joints", joint), ("motors", fettle.Motor("m", joint="pin")), ("loads", fettle.PointLoad("l", body="a")),
+                         ("springs", fettle.Spring("s", joint="pin", forces=fettle.CoordinateForces(stiffness=1.0, rest=0.0)))):
+        scene.mechanism = fettle.Mechanism(joints=[joint])
+        setattr(scene.mechanism, member, [made])
+        if member != "motors":
+            assert fettle.build_model(scene), member
+        setattr(scene.mechanism, member, [made, made])
+        with pytest.raises(fettle.Error, match="is called `.*` already"):
+            fettle.build_model(scene)
 
 
 def test_generators_and_dimensions():
@@ -141,7 +171,9 @@ def test_generators_and_dimensions():
 
 
 def test_an_evaluation_error_has_errors():
-    problem = fettle.DesignProblem(tilted_plate())
+    design = tilted_plate()
+    design.parameters[1].lower = -1e-3
+    problem = fettle.DesignProblem(design)
     p = problem.values
     p[1] = -1e-3
     with pytest.raises(fettle.EvaluationError) as failed:
@@ -179,7 +211,7 @@ def test_a_value_that_is_no_number_is_no_evaluation():
     for answer in (NAN, INFINITY, np.float64(NAN), fettle.Measurement(NAN, NAN, NAN), fettle.Measurement(INFINITY, 0, INFINITY)):
         problem = constrained(Answering(answer))
         at = problem.evaluate(problem.values)
-        assert not at.usable
+        assert not at.usable and math.isnan(at.objective) and math.isnan(at.violation)
         assert "constraint `own`" in at.reason and "finite" in at.reason
         with pytest.raises(fettle.EvaluationError, match="constraint `own`"):
             problem.value(problem.values)
@@ -195,7 +227,7 @@ def test_a_gradient_that_is_no_number_is_no_evaluation():
     for name, change in changes.items():
         problem = constrained(Answering(**{name: change}))
         at = problem.evaluate(problem.values)
-        assert not at.usable, name
+        assert not at.usable and math.isnan(at.objective) and math.isnan(at.violation), name
         assert "constraint `own`" in at.reason and "finite" in at.reason, (name, at.reason)
 
 
@@ -249,7 +281,8 @@ def test_what_shapes_answer():
     refused(lambda: fettle.shape_at(fettle.MeshShape(lambda values: None, drawn)), "wrong_type", "MeshShape.function()", "returned None")
     refused(lambda: fettle.shape_at(fettle.MeshShape(lambda values: None, drawn, unit=0.0)), "out_of_range", "mesh shape/unit")
     refused(lambda: fettle.shape_at(fettle.MeshShape(lambda values: None, {"radius": NAN})), "not_finite", "mesh shape/values")
-    refused(lambda: fettle.shape_at(fettle.FunctionShape(lambda values: None, {"radius": "a"})), "wrong_type", "FunctionShape.dimensions()")
+    refused(lambda: fettle.shape_at(fettle.FunctionShape(lambda values: None, {"radius": None})), "wrong_type", "FunctionShape.dimensions()")
+    refused(lambda: fettle.FunctionShape(lambda values: None, {"radius": "a"}), "parse", "function shape/values/radius")
 
 
 def test_a_quantity_from_functions():

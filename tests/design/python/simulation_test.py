@@ -140,3 +140,43 @@ def test_what_does_not_fit_is_refused():
     with pytest.raises(fettle.Error, match="intersect") as found:
         falling_cube(height=4e-3)
     assert found.value.code == "bodies_intersect"
+
+
+def arm():
+    """A bar on a hinge that turns by 60 degrees each way, and a post beyond."""
+    bar = fettle.Body("bar", mesh=box(0.04, 0.008, 0.004))
+    bar.pose.position = ["20mm", 0, 0]
+    post = fettle.Body("post", type="static", mesh=box(0.004, 0.004, 0.02), prescribed=fettle.held())
+    post.pose.position = [0, "30mm", 0]
+    limits = fettle.CoordinateForces(limits=["-60deg", "60deg"])
+    hinge = fettle.Joint("hinge", b=fettle.Attachment("bar", point=["-20mm", 0, 0]), forces=limits)
+    return fettle.build_model(fettle.Scene(bodies=[bar, post], mechanism=fettle.Mechanism(joints=[hinge])))
+
+
+def test_clearance_over_the_ranges_of_joints(tmp_path):
+    model = arm()
+    ranges = fettle.joint_ranges(model)
+    (hinge,) = ranges.coordinates
+    assert hinge.joints[0].joint == "hinge" and hinge.joints[0].is_angle and not hinge.is_whole_turn
+    assert (hinge.low, hinge.high) == pytest.approx((-np.pi / 3, np.pi / 3)) and ranges.held == []
+    certificate, done = fettle.RangeCertificate(), []
+    found = fettle.certify_ranges(
+        model, [("post", "bar", "1mm")], ranges=ranges, certificate=certificate, progress=lambda *at: done.append(at)
+    )
+    pair = found.pair("bar", "post")
+    # By hand: the bar at 60 degrees, a rectangle of 40 x 8 mm from the hinge, and the square of 4 mm round (0, 30).
+    turn = np.array([[0.5, -np.sqrt(0.75)], [np.sqrt(0.75), 0.5]])
+    by_hand = (turn.T @ [2e-3, 28e-3])[1] - 4e-3
+    assert pair.lower <= by_hand <= pair.upper and pair.upper - pair.lower <= 1e-5
+    assert pair.status == "clear" and pair.solids == "disjoint" and done[-1] == (1, 1)
+    assert pair.coordinates == [0] and pair.at == pytest.approx([np.pi / 3], abs=1e-3)
+    pose = fettle.pose_at_witness(model, ranges, pair, "bar")
+    assert pose.position == pytest.approx([0.01, 0.02 * np.sqrt(0.75), 0], abs=1e-4)
+    certificate.write(tmp_path / "arm.certificate.json")
+    assert fettle.RangeCertificate.read(tmp_path / "arm.certificate.json").check(model).accepted
+    (violated,) = fettle.certify_ranges(model, minimum="15mm", tolerance="1um")
+    assert violated.status == "violated" and violated.tolerance == 1e-6
+    with pytest.raises(fettle.Error, match="no joint"):
+        fettle.certify_ranges(falling_cube())
+    with pytest.raises(fettle.Error, match="not of this model"):
+        fettle.certify_ranges(fettle.build_model(fettle.Scene(bodies=[fettle.Body("cube", mesh=box(1, 1, 1))])), [], ranges=ranges)

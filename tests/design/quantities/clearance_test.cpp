@@ -34,6 +34,13 @@ core::model::Model cubes(double x) {
     return std::move(model).value();
 }
 
+void remove_a_triangle(core::model::Body& body) {
+    auto triangles = body.mesh.triangles;
+    triangles.pop_back();
+    body.mesh = core::geometry::make_mesh("open", body.mesh.vertices, triangles);
+    body.hierarchy = std::make_shared<const core::geometry::BodyHierarchy>(body.mesh);
+}
+
 Measurement measured(const core::model::Model& model, const Clearance& clearance) {
     const core::stepper::Trajectory start = core::clearance::as_assembled(model);
     return clearance.value({model, start, 1e-9});
@@ -80,6 +87,18 @@ TEST_CASE("a clearance is that of solids: a body inside another violates it, wit
     CHECK(across.lower == 0);
     CHECK(across.fault.find("pass through each other") != std::string::npos);
     CHECK(violation({.upper = 1}, across) >= 1);  // which is true of any bound
+}
+
+TEST_CASE("a clearance is not met where a body may lie inside another whose mesh is not closed") {
+    core::model::Model model = cubes(0);
+    remove_a_triangle(model.bodies[1]);
+    const Measurement inside = measured(model, Clearance({.a = 0, .b = 1}, 1e-3));
+    CHECK(inside.fault.find("`small` and `large`: whether one lies inside the other cannot be verified") != std::string::npos);
+    model.bodies[1].mass_kind = core::scene::MassKind::area;
+    CHECK(measured(model, Clearance({.a = 0, .b = 1}, 1e-3)).fault.empty());
+    model = cubes(0.2);
+    remove_a_triangle(model.bodies[1]);
+    CHECK(measured(model, Clearance({.a = 0, .b = 1}, 1e-3)).fault.empty());
 }
 
 TEST_CASE("the derivative of a body's place inside another leads it out") {

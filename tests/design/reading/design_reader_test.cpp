@@ -93,7 +93,7 @@ TEST_CASE("every fault of a design is named, with its place") {
          ErrorCode::wrong_type, "#/constraints/3/upper", "an area is wanted"},
         {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
         {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
-        {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "smal.scene.json", ""},
+        {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "#/scene", "smal.scene.json"},
         {"\"units\": \"mm\"", "\"units\": \"furlong\"", ErrorCode::out_of_range, "#/units", "mm"},
         {"\"value\": 10,", "\"value\": NaN,", ErrorCode::not_finite, "", ""},
         {"\"fettle_design\": 1", "\"fettle_design\": 2", ErrorCode::out_of_range, "#/fettle_design", ""},

@@ -8,15 +8,19 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <sstream>
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/design/exports/palette.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/report/design_rows.hpp"
 #include "fettle/design/report/moving_parts.hpp"
 #include "fettle/design/report/packed_numbers.hpp"
 #include "fettle/design/report/pair_rows.hpp"
+#include "fettle/design/report/report_folder.hpp"
 #include "fettle/design/report/report_page.hpp"
 #include "fettle/design/report/search_curves.hpp"
 #include "fettle/design/report/table_rows.hpp"
@@ -373,6 +377,117 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(run("report " + folder.file("other") + " --json").json().at("errors")[0].at("code") == "unsupported");
 }
 
+TEST_CASE("report: how deep two parts are in each other, how much they share, and where") {
+    const DesignFolder folder;
+    folder.write("shared.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "pin", "type": "static", "position": [0, 0, 10],
+         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+    const std::string out = folder.file("shared");
+    CHECK(run("clearance " + folder.file("shared.scene.json") + " --out " + out).code == 1);
+    const Json data = data_of(contents(out + "/report.html")), pair = data["pairs"][0];
+    CHECK(pair["finding"] == "clash");
+    CHECK(pair["depth"]["lower"].get<double>() <= 5);  // mm
+    CHECK(pair["depth"]["lower"].get<double>() > 4.9);
+    CHECK(pair["depth"]["upper"].get<double>() >= 5);
+    CHECK(pair["volume"]["lower"].get<double>() <= 12 * 12 * 5);
+    CHECK(pair["volume"]["upper"].get<double>() >= 12 * 12 * 5);
+    CHECK(pair["volume"]["lower"].get<double>() > 0);
+    const Json& point = pair["depth"]["point"];
+    REQUIRE(point.size() == 3);
+    CHECK(std::max(std::abs(point[0].get<double>()), std::abs(point[1].get<double>())) < 6);
+    CHECK(std::abs(point[2].get<double>() - 2.5) < 0.1);  // of a ball of 2.5 mm between the pin's end at 0 and the plate's face at 5
+}
+
+TEST_CASE("report: parts have the colours that all pictures give them, what is fixed is pale; the page knows the others") {
+    Motion motion = parting_cubes(2);
+    motion.model.bodies[0].type = core::scene::BodyType::static_body;
+    Json data;
+    add_view(data, "after", motion.model, motion.trajectory);
+    const auto colour = [&](size_t i) { return data["views"][0]["bodies"][i]["colour"].get<std::string>(); };
+    CHECK(colour(1) == exports::css_colour(exports::part_colour(0)));
+    CHECK(colour(2) == exports::css_colour(exports::part_colour(1)));
+    CHECK(colour(0) == exports::css_colour(exports::part_colours(motion.model)[0]));
+    const auto palest = [](const exports::Colour& c) { return *std::min_element(c.begin(), c.end()); };
+    for (int i = 0; i < 8; ++i) CHECK(palest(exports::part_colours(motion.model)[0]) > palest(exports::part_colour(i)));
+    for (const exports::Colour& c : {exports::nearest, exports::alarm}) {
+        CAPTURE(exports::css_colour(c));
+        CHECK(page_template().find(exports::css_colour(c)) != std::string_view::npos);
+    }
+}
+
+TEST_CASE("report: an exploration's has every design's numbers in the design's units, and the parts of the best ones") {
+    const DesignFolder folder;
+    const auto line = [](double height, const char* more) {
+        return "{\"key\": \"k\", \"kind\": \"evaluate\", \"seed\": 0, \"parameters\": {\"height\": " + std::to_string(height) +
+               ", \"width\": 0.02, \"place\": 0.003, \"density\": 1000, \"speed\": 0.6981}, " + more + "}\n";
+    };
+    const std::string head = R"({"fettle_explore": 1, "design": "x", "parameters": ["height", "width", "place", "density", "speed"])";
+    const std::string results =
+        line(0.008, R"("status": "infeasible", "objective": 2, "violation": 0.5, "constraints": {"mass cube": 0.002})") +
+        line(0.010, R"("status": "feasible", "objective": 3, "violation": 0, "constraints": {"mass cube": 0.0025})") + "{}\n" +
+        line(0.012, R"("status": "unusable", "reason": "parts intersect")") + "{\"status\": \"feas";
+    folder.write("runs/sweep.jsonl", head + ", \"file\": \"../small.design.json\"}\n" + results);
+    const auto made = run("report " + folder.file("runs/sweep.jsonl") + " --json");
+    CAPTURE(made.out);
+    REQUIRE(made.code == 0);
+    CHECK(made.json().at("report") == folder.file("runs/sweep.report.html"));
+    const Json data = data_of(contents(folder.file("runs/sweep.report.html")));
+    CHECK(data["kind"] == "explore");
+    const auto column = [&](const std::string& name, const std::string& group = "") {
+        for (const Json& each : data["columns"])
+            if (each["name"] == name && (group.empty() || each["group"] == group)) return each;
+        return Json();
+    };
+    const auto values = [&](const std::string& name, const std::string& group = "") {
+        return unpacked<double>(column(name, group)["values"], "f64");
+    };
+    REQUIRE(values("height").size() == 3);
+    CHECK(values("height")[2] == Approx(12));
+    CHECK(column("height")["unit"] == "mm");
+    CHECK(column("height")["lower"] == Approx(6));
+    CHECK(values("speed")[0] == Approx(40).epsilon(1e-3));
+    CHECK(column("speed")["unit"] == "deg/s");
+    CHECK(values("objective")[1] == 3);
+    CHECK(std::isnan(values("objective")[2]));
+    CHECK(values("mass cube", "constraint")[1] == Approx(2.5));  // g
+    CHECK(column("mass cube", "constraint")["upper"] == Approx(4));
+    CHECK(column("mass cube", "constraint")["better"] == 0);  // it has two bounds
+    CHECK(column("mass cube", "term")["better"] == -1);
+    CHECK(data["columns"].size() == 5 + 2 + 5 + 5);  // the clearance in two windows is two constraints
+    const Json& designs = data["designs"];
+    CHECK(designs[0]["met"] == false);
+    CHECK(designs[1]["met"] == true);
+    CHECK(designs[1]["view"] == 0);  // the best first
+    CHECK(designs[0]["view"] == 1);
+    CHECK(designs[2]["view"].is_null());
+    CHECK(designs[2]["reason"] == "parts intersect");
+    REQUIRE(data["views"].size() == 2);
+    CHECK(data["meshes"].size() == 4);  // table and wall once, two cubes
+    CHECK(data["views"][1]["bodies"][0]["mesh"] == data["views"][0]["bodies"][0]["mesh"]);
+    const auto height_of = [&](int view) {
+        const Json& mesh = data["meshes"][data["views"][view]["bodies"][1]["mesh"].get<size_t>()];
+        const auto x = unpacked<float>(mesh["vertices"], "f32");
+        float low = 1e9F, high = -1e9F;
+        for (size_t i = 2; i < x.size(); i += 3) low = std::min(low, x[i]), high = std::max(high, x[i]);
+        return high - low;
+    };
+    CHECK(height_of(0) == Approx(10));
+    CHECK(height_of(1) == Approx(8));
+    CHECK(data["notices"].dump().find("left out: 1") != std::string::npos);
+
+    // Without its design: the numbers alone, as the file has them, and told so.
+    folder.write("alone.jsonl", head + "}\n" + results);
+    REQUIRE(run("report " + folder.file("alone.jsonl") + " --out " + folder.file("a.html")).code == 0);
+    const Json alone = data_of(contents(folder.file("a.html")));
+    CHECK(alone["views"].empty());
+    CHECK(alone["columns"][0]["name"] == "height");
+    CHECK(unpacked<double>(alone["columns"][0]["values"], "f64")[0] == Approx(0.008));
+    CHECK(alone["notices"].dump().find("SI units") != std::string::npos);
+    folder.write("other.jsonl", "{\"fettle_history\": 1}\n");
+    CHECK(run("report " + folder.file("other.jsonl") + " --json").json().at("errors")[0].at("code") == "missing_key");
+}
+
 TEST_CASE("report: an optimisation's has the design before and after, and the forces") {
     const DesignFolder folder;
     const std::string out = folder.file("opt");
@@ -414,6 +529,51 @@ TEST_CASE("a run that cannot begin leaves nothing of an earlier one's motion to 
     for (const std::string& name : motion) CHECK_FALSE(std::filesystem::exists(out + "/" + name));
     REQUIRE(run("report " + out).code == 0);
     CHECK(data_of(contents(out + "/report.html"))["files"] == Json({"design.final.json", "result.json"}));
+}
+
+// Every member of a value, however deep (of lists the first), taken away or replaced by something else.
+void damage_each(Json& whole, Json& part, const std::function<void()>& look) {
+    const std::size_t members = part.is_object() ? part.size() : part.is_array() ? std::min<std::size_t>(part.size(), 1) : 0;
+    for (std::size_t k = 0; k < members; ++k) {
+        const auto member = std::next(part.begin(), static_cast<std::ptrdiff_t>(k));
+        damage_each(whole, *member, look);
+        const Json kept = *member;
+        for (const Json& other : {Json(), Json(7), Json("word"), Json::array(), Json::object()}) {
+            *member = other;
+            look();
+        }
+        *member = kept;
+        if (!part.is_object()) continue;
+        const std::string key = member.key();
+        Json without = part;
+        without.erase(key);
+        std::swap(part, without);
+        look();
+        std::swap(part, without);
+    }
+}
+
+TEST_CASE("report: of an answer that is damaged a report, or what is wrong with it", "[slow]") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json");
+    const std::string simulated = folder.file("sim"), judged = folder.file("fit"), tuned = folder.file("opt");
+    REQUIRE(run("simulate " + scene + " --steps 1 --no-report --out " + simulated).code == 0);
+    REQUIRE(run("clearance " + scene + " --minimum 1mm --no-report --out " + judged).code <= 2);
+    REQUIRE(run("optimise " + folder.design() + " --no-report --out " + tuned).code <= 2);
+    ReportOptions quick;
+    quick.should_stop = [] { return true; };
+    quick.out = "/dev/null";
+    int looks = 0, refused = 0;
+    for (const std::string& out : {simulated, judged, tuned}) {
+        Json answer = Json::parse(contents(out + "/result.json"));
+        damage_each(answer, answer, [&] {
+            ++looks;
+            folder.write(std::filesystem::path(out).filename().string() + "/result.json", answer.dump());
+            if (!write_report(out, quick)) ++refused;  // with its reason: what is thrown ends the test
+        });
+    }
+    CHECK(looks > 300);
+    CHECK(refused > 0);
 }
 
 }  // namespace fettle::design::report::report_data_test

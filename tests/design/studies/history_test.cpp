@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/history.hpp"
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -173,6 +177,40 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     const Result<History> broken = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
     REQUIRE_FALSE(broken);
     CHECK(broken.errors()[0].where.find("line 2") != std::string::npos);
+    // Headers that are JSON, but not one of ours.
+    const std::string rest = first.substr(first.find('\n'));
+    for (const char* header : {"null", "[]", "7", "{\"fettle_history\": null}", "{\"fettle_history\": \"1\"}", "{\"fettle_history\": 1}",
+                               "{\"fettle_history\": 1, \"design\": null}", "{\"fettle_history\": 1, \"design\": 5, \"parameters\": {}}"}) {
+        overwrite(folder.file(), header + rest);
+        CAPTURE(header);
+        CHECK_FALSE(History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume));
+    }
+}
+
+TEST_CASE("a history that cannot be written keeps what it has, and is whole once it can") {
+    const Folder folder;
+    Result<History> history = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::fresh);
+    REQUIRE(history);
+    struct rlimit limit {};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &limit) == 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    struct rlimit full = limit;
+    full.rlim_cur = std::filesystem::file_size(folder.file()) + 10;  // a part of the line fits
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &full) == 0);
+    history->append(rosenbrock(Vector2(0.1, 0.2)));
+    const Errors fault = history->unwritten();
+    history->append(rosenbrock(Vector2(0.3, 0.2)));
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    std::signal(SIGXFSZ, handler);
+    REQUIRE(fault.size() == 1);
+    CHECK(fault[0].code == ErrorCode::file_unwritable);
+    CHECK(fault[0].where == folder.file());
+    history->append(rosenbrock(Vector2(2, 2)));
+    CHECK(history->unwritten().empty());
+    *history = *History::open((folder.path / "elsewhere").string(), rosenbrock_header(), HistoryMode::fresh);  // lets go of the file
+    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    REQUIRE(again);
+    CHECK(again->replayed().size() == 3);
 }
 
 }  // namespace fettle::design::studies::history_test

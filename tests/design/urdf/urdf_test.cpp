@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // URDF in and out: kinematics by hand, what is refused, and a way there and back.
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -69,6 +71,75 @@ Mass mass_in_world(const core::scene::Scene& scene, std::size_t body) {
 Vector3 vector(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
 
 }  // namespace
+
+TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
+    const TemporaryFolder folder;
+    std::string bodies;
+    const std::vector<std::string> names{"a/b", "a_b", "A_B", "world", "..", "a_b_2"};
+    for (std::size_t i = 0; i < names.size(); ++i)
+        bodies += std::string(i ? ", " : "") + R"({"name": ")" + names[i] + R"(", "type": "static", "position": [)" +
+                  std::to_string(200 * i) + R"(, 0, 0], "shape": {"generator": "box", "dimensions": {"size_x": )" + std::to_string(i + 1) +
+                  "}}}";
+    const auto scene = core::scene::read_scene(
+        folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [)" + bodies + "]}"), reading::scene_read_options());
+    REQUIRE(scene);
+    const auto robot = robot_of_scene(*scene, core::model::build_model(*scene).value(), "a");
+    REQUIRE(robot);
+    std::set<std::string> files;
+    for (const auto& [name, contents] : robot->files) {
+        std::string lower = name;
+        for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        CHECK(files.insert(lower).second);
+        folder.write(name, contents);
+    }
+    CHECK(files.size() == names.size() + 1);
+    REQUIRE(robot->warnings.size() == 1);
+    CHECK(contains(robot->warnings.front(), "body \"world\": its link is called \"world_2\""));
+    const auto parsed = parse_urdf(robot->files.front().second, "a.urdf");
+    REQUIRE(parsed);
+    const auto back = scene_of_robot(*parsed, {folder.path.string(), {}, "b", false});
+    REQUIRE(back);
+    for (const auto& [name, contents] : back->files) folder.write(name, contents);
+    const auto again = core::scene::read_scene(folder.file("b.scene.json"), reading::scene_read_options());
+    REQUIRE(again);
+    REQUIRE(again->bodies.size() == names.size());
+    std::set<std::string> unique;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        CHECK(unique.insert(again->bodies[i].name).second);
+        const auto& x = again->bodies[i].mesh.vertices;
+        CHECK(x.row(0).maxCoeff() - x.row(0).minCoeff() == Approx(1e-3 * static_cast<double>(i + 1)));
+    }
+    const std::string link = "<visual><geometry><box size=\"1 1 1\"/></geometry></visual></link>";
+    const std::string joint = "<joint name=\"j\" type=\"fixed\"><parent link=\"a:b\"/><child link=\"";
+    const std::string two =
+        "<robot><link name=\"a:b\">" + link + "<link name=\"a,b\">" + link + "<link name=\"c\">" + link + joint + "a,b\"/></joint>";
+    const auto colliding = scene_of_robot(
+        parse_urdf(two + joint.substr(0, 13) + "k" + joint.substr(14) + "c\"/></joint></robot>", "x").value(), {"", {}, "c", true});
+    REQUIRE(colliding);
+    CHECK(scene_json(*colliding)["bodies"][1]["name"] == "a_b_2");
+    CHECK(scene_json(*colliding)["joints"][0]["b"] == "a_b_2");
+    const auto joints = parse_urdf(two + joint + "c\"/></joint></robot>", "x");
+    REQUIRE_FALSE(joints);
+    CHECK(contains(joints.errors().front().message, "two joints are called \"j\""));
+}
+
+TEST_CASE("URDF: a chain of any length is followed") {
+    std::string text = "<robot><link name=\"0\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual></link>\n";
+    constexpr int links = 50'000;
+    for (int i = 1; i < links; ++i) {
+        const std::string name = std::to_string(i);
+        text += "<link name=\"" + name + "\"/><joint name=\"" + name + "\" type=\"fixed\"><origin xyz=\"0.001 0 0\"/><parent link=\"" +
+                std::to_string(i - 1) + "\"/><child link=\"" + name + "\"/></joint>\n";
+    }
+    text +=
+        "<link name=\"end\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual></link><joint name=\"end\" type=\"fixed\"><parent "
+        "link=\"49999\"/><child link=\"end\"/></joint></robot>";
+    const auto robot = parse_urdf(text, "chain.urdf");
+    REQUIRE(robot);
+    const auto scene = scene_of_robot(*robot, {"", {}, "chain", true});
+    REQUIRE(scene);
+    CHECK(vector(scene_json(*scene)["bodies"][1]["position"]).x() == Approx(49999));
+}
 
 TEST_CASE("URDF: angles about fixed axes, there and back") {
     for (const Vector3& rpy :
@@ -263,6 +334,9 @@ TEST_CASE("URDF in: what is wrong is told") {
     CHECK(code("no xml") == ErrorCode::parse);
     CHECK(code("<robot name=\"r\"><link name=\"a\">" + box) == ErrorCode::parse);
     CHECK(code("<robot name=\"r\"><link/></robot>") == ErrorCode::missing_key);
+    CHECK(code("<robot name=\"r\"><link name=\"a\xff\"/></robot>") == ErrorCode::parse);
+    CHECK(code("<robot name=\"r\"><link name=\"a&#27;[2J\"/></robot>") == ErrorCode::out_of_range);
+    CHECK(code("<robot name=\"r\"><link name=\"a&#xD800;\"/></robot>") == ErrorCode::mesh_invalid);  // no character: it stays as it is
     CHECK(code(two("<joint name=\"j\" type=\"hinge\"><parent link=\"a\"/><child link=\"b\"/></joint>")) == ErrorCode::unsupported);
     CHECK(code(two("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>")) == ErrorCode::missing_key);
     CHECK(code(two("")) == ErrorCode::inconsistent);  // two roots

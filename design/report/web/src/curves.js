@@ -12,23 +12,30 @@ const asList = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : n
 export function marginPlot(parent, data, pick) {
   const { margins, pairs } = data;
   const lines = [], bands = [];
-  const ended = (values) => [...asList(values), values.length ? values[values.length - 1] : null];
+  const told = (values) => asList(values).map((v) => (v !== null && v < 1e-7 ? 0 : v));  // of what touches, bounds are not quite 0
+  const ended = (values) => [...told(values), values.length ? told(values)[values.length - 1] : null];
   margins.pairs.forEach((margin, k) => {
     const pair = pairs[margin.pair], upper = lines.length;
     lines.push({ name: `${pair.a} \u2013 ${pair.b}`, values: ended(margin.upper), style: "step", colour: k });
     lines.push({ name: "", values: ended(margin.lower), style: "step", colour: k, edge: true, with: upper });
     bands.push([upper, upper + 1]);
   });
-  const required = [...new Set(margins.pairs.map((m) => pairs[m.pair]).filter((pair) => pair.minimum > 0 && pair.status !== "contact").map((pair) => pair.minimum))];
-  for (const minimum of required)
-    lines.push({ name: `required ${withUnit(number(minimum), "mm")}`, values: margins.time.length ? asList(margins.time).map(() => minimum) : [], dash: true, muted: required.length > 0, silent: true });
-  const tops = most(lines.flatMap((line) => line.values)), positive = least(lines.flatMap((line) => line.values.filter((v) => v !== null)));
-  const log = positive > 0 && tops / positive > 40;
+  const required = [...new Set(margins.pairs.map((m) => pairs[m.pair]).filter((pair) => pair.minimum > 0 && pair.status !== "contact").map((pair) => pair.minimum))].sort((x, y) => x - y);
+  const values = lines.flatMap((line) => line.values.filter((v) => v !== null)), top = Math.max(most(values), ...required), floor = floorOf(values, required);
+  const all = { name: "All", yRange: () => [0, top * 1.08] }, log = { name: "Log", log: true, floor, yRange: () => [floor * 0.9, top * 1.3] };
+  const strictest = required[required.length - 1], near = { name: "Near the limit", yRange: () => [0, strictest * 3] };
+  const zooms = required.length && top > 4 * strictest ? [near, all, log] : [all, log];
   new Plot(parent, asList(margins.time), {
-    title: "Clearance over the motion", note: log ? "certified band, logarithmic" : "certified band: lower to upper bound", unit: "mm", quantity: "distance", x: { label: "time [s]", time: true },
-    lines, bands, log, yRange: log ? undefined : (u, low, high) => [Math.min(0, low), high * 1.08], onPick: pick, height: 260,
+    title: "Clearance over the motion", note: "certified band: lower to upper bound", unit: "mm", quantity: "distance", x: { label: "time [s]", time: true },
+    lines, bands, zooms, limits: required.map((minimum) => ({ value: minimum, name: `required ${withUnit(number(minimum), "mm")}` })), onPick: pick, height: 260,
     summary: margins.pairs.map((m) => `${pairs[m.pair].a} and ${pairs[m.pair].b}: at least ${withUnit(lowerBound(m.least), "mm")}`).join("; ") + ".",
   });
+}
+
+// The lowest value of a logarithmic axis: below what is required, and no lower than a ten thousandth of what there is; 0 is drawn there.
+function floorOf(values, required) {
+  const positive = least(values.filter((v) => v > 0)), top = most(values);
+  return Math.max(Math.min(positive, ...required.map((x) => 0.3 * x)), 1e-4 * top) || 1e-6;
 }
 
 function bestSoFar(history) {
@@ -51,7 +58,7 @@ function stages(history) {
 
 export function searchPlots(parent, data) {
   const { history } = data, xs = history.objective.map((_, i) => i + 1), x = { label: "evaluation" };
-  const stripes = stages(history), shaded = stripes.length > 1 ? "shaded: another model of contact" : undefined;
+  const stripes = stages(history), shaded = stripes.length > 1 ? "shaded: by turns wider contact, in which parts do not rattle, and the design as written" : undefined;
   const end = xs.length, span = (u, low, high) => [Math.min(low, 0.5), Math.max(high, end + 0.5)];
   new Plot(parent, xs, {
     title: "Objective", note: shaded, quantity: "objective", x, xRange: span, stripes,

@@ -2,22 +2,24 @@
 // Puts the report together: data into words, picture, tables and curves, and these to work with each other.
 import "./style.css";
 import { readData } from "./data.js";
+import { repaintCharts } from "./chart.js";
 import { announce, byId, element } from "./dom.js";
 import { forcePlots, marginPlot, searchPlots } from "./curves.js";
+import { showExploration } from "./explore.js";
 import { startMotion } from "./motion.js";
-import { repaintPlots, setPlotTime } from "./plots.js";
-import { costBars, pairTable, parameterTable, requirementTable, startTable } from "./tables.js";
+import { made as plots, repaintPlots, setPlotTime } from "./plots.js";
+import { costBars, interferenceTable, pairTable, parameterTable, requirementTable, startTable } from "./tables.js";
 import { startPrinting, startTheme } from "./theme.js";
 import * as words from "./words.js";
 
 function fillVerdict(data) {
   document.title = `${data.name} \u2013 fettle report`;
   byId("name").textContent = data.name;
-  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance" }[data.kind];
+  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance", explore: "exploration" }[data.kind];
   byId("asked").textContent = words.asked(data);
   const { tone, head, rest } = words.reached(data);
   byId("reached").append(element("strong", { class: `verdict-${tone}` }, head), ` ${rest}`);
-  byId("facts").append(...words.facts(data).map(([term, value, small]) => element("div", {}, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null))));
+  byId("facts").append(...words.facts(data).map(([term, value, small, tone]) => element("div", { class: tone }, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null))));
   byId("notices").append(...data.notices.map((text) => element("li", {}, text)));
   if (data.message && data.status !== "optimal" && data.status !== "ok") byId("notices").prepend(element("li", { class: "warn" }, data.message));
 }
@@ -59,6 +61,9 @@ function fillSections(data, motion) {
   if (data.requirements.length) {
     section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
   } else if (data.pairs.length) {
+    const shared = data.pairs.filter(words.isShared);
+    if (shared.length) section("Interferences", "Two parts share material. Depth: the least move that parts them. A row shows the deepest instant in the picture above.", interferenceTable(data, show));
+    if (shared.length === data.pairs.length) return;
     const shown = data.ranges ? " A row shows its worst position in the picture above." : " A row shows its narrowest gap in the picture above.";
     const intro = data.kind === "simulate" ? "The pairs that come nearest to each other, over the continuous path. Contact: near enough to push each other, without touching. A row shows its narrowest gap in the picture above." : `Worst first.${data.pairs.some((pair) => pair.status === "contact") ? " Contact: near enough to push each other, not judged." : ""}${shown}`;
     section("Clearances", data.pair_count > data.pairs.length ? `${intro} ${data.pair_count - data.pairs.length} more pairs are in result.json.` : intro, pairTable(data, show));
@@ -86,7 +91,7 @@ function fillSections(data, motion) {
   }
 }
 
-const data = readData();
+const data = { pairs: [], series: [], ...readData() };
 fillVerdict(data);
 let motion = null;
 if (data.views.length) {
@@ -98,15 +103,20 @@ if (data.views.length) {
   }
 } else {
   byId("motion").hidden = true;
+  byId("hero").classList.add("plain");
 }
-fillSections(data, motion);
+const exploration = data.kind === "explore" ? showExploration(data, section, motion) : fillSections(data, motion);
 fillFooter(data);
+const repaint = () => {
+  repaintPlots();
+  repaintCharts();
+};
 startTheme((dark) => {
   motion?.paint(dark);
-  repaintPlots();
+  repaint();
 });
-startPrinting(motion?.viewer, repaintPlots);
-motion?.seek(motion.start);
+startPrinting(motion?.viewer, repaint);
+motion?.open();
 announce("");
 performance.mark("fettle-ready");
-window.fettleReport = { data, motion };
+window.fettleReport = { data, motion, plots, exploration };

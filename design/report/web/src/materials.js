@@ -50,7 +50,7 @@ const fragment = /* glsl */ `
     vec3 n = normalize(gl_FrontFacing ? facing : -facing);
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.75))), 0.0);
     float fill = max(dot(n, normalize(vec3(0.7, -0.2, 0.45))), 0.0);
-    vec3 lit = color * (0.55 + 0.11 * n.y + 0.43 * key + 0.12 * fill);
+    vec3 lit = color * (0.66 + 0.09 * n.y + 0.33 * key + 0.10 * fill);
     gl_FragColor = vec4(mix(lit, faded, fade), 1.0);
   }`;
 

@@ -63,14 +63,17 @@ export class Mechanism {
     }
   }
 
-  // The box of the whole motion, from some of its instants.
+  // Outermost points of all parts over the motion, from some of its instants.
   reach() {
-    const all = new THREE.Box3(), count = Math.min(this.times.length, 24);
+    if (this.points) return this.points;
+    const count = Math.min(this.times.length, 24);
+    this.points = [];
     for (let n = 0; n < count; ++n) {
       this.setTime(this.times[Math.round((n * (this.times.length - 1)) / Math.max(1, count - 1))], 0);
-      for (const part of this.parts) all.union(part.solid.box.clone().applyMatrix4(part.group.matrix));
+      for (const part of this.parts)
+        if (n === 0 || part.poses.length > 7) this.points.push(...part.solid.outermost.map((point) => point.clone().applyMatrix4(part.group.matrix)));
     }
-    return all;
+    return this.points;
   }
 
   setSection(on) {

@@ -3,9 +3,10 @@
 import * as THREE from "three";
 
 import { indexAt } from "./data.js";
-import { announce, byId, element } from "./dom.js";
+import { announce, byId, element, reducedMotion } from "./dom.js";
 import { seconds, spaced, upperBound, withUnit } from "./numbers.js";
 import { Viewer } from "./viewer.js";
+import { depthWords, isShared } from "./words.js";
 
 const playIcon = "M4 2.2v11.6L13.5 8z", pauseIcon = "M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z";
 const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
@@ -34,6 +35,7 @@ class Motion {
     this.fillParts();
     this.fillSection();
     this.listen();
+    byId("overlap-key").hidden = !data.pairs.some(isShared);
     byId("canvas").setAttribute("aria-label", `${data.name}: ${data.views[0].bodies.map((body) => body.name).slice(0, 12).join(", ")}`);
   }
 
@@ -63,9 +65,17 @@ class Motion {
     const marks = this.data.pairs.map((pair, k) => ({ pair, k })).filter(({ pair, k }) => pair.motion && this.canShow(k));
     byId("ticks").append(...marks.map(({ pair, k }) => {
       const mark = element("span", { "data-pair": k });
-      mark.style.left = `${(100 * (pair.time - this.start)) / (this.end - this.start || 1)}%`;
+      mark.style.left = `${(100 * (this.instant(pair) - this.start)) / (this.end - this.start || 1)}%`;
       return mark;
     }));
+  }
+
+  // A report opens in motion, but for those who do not want any.
+  open() {
+    this.seek(this.start);
+    this.markWorst();
+    new IntersectionObserver(([entry]) => (this.seen = entry.isIntersecting)).observe(byId("viewport"));
+    if (!reducedMotion()) this.play();
   }
 
   play() {
@@ -77,7 +87,7 @@ class Motion {
     let last = null, between = 0, frames = 0;
     const frame = (now) => {
       if (!this.playing) return;
-      if (last !== null) {
+      if (last !== null && this.seen !== false) {
         // A machine that is slow at it gets plainer pictures while they move.
         between = frames++ === 0 ? now - last : 0.75 * between + 0.25 * (now - last);
         if (frames > 4 && between > 25) this.viewer.coarse = true;
@@ -124,7 +134,7 @@ class Motion {
   }
 
   fillCompare() {
-    if (this.data.views.length < 2) return;
+    if (!this.data.views.some((view) => view.name === "before")) return;
     const choices = ["after", "before", "side", "fade"];
     byId("compare").hidden = false;
     byId("compare").append(...choices.map((mode) => element("label", {},
@@ -139,11 +149,11 @@ class Motion {
     this.viewer.mode = mode;
     for (const input of byId("compare").querySelectorAll("input")) input.checked = input.value === mode;
     byId("fade-field").hidden = mode !== "fade";
-    byId("corner-left").hidden = byId("corner-right").hidden = mode !== "side";
+    byId("corner-left").hidden = byId("corner-right").hidden = byId("divider").hidden = mode !== "side";
     byId("corner-left").textContent = "before";
     byId("corner-right").textContent = "after";
     announce(`Shown: ${names[mode]}`);
-    this.viewer.draw();
+    this.viewer.refit();
   }
 
   fillParts() {
@@ -167,17 +177,26 @@ class Motion {
 
   paint(dark) {
     this.viewer.paint(dark);
-    this.viewer.colours.forEach((colour, i) => (this.swatches[i].style.background = colour));
+    this.viewer.bodies.forEach((body, i) => (this.swatches[i].style.background = body.colour));
   }
 
   fillSection() {
     this.side = 1;
-    byId("section").addEventListener("change", () => this.applySection());
-    byId("section-axis").addEventListener("change", () => this.applySection());
+    this.faces = true;  // the viewer, so that no part of what is kept hides the cut; until someone wants the other side
+    const again = () => {
+      this.faces = true;
+      this.applySection();
+    };
+    byId("section").addEventListener("change", again);
+    byId("section-axis").addEventListener("change", again);
     byId("section-at").addEventListener("input", () => this.applySection());
     byId("section-flip").addEventListener("click", () => {
+      this.faces = false;
       this.side = -this.side;
       this.applySection();
+    });
+    this.viewer.controls.addEventListener("change", () => {
+      if (byId("section").checked && this.faces && this.facingSide() !== this.side) this.applySection();
     });
     byId("section-axis").value = this.firstAxis();
     byId("explode").addEventListener("input", (event) => {
@@ -192,6 +211,17 @@ class Motion {
     return ["x", "y", "z"].reduce((least, axis) => (size[axis] < size[least] ? axis : least));
   }
 
+  sectionNormal() {
+    const axis = byId("section-axis").value;
+    return axis === "witness" ? this.gapNormal.clone() : new THREE.Vector3(Number(axis === "x"), Number(axis === "y"), Number(axis === "z"));
+  }
+
+  // Which half to take away for the cut to face the viewer.
+  facingSide() {
+    const { camera, controls } = this.viewer;
+    return camera.position.clone().sub(controls.target).dot(this.sectionNormal()) < 0 ? -1 : 1;
+  }
+
   applySection() {
     const on = byId("section").checked, axis = byId("section-axis").value;
     byId("section-fields").hidden = !on;
@@ -199,7 +229,8 @@ class Motion {
       this.viewer.setSection(null);
       return;
     }
-    const normal = axis === "witness" ? this.gapNormal.clone() : new THREE.Vector3(Number(axis === "x"), Number(axis === "y"), Number(axis === "z"));
+    const normal = this.sectionNormal();
+    if (this.faces) this.side = this.facingSide();
     const box = this.viewer.box, corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new THREE.Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).dot(normal));
     const low = Math.min(...corners), high = Math.max(...corners), share = Number(byId("section-at").value);
     // At the middle of its slider the section through a gap goes through the gap.
@@ -212,13 +243,45 @@ class Motion {
     return !!pair?.point_a && !!pair.point_b && (pair.time !== null || !!pair.poses);
   }
 
-  // The gap of a pair: its instant or its worst position, a section through it along its normal, seen from near.
+  // When a pair is shown: where it is nearest, of an interference where it is deepest.
+  instant(pair) {
+    return (isShared(pair) ? pair.depth?.time : null) ?? pair.time ?? this.time;
+  }
+
+  // Its two points, or twice the middle of what both bodies share; and for how long round its instant.
+  markOf(pair, near) {
+    const shared = isShared(pair), middle = shared ? pair.depth?.point : null;
+    const a = new THREE.Vector3(...(middle ?? pair.point_a)), b = new THREE.Vector3(...(middle ?? pair.point_b));
+    return { a, b, time: this.instant(pair), near, shared, label: shared ? `${pair.a} \u2013 ${pair.b}: ${depthWords(pair)}` : withUnit(upperBound(pair.upper), "mm") };
+  }
+
+  // Before anything is chosen: the worst pair, whatever hides it.
+  markWorst() {
+    const slack = (pair) => (pair.lower ?? Infinity) - (pair.minimum ?? 0);
+    const shown = this.data.pairs.filter((pair, k) => this.canShow(k) && !pair.poses);
+    const depth = (pair) => pair.depth?.upper ?? 0, deepest = shown.filter(isShared).sort((x, y) => depth(y) - depth(x))[0];
+    const worst = deepest ?? shown.reduce((least, pair) => (least === null || slack(pair) < slack(least) ? pair : least), null);
+    if (!worst) return;
+    const near = worst.motion ? Math.max(0.51 * (this.data.step || 0), 0.02 * (this.end - this.start)) : this.moves() ? 0.51 * (this.data.step || 0) : Infinity;
+    this.viewer.marked = this.markOf(worst, near);
+  }
+
+  // Of an exploration: a design by the name of its view; null: it has none.
+  showDesign(name, label) {
+    byId("canvas").hidden = byId("overlay").hidden = name === null;
+    byId("corner-left").hidden = false;
+    byId("corner-left").textContent = name === null ? `${label}: its parts are not in this page` : label;
+    if (name !== null) this.viewer.showOnly(name);
+  }
+
+  // The gap of a pair: its instant or its worst position, a section through it along its normal, seen from near. Of an interference what both
+  // bodies share.
   show(k) {
     const pair = this.data.pairs[k], { viewer } = this;
     this.pause();
     if (viewer.mode !== "after" && this.data.views.length > 1) this.setMode("after");
     byId("explode").value = viewer.exploded = 0;
-    const a = new THREE.Vector3(...pair.point_a), b = new THREE.Vector3(...pair.point_b), middle = a.clone().add(b).multiplyScalar(0.5);
+    const marked = this.markOf(pair, Math.max(1e-9, 0.51 * (this.data.step || 0))), { a, b } = marked, middle = a.clone().add(b).multiplyScalar(0.5);
     const along = b.clone().sub(a), gap = along.length();
     along.normalize();
     const home = viewer.homeDirection(), thin = new THREE.Vector3().setComponent("xyz".indexOf(this.firstAxis()), 1);
@@ -230,10 +293,8 @@ class Motion {
     const radius = viewer.box.getBoundingSphere(new THREE.Sphere()).radius;
     this.gapOffset = middle.dot(normal) + 0.003 * radius;  // nearest points often lie in a face, which is not to be the section's
     this.chosen = k;
-    const near = Math.max(1e-9, 0.51 * (this.data.step || 0));
-    const time = pair.time ?? this.time;
     viewer.held = pair.poses ?? null;
-    viewer.marked = { a, b, time, near, label: `${withUnit(upperBound(pair.upper), "mm")}` };
+    viewer.marked = marked;
     viewer.emphasise([pair.body_a, pair.body_b].every((i) => i >= 0) ? [pair.body_a, pair.body_b] : null);
     for (const i of [pair.body_a, pair.body_b]) viewer.hidden.delete(i);
     [...byId("parts").querySelectorAll("input")].forEach((box, i) => (box.checked = !viewer.hidden.has(i)));
@@ -242,13 +303,16 @@ class Motion {
     byId("section").checked = true;
     byId("section-at").value = 0.5;
     this.side = 1;
+    this.faces = false;  // it is about to fly there
     this.applySection();
-    const height = Math.max(gap * 9, radius * 0.16);
+    // Of an interference so much that the two parts are known again.
+    const height = marked.shared ? Math.min(2 * radius, Math.max(9 * (pair.depth?.upper ?? 0), 5 * Math.cbrt(pair.volume?.upper ?? 0), 0.35 * radius)) : Math.max(gap * 9, radius * 0.16);
     const tilt = this.gapNormal.clone().addScaledVector(new THREE.Vector3().crossVectors(viewer.up, this.gapNormal), 0.18).addScaledVector(viewer.up, 0.12).normalize();
     viewer.fly(middle, tilt, height / (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)));
-    this.seek(time);
+    this.seek(marked.time);
     this.highlight();
-    announce(`Shown: ${pair.a} and ${pair.b}, ${withUnit(upperBound(pair.upper), "mm")} apart ${pair.poses ? spaced(pair.note ?? "at the start") : `at ${seconds(time, this.data.step)}`}`);
+    const told = marked.shared ? `interference, ${depthWords(pair)}` : `${withUnit(upperBound(pair.upper), "mm")} apart`;
+    announce(`Shown: ${pair.a} and ${pair.b}, ${told} ${pair.poses ? spaced(pair.note ?? "at the start") : `at ${seconds(marked.time, this.data.step)}`}`);
     byId("viewport").scrollIntoView({ block: "nearest" });
   }
 
@@ -260,6 +324,7 @@ class Motion {
   whole() {
     this.chosen = null;
     this.viewer.marked = this.viewer.held = null;
+    this.markWorst();
     this.viewer.emphasise(null);
     byId("section-axis").querySelector('[value="witness"]').hidden = true;
     if (byId("section-axis").value === "witness") {

@@ -12,7 +12,7 @@ const colours = {
   dark: ["#8db0ff", "#e59a6c", "#82c39f", "#d9b95b", "#c99ad8", "#72c3d6", "#ee92a6", "#b7c27a", "#b3b9c6", "#cf9d7b"],
 };
 
-const made = [];
+export const made = [];
 
 const isDark = () => getComputedStyle(document.documentElement).colorScheme === "dark";
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -27,20 +27,32 @@ function axis(side, label, values) {
 
 export class Plot {
   // options: title, unit (of y), x: {label, time?}, lines: [{name, values, dash?, points?, style: "line" | "step"}], bands: [[upper, lower]],
-  // log?, height?, stripes?: [{from, to, name}], summary (for those who do not see it), onPick(x)
+  // log?, zooms?: [{name, log?, yRange?}] to choose among, the first is shown, limits?: [{value, name}]: beyond them it is wrong, height?, stripes?: [{from, to, name}], summary (for those who do not see it), onPick(x)
   constructor(parent, xs, options) {
     this.xs = xs;
     this.options = options;
     this.on = options.lines.map(() => true);
+    this.zoom = options.zooms?.[0] ?? options;
     const note = options.note ? element("span", {}, options.note) : null;
     this.holder = element("div", { class: "plot", role: "img", "aria-label": `${options.title}. ${options.summary ?? ""}` });
     this.legend = element("ul", { class: "legend", "aria-label": `Curves of: ${options.title}` });
-    this.figure = element("figure", {}, element("figcaption", {}, element("h3", {}, options.title), note), this.holder, this.legend);
+    this.figure = element("figure", {}, element("figcaption", {}, element("h3", {}, options.title), note, this.zoomButtons()), this.holder, this.legend);
     parent.append(this.figure);
     this.make();
     this.observer = new ResizeObserver(() => this.plot.setSize({ width: this.holder.clientWidth, height: this.height() }));
     this.observer.observe(this.holder);
     made.push(this);
+  }
+
+  zoomButtons() {
+    const { zooms } = this.options;
+    if (!zooms) return null;
+    const buttons = zooms.map((zoom) => element("button", { type: "button", "aria-pressed": String(zoom === this.zoom), onclick: () => {
+      this.zoom = zoom;
+      buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(zooms[k] === zoom)));
+      this.make();
+    } }, zoom.name));
+    return element("div", { class: "segments zooms", role: "group", "aria-label": `Scale of: ${this.options.title}` }, ...buttons);
   }
 
   height() {
@@ -62,17 +74,17 @@ export class Plot {
   }
 
   make() {
-    const { options } = this, tick = (plot, values) => values.map((v) => (v === null ? "" : number(v, 6)));
+    const { options, zoom } = this, tick = (plot, values) => values.map((v) => (v === null ? "" : number(v, 6)));
     this.plot?.destroy();
     const bands = (options.bands ?? []).map(([upper, lower]) => ({ series: [upper + 1, lower + 1], fill: `${this.colour(upper)}38` }));
     this.plot = new uPlot({
       width: this.holder.clientWidth || 480, height: this.height(), legend: { show: false },
       cursor: { points: { size: 6 }, drag: { x: true, y: false } },
-      scales: { x: { time: false, range: options.xRange }, y: options.log ? { distr: 3 } : { range: options.yRange } },
+      scales: { x: { time: false, range: options.xRange }, y: zoom.log ? { distr: 3, range: zoom.yRange } : { range: zoom.yRange } },
       axes: [axis(2, options.x.label, tick), axis(3, options.unit ? `${options.quantity ?? ""} [${options.unit}]`.trim() : options.quantity, tick)],
       series: [{}, ...options.lines.map((line, i) => this.series(line, i))], bands,
-      hooks: { drawClear: [(plot) => this.stripes(plot)], setCursor: [(plot) => this.tell(plot.cursor.idx)] },
-    }, [this.xs, ...options.lines.map((line) => line.values)], this.holder);
+      hooks: { drawClear: [(plot) => this.stripes(plot)], draw: [(plot) => this.limits(plot)], setCursor: [(plot) => this.tell(plot.cursor.idx)] },
+    }, [this.xs, ...options.lines.map((line) => (zoom.log ? line.values.map((v) => (v === null ? null : Math.max(v, zoom.floor))) : line.values))], this.holder);
     this.plot.over.addEventListener("click", () => {
       if (options.onPick && this.plot.cursor.left >= 0) options.onPick(this.plot.posToVal(this.plot.cursor.left, "x"));
     });
@@ -93,6 +105,33 @@ export class Plot {
       ctx.fillStyle = `${css("--muted")}14`;
       ctx.fillRect(left, bbox.top, Math.max(0, right - left), bbox.height);
     });
+    ctx.restore();
+  }
+
+  // What is required, named where it is drawn, and what violates it.
+  limits(plot) {
+    const { ctx, bbox } = plot, { limits } = this.options, ratio = devicePixelRatio || 1;
+    if (!limits?.length) return;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.font = `${12 * ratio}px ${css("--font")}`;
+    ctx.textAlign = "right";
+    for (const { value, name } of limits) {
+      const y = Math.round(plot.valToPos(value, "y", true));
+      ctx.fillStyle = `${css("--bad")}12`;
+      ctx.fillRect(bbox.left, y, bbox.width, bbox.top + bbox.height - y);
+      ctx.strokeStyle = ctx.fillStyle = css("--bad");
+      ctx.lineWidth = 1.25 * ratio;
+      ctx.setLineDash([6 * ratio, 4 * ratio]);
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+      ctx.stroke();
+      const above = y - bbox.top > 20 * ratio;
+      ctx.fillText(name, bbox.left + bbox.width - 6 * ratio, above ? y - 5 * ratio : y + 14 * ratio);
+    }
     ctx.restore();
   }
 

@@ -2,7 +2,24 @@
 // From a mesh to what is drawn: triangles with normals that follow shallow edges and break at sharp ones, and lines along the sharp ones.
 import * as THREE from "three";
 
-const sharp = Math.cos((28 * Math.PI) / 180);
+const sharp = Math.cos(0.6);  // as `fettle draw` has it: of a polygon of 12 sides no edge
+
+const directions = [];
+for (let x = -1; x <= 1; ++x) for (let y = -1; y <= 1; ++y) for (let z = -1; z <= 1; ++z) if (x || y || z) directions.push([x, y, z]);
+
+// Vertices that are farthest in some direction: enough to tell how large it looks.
+function outermost(vertices) {
+  const found = new Set();
+  for (const [x, y, z] of directions) {
+    let best = 0, most = -Infinity;
+    for (let v = 0; v < vertices.length; v += 3) {
+      const reach = x * vertices[v] + y * vertices[v + 1] + z * vertices[v + 2];
+      if (reach > most) [best, most] = [v, reach];
+    }
+    found.add(best);
+  }
+  return [...found].map((v) => new THREE.Vector3(vertices[v], vertices[v + 1], vertices[v + 2]));
+}
 
 function faceNormals(vertices, triangles) {
   const count = triangles.length / 3, normals = new Float32Array(3 * count);
@@ -80,13 +97,13 @@ function sharpEdges(vertices, triangles, faces) {
   return { ends, closed: seen.size === 0 };
 }
 
-// {vertices, triangles, edges: of no triangle} -> {solid, lines, points: geometries or null, closed, box}
+// {vertices, triangles, edges: of no triangle} -> {solid, lines, points: geometries or null, closed, box, outermost: vertices}
 export function solidOf(mesh) {
   const { vertices, triangles, edges } = mesh;
   const faces = faceNormals(vertices, triangles);
   const { ends, closed } = sharpEdges(vertices, triangles, faces);
   for (const v of edges ?? []) ends.push(vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]);
-  const made = { solid: null, lines: null, points: null, closed, box: new THREE.Box3().setFromArray(vertices) };
+  const made = { solid: null, lines: null, points: null, closed, box: new THREE.Box3().setFromArray(vertices), outermost: outermost(vertices) };
   if (triangles.length > 0) {
     const { positions, normals, index } = smoothed(vertices, triangles, faces);
     made.solid = new THREE.BufferGeometry();

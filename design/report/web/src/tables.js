@@ -2,18 +2,19 @@
 // Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
 import { element } from "./dom.js";
 import { lowerBound, number, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
-import { heldWords, spansMuch, startName } from "./words.js";
+import { depthRange, heldWords, isShared, spansMuch, startName, volumeRange } from "./words.js";
 
-function tableOf(label, headings, rows) {
+export function tableOf(label, headings, rows) {
   const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
   const table = element("table", { class: "stacked" }, element("caption", { class: "visually-hidden" }, label), element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows));
   return element("div", { class: "table-frame" }, table);
 }
 
-const cell = (label, type, ...children) => element("td", { "data-label": label, class: type + (children.length && children[0] !== "\u2013" ? "" : " nothing") }, ...children);
+export const cell = (label, type, ...children) => element("td", { "data-label": label, class: type + (children.length && children[0] !== "\u2013" ? "" : " nothing") }, ...children);
 
-const tones = { clear: "good", met: "good", optimal: "good", feasible: "open", infeasible: "bad", interrupted: "open", failed: "bad", start_failed: "bad", violated: "bad", "not met": "bad", "below threshold": "bad", clash: "bad", undecided: "open", contact: "plain" };
-const status = (word) => element("span", { class: `status ${tones[word] ?? "plain"}` }, word);
+const tones = { clear: "good", met: "good", optimal: "good", feasible: "open", infeasible: "bad", interrupted: "open", failed: "bad", start_failed: "bad", violated: "bad", "not met": "bad", "too close": "bad", interference: "bad", undecided: "open", touching: "open", contact: "plain" };
+const told = { clash: "interference", "below threshold": "too close" };
+export const status = (word) => element("span", { class: `status ${tones[told[word] ?? word] ?? "plain"}` }, told[word] ?? word);
 
 const pairName = (pair) => `${pair.a} \u2013 ${pair.b}`;
 
@@ -24,10 +25,25 @@ function opener(text, small, pair, show) {
   return element("td", {}, name, small ? element("small", {}, spaced(small)) : null);
 }
 
+// Of pairs that share material, the deepest first.
+export function interferenceTable(data, show) {
+  const shared = data.pairs.map((pair, k) => ({ pair, k })).filter(({ pair }) => isShared(pair)), timed = shared.some(({ pair }) => pair.motion);
+  const depth = ({ pair }) => pair.depth?.upper ?? 0;
+  const rows = shared.sort((x, y) => depth(y) - depth(x)).map(({ pair, k }) => element("tr", { "data-pair": k },
+    opener(pairName(pair), pair.note, k, show),
+    cell("Depth", "num", depthRange(pair) || "\u2013"),
+    cell("Volume", "num", volumeRange(pair) || "\u2013"),
+    timed ? cell("From", "num", pair.motion ? seconds(pair.time, data.step) : "\u2013") : null,
+    timed ? cell("Deepest", "num", pair.motion && pair.depth ? seconds(pair.depth.time, data.step) : "\u2013") : null,
+    cell("Verdict", "", status("interference"))));
+  return tableOf("Interferences of pairs", [["Pair"], ["Depth", "num"], ["Volume", "num"], ...(timed ? [["From", "num"], ["Deepest", "num"]] : []), ["Verdict"]], rows);
+}
+
 export function pairTable(data, show) {
-  const required = data.pairs.some((pair) => pair.minimum !== null), timed = data.pairs.some((pair) => pair.motion && pair.time !== null);
+  const apart = data.pairs.map((pair, k) => ({ pair, k })).filter(({ pair }) => !isShared(pair));
+  const required = apart.some(({ pair }) => pair.minimum !== null), timed = apart.some(({ pair }) => pair.motion && pair.time !== null);
   const headings = [["Pair"], ...(required ? [["Required", "num"]] : []), ["Proven at least", "num"], ["At most", "num"], ...(timed ? [["When", "num"]] : []), ["Verdict"]];
-  const rows = data.pairs.map((pair, k) => element("tr", { "data-pair": k },
+  const rows = apart.map(({ pair, k }) => element("tr", { "data-pair": k },
     opener(pairName(pair), pair.note, k, show),
     required ? cell("Required", "num", withUnit(number(pair.minimum), "mm")) : null,
     cell("Proven at least", "num", withUnit(lowerBound(pair.lower), "mm")),
@@ -37,7 +53,7 @@ export function pairTable(data, show) {
   return tableOf("Clearances of pairs", headings, rows);
 }
 
-function requiredWords(r) {
+export function requiredWords(r) {
   const low = r.required_lower !== null, high = r.required_upper !== null;
   if (low && high) return r.required_lower === r.required_upper ? withUnit(number(r.required_lower), r.unit) : `${number(r.required_lower)} to ${withUnit(number(r.required_upper), r.unit)}`;
   return low ? `\u2265 ${withUnit(number(r.required_lower), r.unit)}` : `\u2264 ${withUnit(number(r.required_upper), r.unit)}`;
@@ -45,19 +61,19 @@ function requiredWords(r) {
 
 export function requirementTable(data, show) {
   const rows = data.requirements.map((r) => {
-    const pair = r.pair === null ? null : data.pairs[r.pair];
+    const pair = r.pair === null ? null : data.pairs[r.pair], shared = pair !== null && isShared(pair);
     return element("tr", r.pair === null ? {} : { "data-pair": r.pair },
       opener(r.name, r.fault, r.pair, show),
       cell("Required", "num", requiredWords(r)),
-      cell("Proven at least", "num", withUnit(lowerBound(r.lower), r.unit)),
-      cell("At most", "num", withUnit(upperBound(r.upper), r.unit)),
+      cell("Proven at least", "num", shared ? "\u2013" : withUnit(lowerBound(r.lower), r.unit)),
+      cell("At most", "num", shared ? "\u2013" : withUnit(upperBound(r.upper), r.unit)),
       cell("When", "num", pair && pair.motion ? seconds(pair.time, data.step) : "\u2013"),
-      cell("Verdict", "", status(r.met ? "met" : "not met")));
+      cell("Verdict", "", status(r.met ? "met" : shared ? "interference" : "not met")));
   });
   return tableOf("Requirements", [["Requirement"], ["Required", "num"], ["Proven at least", "num"], ["At most", "num"], ["When", "num"], ["Verdict"]], rows);
 }
 
-function rangeDrawing(p) {
+export function rangeDrawing(p) {
   const place = (x) => 6 + 108 * Math.min(1, Math.max(0, (x - p.lower) / (p.upper - p.lower || 1)));
   const from = place(p.start), to = place(p.end);
   return element("svg", { class: "range", viewBox: "0 0 120 16", "aria-hidden": "true" },
@@ -120,7 +136,7 @@ export function costBars(data) {
   const top = Math.abs(costs[0]?.cost ?? 1);
   return element("ul", { class: "bars" }, ...costs.map((r) => {
     const bar = element("div", { class: "bar" });
-    bar.style.width = `${(100 * Math.abs(r.cost)) / top}%`;
+    bar.style.width = `${(100 * Math.abs(r.cost)) / top}%`;  // of tracks that are all equally long
     const told = `${withUnit(number(0.01), r.unit)} ${r.cost > 0 ? "less" : "more"} would gain ${number(0.01 * Math.abs(r.cost), 3)}`;
     return element("li", {}, element("span", {}, r.name), element("div", { class: "track", "aria-hidden": "true" }, bar), element("span", { class: "told" }, told));
   }));

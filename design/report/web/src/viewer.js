@@ -6,41 +6,17 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { element, reducedMotion } from "./dom.js";
 import { blendMaterial, partMaterials, shared } from "./materials.js";
 import { Mechanism } from "./mechanism.js";
+import { Overlaps } from "./overlap.js";
 import { solidOf } from "./solid.js";
 
-const palette = {
-  light: ["#cc9168", "#7f9f8a", "#c9aa5b", "#8489b3", "#6c9fb0", "#b97f8b", "#9aa566", "#a88a9f", "#87947f", "#a7815a"],
-  dark: ["#c98f66", "#86a892", "#c9ab62", "#9096c4", "#74a9bb", "#c28894", "#a2ad70", "#b094a8", "#93a08b", "#b08b65"],
-};
-// Of what is fixed: pale, the first as stone.
-const pale = {
-  light: ["#cbc6ba", "#b4c0cd", "#d0b6a8", "#b8c4a4", "#c6b7cc", "#dacd9f"],
-  dark: ["#8d8a84", "#75828f", "#91786b", "#7b8766", "#87788c", "#988b5e"],
-};
-
-// Number `index` of a list that begins anew, each time lighter.
-function shade(list, index) {
-  const round = Math.floor(index / list.length) % 3, space = THREE.LinearSRGBColorSpace;
-  const colour = new THREE.Color().setStyle(list[index % list.length], space);
-  return `#${colour.lerp(new THREE.Color(1, 1, 1), round / 3).getHexString(space)}`;
-}
-
-// What is fixed is pale beside what moves; where nothing moves, nothing is.
-function partColours(bodies, theme) {
-  const nothingMoves = bodies.every((body) => body.type === "static");
-  const counts = new Map();
-  return bodies.map((body) => {
-    const list = (body.type === "static" && !nothingMoves ? pale : palette)[theme], index = counts.get(list) ?? 0;
-    counts.set(list, index + 1);
-    return shade(list, index);
-  });
-}
+// Material that two parts share.
+const interfering = (data) => (data.pairs ?? []).filter((pair) => pair.finding === "clash" && pair.body_a >= 0 && pair.body_b >= 0).map((pair) => [pair.body_a, pair.body_b]);
 
 export class Viewer {
   constructor(canvas, overlay, data) {
     this.canvas = canvas;
     this.overlay = overlay;
-    this.mode = data.views.length > 1 ? "after" : data.views[0].name;
+    this.mode = data.views.some((view) => view.name === "after") ? "after" : data.views[0].name;
     this.time = 0;
     this.exploded = 0;
     this.share = 0.5;
@@ -60,11 +36,12 @@ export class Viewer {
     this.camera.up.copy(this.up);
     this.bodies = data.views[0].bodies;
     this.materials = this.bodies.map((_, i) => partMaterials(i));
-    const solids = data.meshes.map(solidOf);
-    this.mechanisms = new Map(data.views.map((view) => [view.name, new Mechanism(view, solids, this.materials)]));
-    for (const mechanism of this.mechanisms.values()) this.scene.add(mechanism.root);
-    this.box = new THREE.Box3();
-    for (const mechanism of this.mechanisms.values()) this.box.union(mechanism.reach());
+    this.meshes = data.meshes;
+    this.solids = [];
+    this.views = new Map(data.views.map((view) => [view.name, view]));
+    this.mechanisms = new Map();
+    this.overlaps = new Overlaps(this.renderer, shared.plane, interfering(data));
+    this.look(this.mode === "after" ? [...this.views.keys()] : [this.mode]);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.controls.rotateSpeed = 0.8;
@@ -74,9 +51,35 @@ export class Viewer {
     this.resize();
   }
 
+  // Made when it is first shown: of many designs few are.
+  mechanism(name) {
+    if (!this.mechanisms.has(name)) {
+      const view = this.views.get(name);
+      for (const { mesh } of view.bodies) this.solids[mesh] ??= solidOf(this.meshes[mesh]);
+      const made = new Mechanism(view, this.solids, this.materials);
+      made.setSection(!!this.section);
+      this.mechanisms.set(name, made);
+      this.scene.add(made.root);
+    }
+    return this.mechanisms.get(name);
+  }
+
+  // What the picture is to have room for: these over their whole motions.
+  look(names) {
+    this.points = names.flatMap((name) => this.mechanism(name).reach());
+    this.box = new THREE.Box3().setFromPoints(this.points);
+  }
+
+  // Another mechanism alone, with the camera where it is.
+  showOnly(name) {
+    this.mode = name;
+    this.look([name]);
+    this.refit();
+  }
+
   paint(dark) {
-    this.colours = partColours(this.bodies, dark ? "dark" : "light");
-    this.materials.forEach((each, i) => each.paint(this.colours[i], dark));
+    this.materials.forEach((each, i) => each.paint(this.bodies[i].colour, dark));
+    this.overlaps.paint(getComputedStyle(document.documentElement).getPropertyValue("--bad").trim());
     shared.faded.value.setStyle(dark ? "#22262c" : "#eae7e0", THREE.LinearSRGBColorSpace);
     this.draw();
   }
@@ -88,6 +91,15 @@ export class Viewer {
     this.renderer.setSize(width, height, false);
     this.targets?.forEach((target) => target?.dispose());
     this.targets = null;
+    this.refit();
+  }
+
+  // Another place to draw in, or two instead of one: what was seen whole is seen whole, what was near stays near.
+  refit() {
+    const offset = this.camera.position.clone().sub(this.controls.target), { distance } = this.fit(offset.clone().normalize());
+    if (this.fitted) this.camera.position.copy(this.controls.target).addScaledVector(offset, distance / this.fitted);
+    this.fitted = distance;
+    this.controls.update();
     this.draw();
   }
 
@@ -156,10 +168,15 @@ export class Viewer {
 
   drawOne(name) {
     for (const [other, mechanism] of this.mechanisms) mechanism.root.visible = other === name;
-    const mechanism = this.mechanisms.get(name);
+    const mechanism = this.mechanism(name);
+    mechanism.root.visible = true;
     mechanism.setTime(this.time, this.exploded, this.held);
     mechanism.parts.forEach((part, i) => (part.group.visible = !this.hidden.has(i)));
     this.renderer.render(this.scene, this.camera);
+    if (name !== "before" && this.exploded === 0) {
+      const target = this.renderer.getRenderTarget(), place = target ? target.viewport : this.renderer.getCurrentViewport(new THREE.Vector4());
+      this.overlaps.draw(target, place.z, place.w, mechanism, this.camera, this.section, this.box, this.coarse);
+    }
   }
 
   // In the left (0) or right (1) half.
@@ -199,16 +216,18 @@ export class Viewer {
     this.overlay.toggleAttribute("hidden", true);  // an empty layer over the picture costs time as well
     const showsAfter = this.mode !== "before";
     if (!this.marked || !showsAfter || this.exploded > 0 || Math.abs(this.time - this.marked.time) > this.marked.near) return;
+    const isShared = this.marked.shared;
     const p = this.project(this.marked.a, size), q = this.project(this.marked.b, size);
     if (!p.inside || !q.inside) return;
     this.overlay.toggleAttribute("hidden", false);
+    this.overlay.setAttribute("class", isShared ? "shared" : "");
     let dx = q.x - p.x, dy = q.y - p.y;
     const long = Math.hypot(dx, dy);
     if (long > 1e-6) [dx, dy] = [dx / long, dy / long];
     else [dx, dy] = [0, 1];
     const line = (type, x1, y1, x2, y2) => this.overlay.append(element("svg:line", { class: type, x1, y1, x2, y2 }));
-    line("gap", p.x, p.y, q.x, q.y);
-    for (const [end, sign] of [[p, -1], [q, 1]]) {  // as on a drawing, from outside towards the gap
+    if (!isShared) line("gap", p.x, p.y, q.x, q.y);
+    for (const [end, sign] of isShared ? [] : [[p, -1], [q, 1]]) {  // as on a drawing, from outside towards the gap
       const at = (n, m) => `${end.x + sign * dx * n - dy * m},${end.y + sign * dy * n + dx * m}`;
       this.overlay.append(element("svg:polyline", { class: "arrow", points: [at(34, 0), at(5, 0)].join(" ") }));
       this.overlay.append(element("svg:polyline", { class: "arrow", points: [at(11, 4), at(5, 0), at(11, -4)].join(" ") }));
@@ -217,6 +236,7 @@ export class Viewer {
     const mx = (p.x + q.x) / 2, my = (p.y + q.y) / 2, right = mx < size.x - 130;
     const tx = mx + (right ? 1 : -1) * (24 + Math.abs(dx) * 20), ty = my - 30;
     line("leader", mx, my, tx, ty);
+    if (isShared) this.overlay.append(element("svg:circle", { class: "dot", cx: mx, cy: my, r: 3 }));
     const text = element("svg:text", { x: tx + (right ? 5 : -5), y: ty + 4, "text-anchor": right ? "start" : "end" });
     text.textContent = this.marked.label;
     this.overlay.append(text);
@@ -253,28 +273,35 @@ export class Viewer {
   }
 
   view(which, atOnce = false) {
-    const centre = this.box.getCenter(new THREE.Vector3());
     let direction = this.homeDirection();
     if (which !== "home") {
       direction = new THREE.Vector3(which === "x" ? 1 : 0, which === "y" ? 1 : 0, which === "z" ? 1 : 0);
       // Not quite along the upright axis, round which the view turns.
       if (Math.abs(direction.dot(this.up)) > 0.99) direction.addScaledVector(this.across(), -0.001).normalize();
     }
-    this.fly(centre, direction, this.fit(centre, direction), atOnce);
+    const { target, distance } = this.fit(direction);
+    this.fitted = distance;
+    this.fly(target, direction, distance, atOnce);
   }
 
-  // How far away the camera must be to see all of the box, parts taken apart included.
-  fit(centre, direction) {
+  // Where to look at, and from how far, to see all of it from this direction, parts taken apart included.
+  fit(direction) {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     const tall = Math.tan((this.camera.fov * Math.PI) / 360), wide = (tall * width * (this.mode === "side" ? 0.5 : 1)) / Math.max(1, height);
     const right = new THREE.Vector3().crossVectors(this.up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
-    const { min, max } = this.box;
-    let distance = 0;
-    for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z).sub(centre).multiplyScalar(1 + this.exploded);
-      distance = Math.max(distance, corner.dot(direction) + Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(above)) / tall));
+    const target = this.box.getCenter(new THREE.Vector3()), flat = new THREE.Box2(), at = new THREE.Vector3();
+    for (const point of this.points) {
+      at.copy(point).sub(target);
+      flat.expandByPoint(new THREE.Vector2(at.dot(right), at.dot(above)));
     }
-    return distance * 1.06 || 1;
+    const middle = flat.getCenter(new THREE.Vector2());
+    target.addScaledVector(right, middle.x).addScaledVector(above, middle.y);
+    let distance = 0;
+    for (const point of this.points) {
+      at.copy(point).sub(target).multiplyScalar(1 + this.exploded);
+      distance = Math.max(distance, at.dot(direction) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
+    }
+    return { target, distance: distance * 1.12 || 1 };
   }
 
   // Moves the camera to look at `target` from `direction`, `distance` away.

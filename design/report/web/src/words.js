@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: MIT
 // The verdict in words: what was asked, what was reached, what of it is proven. What is not proven is not told as if it were.
-import { lowerBound, number, plural, withUnit } from "./numbers.js";
+import { Designs } from "./designs.js";
+import { lowerBound, number, plural, upperBound, withUnit } from "./numbers.js";
 
 const mm = (text) => withUnit(text, "mm");
+
+// Do its bodies share material?
+export const isShared = (pair) => pair.finding === "clash";
+
+// Two proven bounds of a number, as short as they allow.
+function range(bounds, unit) {
+  if (!bounds || bounds.upper === null) return "";
+  const low = lowerBound(bounds.lower, 3), high = upperBound(bounds.upper, 3);
+  if (!(bounds.lower > 0)) return `\u2264\u00a0${withUnit(high, unit)}`;
+  return low === high ? withUnit(low, unit) : `${low} to ${withUnit(high, unit)}`;
+}
+export const depthRange = (pair) => range(pair.depth, "mm");
+export const volumeRange = (pair) => range(pair.volume, "mm\u00b3");
+export const depthWords = (pair) => (depthRange(pair) ? `${depthRange(pair)} deep` : "depth not measured");
 
 const list = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`);
 const some = (names, most = 3) => (names.length <= most ? list(names) : `${names.slice(0, most).join(", ")} and ${names.length - most} more`);
 
 export function asked(data) {
   if (data.description) return data.description;
+  if (data.kind === "explore") return "An exploration of a design space.";
   if (data.kind === "optimise")
-    return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} are met and the objective is least.`;
+    return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} ${data.requirements.length === 1 ? "is" : "are"} met and the objective is least.`;
   if (data.ranges) return "Certified clearances over all positions of the joints within their limits, in every combination.";
   if (data.kind === "clearance") return data.motion ? "Certified clearances over the motion." : "Certified clearances as assembled.";
   return "A simulation of the mechanism.";
@@ -18,7 +34,25 @@ export function asked(data) {
 
 const unmet = (data) => data.requirements.filter((r) => !r.met).map((r) => r.name);
 
+// A gain beside the whole objective.
+const share = (gain, data) => (data.objective.end ? `${number((100 * gain) / Math.abs(data.objective.end), 2)}\u00a0% of it` : number(gain, 2));
+
+// Requirements that are met as simulated, and not with the play of the fits taken up: in which way, and what to do.
+function doubts(data) {
+  const doubted = data.requirements.filter((r) => r.in_doubt);
+  if (!doubted.length) return "";
+  const values = list(doubted.map((r) => `${r.name} is ${withUnit(number(r.play_taken_up, 5), r.unit)}`));
+  return ` In doubt: with the play of the fits taken up, parts in the middle of them, ${values}, which is not what is required. A real mechanism may do either: put into the scene what decides where its parts lie (gravity, friction, a spring), make the fits tighter, or allow for both.`;
+}
+
 function optimised(data) {
+  const told = verdict(data), doubt = doubts(data);
+  if (!doubt) return told;
+  return { tone: told.tone === "good" ? "open" : told.tone, head: told.head.replace(/\.$/, ", in doubt."), rest: told.rest + doubt };
+}
+
+function verdict(data) {
+  const shared = data.pairs.filter(isShared);
   const bad = unmet(data), o = data.optimality, count = data.requirements.length;
   const all = count === 1 ? "The requirement is met" : count === 2 ? "Both requirements are met, each" : `All ${count} requirements are met, each`;
   const proven = count ? `${all} by a proven bound.` : "There are no requirements.";
@@ -30,11 +64,11 @@ function optimised(data) {
   }
   switch (data.status) {
     case "optimal":
-      return { tone: "good", head: "Optimal.", rest: `${proven} The best step still in sight would gain ${number(o.predicted_gain, 2)} of the objective, less than the ${number(o.worth, 2)} that counts.` };
+      return { tone: "good", head: "Optimal.", rest: `${proven} No change near by promises to lower the objective by more than ${share(o.worth, data)}.` };
     case "feasible":
-      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven} ${data.budget_spent ? "The budget of evaluations ended the search." : o && !o.judged ? "Optimality could not be judged." : `A step is still in sight that would gain ${number(o?.predicted_gain, 2)} of the objective.`}` };
+      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven} ${data.budget_spent ? "The budget of evaluations ended the search." : o && !o.judged ? "Optimality could not be judged." : o ? `A change is still in sight that promises to lower the objective by ${share(o.predicted_gain, data)}.` : ""}` };
     case "infeasible":
-      return { tone: "bad", head: "Infeasible.", rest: `Not met: ${some(bad)}.` };
+      return { tone: "bad", head: shared.length ? `Infeasible, with ${plural(shared.length, "interference")}.` : "Infeasible.", rest: `Not met: ${some(bad)}.` };
     case "interrupted":
       return { tone: "open", head: "Interrupted.", rest: `This is the best design so far${bad.length ? `; not met: ${some(bad)}` : ""}. Nothing is said of optimality.` };
     default:
@@ -61,35 +95,63 @@ function cleared(data) {
   const pairs = data.pairs, required = pairs.filter((p) => p.minimum !== null), where = data.ranges ? "over all positions of the joints" : data.motion ? "over the whole motion" : "as assembled";
   const of = (status) => pairs.filter((p) => p.status === status);
   const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
+  const shared = pairs.filter(isShared), close = of("violated").filter((p) => !isShared(p));
   const total = data.pair_count ?? pairs.length;
-  const pushing = of("contact").length, judged = total - pushing;
-  const others = pushing ? ` The bodies of ${plural(pushing, "pair")} push each other: ${pushing === 1 ? "it is" : "they are"} not judged.` : "";
+  const touching = of("contact").filter((p) => p.finding === "touching").length;
+  const pushing = of("contact").length - touching, judged = total - pushing - touching;
+  const others = (touching ? ` ${plural(touching, "pair touches", "pairs touch")}, as is allowed.` : "")
+    + (pushing ? ` The bodies of ${plural(pushing, "pair")} push each other: ${pushing === 1 ? "it is" : "they are"} not judged.` : "");
   switch (data.status) {
     case "clear":
       return required.length
         ? { tone: "good", head: "Clear, and proven.", rest: `${plural(judged, "pair keeps", "pairs keep")} the required clearance ${where}.${others}` }
         : { tone: "good", head: "No clash, proven.", rest: `The distances of ${plural(total, "pair")} are bounded ${where}; no minimum was asked for.` };
     case "violated":
-      return { tone: "bad", head: "Violated.", rest: `Too close ${where}: ${names(of("violated"))}.` };
+      if (shared.length) {
+        const deep = some(shared.map((p) => `${p.a} and ${p.b}${depthRange(p) ? ` (${depthWords(p)})` : ""}`));
+        return { tone: "bad", head: `${plural(shared.length, "interference")} ${where}.`, rest: `${shared.length === 1 ? "Two parts share" : "Parts share"} material: ${deep}.${close.length ? ` Too close: ${names(close)}.` : ""}` };
+      }
+      return { tone: "bad", head: "Too close.", rest: `Nearer than required ${where}: ${names(close)}.` };
     default:
       return { tone: "open", head: "Undecided.", rest: of("undecided").length ? `Not settled ${where}: ${names(of("undecided"))}.` : "Nothing was judged, or not to the end." };
   }
 }
 
+function explored(data) {
+  const met = data.designs.filter((design) => design.met).length, all = data.designs.length;
+  const without = data.designs.filter((design) => ["unusable", "failed", "lost"].includes(design.status)).length;
+  const rest = `${plural(all, "design")} of ${plural(data.columns.filter((c) => c.group === "parameter").length, "parameter")}.${without ? ` ${plural(without, "design has", "designs have")} no numbers: they cannot be built or simulated.` : ""}`;
+  if (!met) return { tone: "bad", head: "No design meets every requirement.", rest };
+  return { tone: "good", head: `${plural(met, "design meets", "designs meet")} every requirement, proven.`, rest };
+}
+
+function exploredFacts(data) {
+  const designs = new Designs(data), [best] = designs.bestFirst(), objective = designs.of("objective")[0].column;
+  const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "by proven bounds"]];
+  if (best !== undefined) rows.push(["Least objective", number(objective.values[best]), data.designs[best].met ? "of those that meet everything" : "of the one that is nearest to it"]);
+  return rows;
+}
+
 // {tone: "good" | "open" | "bad", head, rest}
 export function reached(data) {
-  return { optimise: optimised, simulate: simulated, clearance: cleared }[data.kind](data);
+  return { optimise: optimised, simulate: simulated, clearance: cleared, explore: explored }[data.kind](data);
 }
 
 // [term, value, small print]
 export function facts(data) {
+  if (data.kind === "explore") return exploredFacts(data);
   const rows = [];
   if (data.kind === "optimise" && data.objective.end !== null) {
     rows.push(["Objective", number(data.objective.end), data.objective.start !== null ? `from ${number(data.objective.start)} at the start` : "the start could not be evaluated"]);
     rows.push(["Requirements met", `${data.requirements.filter((r) => r.met).length} of ${data.requirements.length}`, "by proven bounds"]);
   }
-  const least = data.kind === "simulate" ? data.least : Math.min(...data.pairs.map((p) => p.lower ?? Infinity));
-  if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : "proven"]);
+  const shared = data.pairs.filter(isShared), apart = data.pairs.filter((p) => !isShared(p));
+  if (shared.length) {
+    const deepest = shared.reduce((most, p) => ((p.depth?.upper ?? 0) > (most.depth?.upper ?? 0) ? p : most));
+    rows.push(["Interferences", String(shared.length), deepest.depth ? `the deepest ${depthRange(deepest)}` : "depth not measured", "bad"]);
+  }
+  const least = data.kind === "simulate" ? data.least : Math.min(...apart.map((p) => p.lower ?? Infinity));
+  if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : shared.length ? "of the other pairs, proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
   if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints\u2019 ranges" : data.motion ? "over the motion" : "as assembled"]);
@@ -108,6 +170,7 @@ export const fileWords = {
 
 // What is proven, and what is not.
 export function provenWords(data) {
+  if (data.kind === "explore") return "Proven: that a design meets its requirements is judged by certified bounds. Values in the curves are what was measured; the parts are shown at the start of their motion.";
   const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
   return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm.`;
 }

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+/// What an open mesh bounds once its openings have lids: each is closed by a fan to the middle of its edge, as for its mass
+/// (mass_moments.hpp). A guess at what was meant, and so never a proof that something is inside; but what stays outside of it, and does
+/// not come through a lid, is not inside of what was meant to be closed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fettle/core/geometry/mesh.hpp"
+
+namespace fettle::core::geometry {
+
+struct Closure {
+    Matrix3X vertices;                ///< the mesh's, then the middles of its openings [m]
+    std::vector<Triangle> triangles;  ///< the mesh's, then the lids; without boundary (point_in_solid.hpp)
+    std::size_t first_lid = 0;        ///< where the lids begin
+    /// No point of a lid is farther from the edge of its opening, and so from the mesh's surface [m].
+    double reach = 0;
+};
+
+/// Nothing for a mesh without boundary or without triangles, nor for one that bounds next to no volume with its lids: a flat sheet.
+std::optional<Closure> closure_of(const Mesh& mesh);
+
+}  // namespace fettle::core::geometry

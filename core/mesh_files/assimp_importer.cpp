@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// A program of its own, which the library carries (import_process.cpp): reads a mesh file by assimp and writes what is in it to stdout, as
+// import_format.hpp says. It may crash, loop and run out of memory with whatever a file makes of assimp; its parent only sees that nothing
+// came. Nothing of fettle's libraries is in it.
+//
+//     mesh_importer FILE SECONDS BYTES PARENT      the limits of processor time and of memory, and the process that waits for it
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/scene.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "fettle/core/mesh_files/import_format.hpp"
+
+namespace fettle::core::mesh_files {
+namespace {
+
+/// Row after row, in double precision: a chain of nodes is multiplied without further rounding to float.
+struct Placement {
+    double linear[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double shift[3] = {0, 0, 0};
+
+    Placement of(const aiMatrix4x4& inner) const {
+        Placement out;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                out.linear[i][j] = 0;
+                for (int k = 0; k < 3; ++k) out.linear[i][j] += linear[i][k] * inner[static_cast<unsigned>(k)][j];
+            }
+            out.shift[i] = shift[i];
+            for (int k = 0; k < 3; ++k) out.shift[i] += linear[i][k] * inner[static_cast<unsigned>(k)][3];
+        }
+        return out;
+    }
+    bool mirrors() const {
+        const auto minor = [&](int a, int b) { return linear[1][a] * linear[2][b] - linear[1][b] * linear[2][a]; };
+        return linear[0][0] * minor(1, 2) - linear[0][1] * minor(0, 2) + linear[0][2] * minor(0, 1) < 0;
+    }
+};
+
+struct Flat {
+    std::vector<double> coordinates;
+    std::vector<std::int32_t> corners, polygon_ends, polygon_names, edges;
+    std::vector<std::string> names;
+};
+
+struct TooMuch {};
+
+void append_mesh(const aiMesh& from, const Placement& placement, Flat& to) {
+    const std::size_t first = to.coordinates.size() / 3;
+    for (unsigned i = 0; i < from.mNumVertices; ++i) {
+        const aiVector3D& x = from.mVertices[i];
+        for (int k = 0; k < 3; ++k)
+            to.coordinates.push_back(placement.linear[k][0] * x.x + placement.linear[k][1] * x.y + placement.linear[k][2] * x.z +
+                                     placement.shift[k]);
+    }
+    if (to.coordinates.size() / 3 > INT32_MAX) throw TooMuch();
+    const auto index = [&](unsigned corner) { return static_cast<std::int32_t>(first + corner); };
+    const bool mirrored = placement.mirrors();  // then it stays a solid with its polygons turned
+    for (unsigned f = 0; f < from.mNumFaces; ++f) {
+        const aiFace& face = from.mFaces[f];
+        // A vertex beyond the mesh's own would be another mesh's: the parent is to see it as beyond all.
+        for (unsigned k = 0; k < face.mNumIndices; ++k)
+            if (face.mIndices[k] >= from.mNumVertices) throw std::string("a face names a vertex that is not there");
+        if (face.mNumIndices == 2) to.edges.insert(to.edges.end(), {index(face.mIndices[0]), index(face.mIndices[1])});
+        if (face.mNumIndices < 3) continue;
+        for (unsigned k = 0; k < face.mNumIndices; ++k) to.corners.push_back(index(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]));
+        if (to.corners.size() > INT32_MAX) throw TooMuch();
+        to.polygon_ends.push_back(static_cast<std::int32_t>(to.corners.size()));
+        to.polygon_names.push_back(static_cast<std::int32_t>(to.names.size()) - 1);
+    }
+}
+
+/// The node's name, else the mesh's.
+std::string name_of(const aiNode& node, const aiMesh& mesh) {
+    return node.mName.length > 0 ? std::string(node.mName.data, node.mName.length) : std::string(mesh.mName.data, mesh.mName.length);
+}
+
+void append_node(const aiScene& scene, const aiNode& node, const Placement& around, Flat& to) {
+    const Placement placement = around.of(node.mTransformation);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        if (node.mMeshes[i] >= scene.mNumMeshes) throw std::string("a node names a mesh that is not there");
+        const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+        to.names.push_back(name_of(node, mesh));
+        append_mesh(mesh, placement, to);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(scene, *node.mChildren[i], placement, to);
+}
+
+/// What assimp has turned on the way in is turned back: of 3DS, whose z is up, it makes y.
+Placement axes_of_the_file(const aiNode& root) {
+    Placement out;
+    if (std::string(root.mName.data, root.mName.length) == "<3DSRoot>") {
+        out.linear[1][1] = out.linear[2][2] = 0;
+        out.linear[1][2] = -1;
+        out.linear[2][1] = 1;
+    }
+    return out;
+}
+
+const aiScene* imported(const char* path) {
+    aiPropertyStore* properties = aiCreatePropertyStore();
+    // Axes stay those of the file, in every format.
+    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
+    // Polygons are cut into triangles by the reader, exactly; positions are not touched.
+    return aiImportFileExWithProperties(path, 0, nullptr, properties);
+}
+
+bool write_all(const void* data, std::size_t size) {
+    const char* at = static_cast<const char*>(data);
+    while (size > 0) {
+        const ssize_t written = ::write(STDOUT_FILENO, at, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return false;
+        at += written;
+        size -= static_cast<std::size_t>(written);
+    }
+    return true;
+}
+
+template <class Value>
+bool write_list(const std::vector<Value>& values) {
+    return write_all(values.data(), values.size() * sizeof(Value));
+}
+
+int write_failure(const std::string& reason, int code) {
+    ImportHeader header;
+    header.mark = import_is_failure;
+    write_all(&header, sizeof header);
+    write_all(reason.data(), reason.size());
+    return code;
+}
+
+int write_mesh(const Flat& mesh) {
+    const ImportHeader header{import_is_mesh,           mesh.coordinates.size() / 3, mesh.corners.size(),
+                              mesh.polygon_ends.size(), mesh.edges.size() / 2,       mesh.names.size()};
+    bool good = write_all(&header, sizeof header) && write_list(mesh.coordinates) && write_list(mesh.corners) &&
+                write_list(mesh.polygon_ends) && write_list(mesh.polygon_names) && write_list(mesh.edges);
+    for (const std::string& name : mesh.names) {
+        const auto length = static_cast<std::uint32_t>(name.size());
+        good = good && write_all(&length, sizeof length) && write_all(name.data(), name.size());
+    }
+    return good && write_all(&import_end, sizeof import_end) ? import_written : import_failed;
+}
+
+void limit(__rlimit_resource_t what, rlim_t most, rlim_t last = 0) {
+    const rlimit limits{most, std::max(most, last)};
+    ::setrlimit(what, &limits);
+}
+
+int import(const char* path) {
+    try {
+        const aiScene* scene = imported(path);
+        if (scene == nullptr || scene->mRootNode == nullptr) {
+            const std::string reason = aiGetErrorString();
+            return write_failure(reason, reason == "std::bad_alloc" ? import_out_of_memory : import_failed);
+        }
+        Flat mesh;
+        append_node(*scene, *scene->mRootNode, axes_of_the_file(*scene->mRootNode), mesh);
+        return write_mesh(mesh);  // and no more: what assimp holds goes with the process
+    } catch (const std::string& fault) {
+        return write_failure(fault, import_failed);
+    } catch (const TooMuch&) {
+        return write_failure("it has more than 2147483647 vertices or corners", import_failed);
+    } catch (const std::bad_alloc&) {
+        return write_failure("", import_out_of_memory);
+    }
+}
+
+}  // namespace
+}  // namespace fettle::core::mesh_files
+
+int main(int count, char** arguments) {
+    using namespace fettle::core::mesh_files;
+    if (count != 5) return import_misused;
+    // It dies with its parent, at once, however that ends.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != static_cast<pid_t>(std::atol(arguments[4]))) return import_misused;
+    const rlim_t seconds = std::strtoull(arguments[2], nullptr, 10);
+    limit(RLIMIT_CPU, seconds, seconds + 1);  // SIGXCPU tells why
+    limit(RLIMIT_AS, std::strtoull(arguments[3], nullptr, 10));
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_FSIZE, 0);  // it reads
+    ::_exit(import(arguments[1]));
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// Runs assimp_importer.cpp on a mesh file. assimp reads dozens of formats, and a hostile or damaged file can make it crash, abort, loop or
+/// ask for all memory; so it never runs in this process. The importer is a small program that the library carries within itself, as bytes:
+/// it has no place that an installation, a wheel or a program that links the library statically could get wrong. It is started from an
+/// anonymous file in memory by posix_spawn, which between fork and exec runs nothing of ours: other threads may hold any lock.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace fettle::core::mesh_files {
+
+struct ImportLimits {
+    unsigned seconds = 0;       ///< of processor time; ten times as long may pass by the clock
+    std::uint64_t memory = 0;   ///< of the process [bytes]
+    std::uint64_t largest = 0;  ///< of what it writes [bytes]
+};
+
+/// How an import ended, and what came of it.
+struct ImportOutcome {
+    enum class End { exited, killed, out_of_time, too_large, not_started } end = End::not_started;
+    int code = 0;         ///< the exit code; the signal that killed it; errno of what could not be started
+    std::string written;  ///< as import_format.hpp says; exited alone
+};
+
+/// Safe from any thread. Does not throw but for want of memory.
+ImportOutcome run_importer(const std::string& path, const ImportLimits& limits);
+
+}  // namespace fettle::core::mesh_files

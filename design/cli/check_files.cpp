@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/cli/check_files.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/cli/output_folder.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+bool is_finding(const Check& check) { return check.outcome != CheckOutcome::passed; }
+
+const char* word(CheckOutcome outcome) {
+    switch (outcome) {
+        case CheckOutcome::passed:
+            return "passed";
+        case CheckOutcome::remarked:
+            return "passed, with a remark";
+        case CheckOutcome::failed:
+            return "failed";
+        case CheckOutcome::undecided:
+            return "undecided";
+        case CheckOutcome::fault:
+            break;
+    }
+    return "could not be checked";
+}
+
+long count(const Checks& checks, CheckOutcome outcome) {
+    return std::count_if(checks.list.begin(), checks.list.end(), [&](const Check& check) { return check.outcome == outcome; });
+}
+
+// "below threshold" -> "below-threshold": identifiers have no spaces.
+std::string rule_id(const std::string& rule) {
+    std::string id = rule;
+    std::replace(id.begin(), id.end(), ' ', '-');
+    return id;
+}
+
+std::string attribute(const char* name, const std::string& value) {
+    return std::string(" ") + name + "=\"" + core::base::xml_text(value) + "\"";
+}
+
+// From the working directory, with the characters that RFC 3986 lets stand in a path.
+std::string uri_of(const std::string& file) {
+    const fs::path near = fs::absolute(file).lexically_relative(fs::current_path());
+    const bool below = !near.empty() && *near.begin() != "..";
+    std::string uri = below ? "" : "file://";
+    for (const char c : (below ? near : fs::absolute(file).lexically_normal()).generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool kept =
+            byte < 0x80 && (std::isalnum(byte) != 0 || std::string_view("-._~/!$&'()*+,;=:@").find(c) != std::string_view::npos);
+        char escaped[4];
+        std::snprintf(escaped, sizeof escaped, "%%%02X", byte);
+        uri += kept ? std::string(1, c) : std::string(escaped);
+    }
+    return uri;
+}
+
+const char* level(CheckOutcome outcome) {
+    if (outcome == CheckOutcome::remarked) return "note";
+    return outcome == CheckOutcome::undecided ? "warning" : "error";
+}
+
+Json result_of(const Check& check) {
+    Json result{{"ruleId", rule_id(check.rule)}, {"kind", "fail"}, {"level", level(check.outcome)}};
+    result["message"] = {{"text", check.name + ": " + check.message}};
+    if (!check.file.empty())
+        result["locations"] = Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(check.file)}}}}}}});
+    result["partialFingerprints"] = {{"check/v1", rule_id(check.rule) + ":" + check.name}};  // the same finding in the next run
+    return result;
+}
+
+// In a cell of a table no line ends, no cell begins, and nothing is taken for HTML or for emphasis.
+std::string cell(const std::string& text) {
+    std::string out;
+    for (const char c : core::base::shown_on_one_line(text)) {
+        if (c == '<') {
+            out += "&lt;";
+        } else if (c == '&') {
+            out += "&amp;";
+        } else {
+            if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) out += '\\';
+            out += c;
+        }
+    }
+    return out;
+}
+
+// The escapes of GitHub's workflow commands.
+std::string escaped(const std::string& text, bool is_property) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '%') {
+            out += "%25";
+        } else if (c == '\r') {
+            out += "%0D";
+        } else if (c == '\n') {
+            out += "%0A";
+        } else if (is_property && c == ':') {
+            out += "%3A";
+        } else if (is_property && c == ',') {
+            out += "%2C";
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+bool is_job_summary(const std::string& file) {
+    const char* summary = std::getenv("GITHUB_STEP_SUMMARY");
+    std::error_code ignored;
+    return summary != nullptr && fs::equivalent(file, summary, ignored);
+}
+
+}  // namespace
+
+std::string junit_xml(const Checks& checks) {
+    const std::string numbers =
+        attribute("tests", std::to_string(checks.list.size())) +
+        attribute("failures", std::to_string(count(checks, CheckOutcome::failed) + count(checks, CheckOutcome::undecided))) +
+        attribute("errors", std::to_string(count(checks, CheckOutcome::fault)));
+    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fettle\"" + numbers + ">\n  <testsuite" +
+                      attribute("name", "fettle " + checks.command) + numbers + attribute("skipped", "0") + ">\n";
+    for (const Check& check : checks.list) {
+        xml += "    <testcase" + attribute("classname", check.file.empty() ? "fettle " + checks.command : check.file) +
+               attribute("name", check.name);
+        if (check.outcome == CheckOutcome::passed && check.message.empty()) {
+            xml += "/>\n";
+            continue;
+        }
+        const bool passed = check.outcome == CheckOutcome::passed || check.outcome == CheckOutcome::remarked;
+        const std::string element = check.outcome == CheckOutcome::fault ? "error" : "failure";
+        xml += passed ? ">\n      <system-out>" + core::base::xml_text(check.message) + "</system-out>\n"
+                      : ">\n      <" + element + attribute("type", check.rule) + attribute("message", check.message) + "/>\n";
+        xml += "    </testcase>\n";
+    }
+    return xml + "  </testsuite>\n</testsuites>\n";
+}
+
+std::string sarif_json(const Checks& checks) {
+    Json rules = Json::array(), results = Json::array();
+    std::map<std::string, bool> known;
+    for (const Check& check : checks.list) {
+        if (!is_finding(check)) continue;
+        if (std::exchange(known[rule_id(check.rule)], true) == false)
+            rules.push_back({{"id", rule_id(check.rule)}, {"shortDescription", {{"text", check.rule}}}});
+        results.push_back(result_of(check));
+    }
+    const Json driver{{"name", "fettle"}, {"version", core::base::version()}, {"rules", rules}};
+    const bool done = checks.verdict != CheckOutcome::fault;
+    const Json invocation{{"executionSuccessful", done}, {"exitCode", checks.exit_code}};
+    const Json run{{"tool", {{"driver", driver}}}, {"invocations", Json::array({invocation})}, {"results", results}};
+    const Json log{{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"}, {"runs", Json::array({run})}};
+    return log.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string markdown_text(const Checks& checks) {
+    std::string text = "### fettle " + checks.command + ": " + word(checks.verdict) + "\n\n";
+    for (const CheckOutcome outcome :
+         {CheckOutcome::fault, CheckOutcome::failed, CheckOutcome::undecided, CheckOutcome::remarked, CheckOutcome::passed})
+        if (const long n = count(checks, outcome); n > 0) text += std::to_string(n) + " " + word(outcome) + ", ";
+    if (checks.list.empty()) return text;
+    text.replace(text.size() - 2, 2, "\n\n| | what | found |\n|---|---|---|\n");
+    for (const Check& check : checks.list)
+        text += std::string("| ") + word(check.outcome) + " | " + cell(check.name) + " | " + cell(check.message) + " |\n";
+    return text + "\n";
+}
+
+std::string annotation_lines(const Checks& checks) {
+    std::string text;
+    for (const Check& check : checks.list) {
+        if (!is_finding(check)) continue;
+        const std::string kind = check.outcome == CheckOutcome::remarked    ? "notice"
+                                 : check.outcome == CheckOutcome::undecided ? "warning"
+                                                                            : "error";
+        text += "::" + kind + " " + (check.file.empty() ? "" : "file=" + escaped(check.file, true) + ",") +
+                "title=" + escaped("fettle " + checks.command + ": " + check.name, true) + "::" + escaped(check.message, false) + "\n";
+    }
+    return text;
+}
+
+Errors prepare_check_files(const CheckFiles& files) {
+    for (const std::string& file : {files.junit, files.sarif, files.markdown}) {
+        if (file.empty()) continue;
+        if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+        std::error_code ignored;
+        if (!is_job_summary(file)) fs::remove(file, ignored);
+    }
+    return {};
+}
+
+Errors write_check_files(const CheckFiles& files, const Checks& checks) {
+    Errors errors;
+    const auto write = [&](const std::string& file, const std::string& text) {
+        if (file.empty()) return;
+        std::string before;
+        if (is_job_summary(file))
+            if (const Result<std::string> there = core::files::read_file(file)) before = *there;
+        const Errors found = core::files::write_file_atomically(file, before + text);
+        errors.insert(errors.end(), found.begin(), found.end());
+    };
+    write(files.junit, junit_xml(checks));
+    write(files.sarif, sarif_json(checks));
+    write(files.markdown, markdown_text(checks));
+    if (files.annotations) std::fputs(annotation_lines(checks).c_str(), stderr);
+    return errors;
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// What a command has found, for those who show it beside a project: JUnit XML (the tests of a CI), SARIF 2.1.0 (code scanning), Markdown
+/// (a job's summary), and lines that GitHub Actions puts beside the files. Their verdict is that of the exit code: undecided is no pass.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+
+namespace fettle::design::cli {
+
+enum class CheckOutcome {
+    passed,
+    remarked,   ///< passed, with something that people should know
+    failed,     ///< exit code 1
+    undecided,  ///< exit code 2
+    fault       ///< could not be looked at: exit codes 3 and 4
+};
+
+struct Check {
+    std::string name;  ///< "crank:rod", "stroke piston"
+    CheckOutcome outcome = CheckOutcome::passed;
+    std::string rule;     ///< what kind of finding: "below threshold"; no spaces are kept in SARIF
+    std::string message;  ///< with numbers and units
+    std::string file;     ///< that it is about; empty: none
+};
+
+/// Where it goes; empty: nowhere.
+struct CheckFiles {
+    std::string junit, sarif, markdown;
+    bool annotations = false;  ///< lines for GitHub Actions on stderr
+
+    bool wanted() const { return annotations || !(junit.empty() && sarif.empty() && markdown.empty()); }
+};
+
+/// All of a command's.
+struct Checks {
+    std::string command;  ///< "clearance"
+    int exit_code = 0;
+    CheckOutcome verdict = CheckOutcome::passed;  ///< that it stands for
+    std::vector<Check> list;
+};
+
+std::string junit_xml(const Checks& checks);
+/// Findings alone; files that are below the working directory by their way from there, as code scanning wants them.
+std::string sarif_json(const Checks& checks);
+std::string markdown_text(const Checks& checks);
+/// "::error file=...,title=...::..." for each finding.
+std::string annotation_lines(const Checks& checks);
+
+/// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind.
+[[nodiscard]] Errors prepare_check_files(const CheckFiles& files);
+
+/// Writes what is asked for. GitHub's job summary, where Markdown is to go there, is added to.
+[[nodiscard]] Errors write_check_files(const CheckFiles& files, const Checks& checks);
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/description/requirement_text.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "fettle/core/base/text.hpp"
+
+namespace fettle::design::description {
+
+namespace {
+
+std::string number_text(double number, int digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, number);
+    return text;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit_name) {
+    return unit_name.empty() ? number : number + " " + unit_name;
+}
+
+}  // namespace
+
+std::string unit_name(const Constraint& constraint) {
+    return core::base::unit_name(constraint.quantity->dimension(), constraint.bounds.unit);
+}
+
+std::string amount_text(double si, double unit, const std::string& unit_name, int digits) {
+    return with_unit(number_text(si / unit, digits), unit_name);
+}
+
+std::string required_text(const Bounds& bounds, const std::string& unit_name) {
+    constexpr int digits = 7;
+    const std::string lower = number_text(bounds.lower / bounds.unit, digits), upper = number_text(bounds.upper / bounds.unit, digits);
+    if (bounds.lower == bounds.upper) return "exactly " + with_unit(lower, unit_name);
+    if (!std::isfinite(bounds.upper)) return "at least " + with_unit(lower, unit_name);
+    if (!std::isfinite(bounds.lower)) return "at most " + with_unit(upper, unit_name);
+    return lower + " to " + with_unit(upper, unit_name);
+}
+
+std::string proven_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name) {
+    constexpr int digits = 7;
+    const std::string lower = number_text(measured.lower / bounds.unit, digits), upper = number_text(measured.upper / bounds.unit, digits);
+    return lower == upper ? with_unit(lower, unit_name) : lower + " to " + with_unit(upper, unit_name);
+}
+
+}  // namespace fettle::design::description

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+/// Parts where they are, as shaded pixels with the edges that can be seen, from any side, whole or cut.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/design/exports/assembly.hpp"
+#include "fettle/design/exports/depth_buffer.hpp"
+#include "fettle/design/exports/projection_view.hpp"
+
+namespace fettle::design::exports {
+
+struct PictureLine {
+    Vector2 from = Vector2::Zero(), to = Vector2::Zero();  ///< pixels from the upper left corner
+};
+
+/// World [m] to pixels of a picture, and depth towards the viewer in pixels.
+struct Projection {
+    ProjectionView view;
+    double scale = 1;  ///< pixels per metre
+    Vector2 centre = Vector2::Zero(), middle = Vector2::Zero();
+
+    Vector3 operator()(const Vector3& x) const {
+        return {middle.x() + scale * (view.right.dot(x) - centre.x()), middle.y() - scale * (view.up.dot(x) - centre.y()),
+                scale * view.towards.dot(x)};
+    }
+};
+
+struct ViewedParts {
+    Image surfaces;                  ///< shaded, on white, no edges
+    std::vector<PictureLine> edges;  ///< their visible stretches
+};
+
+class PartsView {
+public:
+    /// @param crease  faces that meet at a larger angle have an edge between them [rad].
+    /// Contract: one pose per part, which outlive this.
+    PartsView(const Assembly& assembly, const std::vector<core::kinematics::Pose>& poses, double crease);
+
+    /// As large as the picture allows.
+    Projection fitted(const ProjectionView& view, int width, int height) const;
+    /// Of the box of all parts [m].
+    double diagonal() const;
+    /// Does a part hide this point [m]? Of all edges the nearest to the viewer hides none of itself.
+    bool hides(const Vector3& point, const Projection& projection, int width, int height) const;
+    /// @param cut  in the picture's pixels.
+    ViewedParts seen(const Projection& projection, int width, int height, const std::optional<Cut>& cut = std::nullopt) const;
+
+private:
+    struct Part;
+
+    DepthBuffer drawn(const Projection& fine_projection, int width, int height, const std::optional<Cut>& cut) const;
+    std::vector<PictureLine> visible_edges(const Part& part, const DepthBuffer& buffer, const Projection& fine_projection) const;
+
+    struct Part {
+        const AssemblyPart* part = nullptr;
+        Matrix3X vertices;
+        std::vector<Vector3> normals;                                // of triangles
+        std::map<core::geometry::Edge, std::vector<int>> triangles;  // at each edge
+        bool is_closed = false;
+    };
+    std::vector<Part> parts_;
+    double crease_;
+};
+
+}  // namespace fettle::design::exports

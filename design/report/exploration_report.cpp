@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/report/exploration_report.hpp"
+
+#include <filesystem>
+#include <sstream>
+
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/report/answer_values.hpp"
+#include "fettle/design/report/exploration_data.hpp"
+#include "fettle/design/report/report_page.hpp"
+
+namespace fettle::design::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Errors read_lines(const std::string& file, ExplorationSource& source) {
+    const Result<std::string> text = core::files::read_file(file);
+    if (!text) return text.errors();
+    std::istringstream lines(text->substr(0, text->rfind('\n') + 1));  // what follows the last line feed was cut off
+    std::string line;
+    std::getline(lines, line);
+    source.header = Json::parse(line, nullptr, false);
+    if (member(source.header, "fettle_explore") != 1)
+        return {
+            {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
+    int damaged = 0;
+    while (std::getline(lines, line)) {
+        if (line.empty()) continue;
+        Json result = Json::parse(line, nullptr, false);
+        if (result.is_object() && member(result, "status").is_string()) {
+            source.results.push_back(std::move(result));
+        } else {
+            ++damaged;
+        }
+    }
+    if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
+    return {};
+}
+
+bool has_parameters(const description::Design& design, const Json& names) {
+    if (!names.is_array() || names.size() != design.parameters.size()) return false;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        if (names[k] != design.parameters[k].name) return false;
+    return true;
+}
+
+void take_design(const std::string& file, const ReportOptions& options, ExplorationSource& source) {
+    const std::string without = "; numbers are in SI units, and no parts are shown.";
+    const Json path = member(source.header, "file");
+    if (!path.is_string()) {
+        source.notices.push_back("The file does not say which design was explored" + without);
+        return;
+    }
+    const std::string whole = (fs::path(file).parent_path() / path.get<std::string>()).lexically_normal().string();
+    Result<reading::DesignFile> read = reading::read_design(whole, {options.mesh_dirs, options.programs});
+    if (!read) {
+        source.notices.push_back("The design could not be read (" + read.errors().front().where + ": " + read.errors().front().message +
+                                 ")" + without);
+        return;
+    }
+    if (!has_parameters(read->design, member(source.header, "parameters"))) {
+        source.notices.push_back(whole + " has other parameters than the design that was explored" + without);
+        return;
+    }
+    const Json text = Json::parse(read->text, nullptr, false);
+    if (const Json description = member(text, "description"); description.is_string()) source.description = description.get<std::string>();
+    source.design_path = whole;
+    source.design = std::move(read->design);
+}
+
+}  // namespace
+
+Result<std::string> write_exploration_report(const std::string& file, const ReportOptions& options) {
+    ExplorationSource source;
+    if (Errors errors = read_lines(file, source); !errors.empty()) return errors;
+    source.folder = file;
+    source.name = fs::path(file).stem().string();
+    take_design(file, options, source);
+    const std::string out = options.out.empty() ? fs::path(file).replace_extension(".report.html").string() : options.out;
+    const std::string page = page_of(exploration_data(source, options.should_stop));
+    if (Errors errors = core::files::write_file_atomically(out, page); !errors.empty()) return errors;
+    return out;
+}
+
+}  // namespace fettle::design::report

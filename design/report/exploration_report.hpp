@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// The report of an exploration's file (`fettle explore --out FILE.jsonl`): FILE.report.html, to find a design in: what each reaches, which
+/// ones no other one beats, what they look like.
+#pragma once
+
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/design/report/report_folder.hpp"
+
+namespace fettle::design::report {
+
+/// The design is the one that the file names, relative to the file's own folder; what it is needed for is left out, and told, where it is
+/// not there. A last line that was cut off is left out; lines that are none of a result are counted in a notice.
+/// @param options  `motion` counts for nothing.
+/// @return the path of the report. Errors: a file that cannot be read, or is no exploration.
+Result<std::string> write_exploration_report(const std::string& file, const ReportOptions& options = {});
+
+}  // namespace fettle::design::report

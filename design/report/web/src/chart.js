@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What charts on a canvas of their own need: one that follows its place's size and the colours, ticks, shades of a value.
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+const charts = [];
+export const repaintCharts = () => charts.forEach((chart) => chart.repaint());
+
+// Calls draw(context, width, height) in pixels of the page, now, after repaint(), and whenever its place changes.
+export function canvasChart(parent, height, draw) {
+  const canvas = document.createElement("canvas");
+  parent.append(canvas);
+  let asked = 0;
+  const repaint = () => {
+    asked ||= requestAnimationFrame(() => {
+      asked = 0;
+      const ratio = Math.min(2, devicePixelRatio || 1), width = parent.clientWidth;
+      if (!width) return;
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+      canvas.style.height = `${height}px`;
+      const context = canvas.getContext("2d");
+      context.scale(ratio, ratio);
+      context.font = `12px ${css("--font")}`;
+      draw(context, width, height);
+    });
+  };
+  new ResizeObserver(repaint).observe(parent);
+  charts.push({ repaint });
+  return { canvas, repaint };
+}
+
+// About `count` round numbers from low to high.
+export function ticks(low, high, count) {
+  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= rough) ?? rough, found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) found.push(k * step);
+  return found;
+}
+
+// Of numbers, with some room; of one alone round it.
+export function span(values, room = 0.04) {
+  let low = Infinity, high = -Infinity;
+  for (const v of values) {
+    if (!Number.isFinite(v)) continue;
+    low = Math.min(low, v);
+    high = Math.max(high, v);
+  }
+  if (!(low <= high)) return [0, 1];
+  const more = high > low ? room * (high - low) : Math.abs(low) * 0.05 || 1;
+  return [low - more, high + more];
+}
+
+const ramp = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [226, 213, 70]];  // as viridis has it: light for much, any colour vision
+
+export function shadeOf(share) {
+  const at = Math.min(0.999, Math.max(0, share)) * (ramp.length - 1), k = Math.floor(at), s = at - k;
+  return `rgb(${ramp[k].map((c, i) => Math.round(c + s * (ramp[k + 1][i] - c))).join(" ")})`;
+}

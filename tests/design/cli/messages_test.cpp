@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// What the program says to people: each line must be understood by one who has read nothing else, with place, finding and remedy.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/design/cli/optimise_answer.hpp"
+#include "fettle/design/description/requirement_text.hpp"
+#include "fettle/tests/design/small_design.hpp"
+#include "fettle/tests/design/small_problem.hpp"
+#include "fettle/tests/support/box_mesh.hpp"
+#include "fettle/tests/support/program.hpp"
+
+namespace fettle::design::cli::messages_test {
+
+namespace {
+
+using namespace fettle::tests::design_support;
+using fettle::tests::support::Answer;
+using fettle::tests::support::box_mesh;
+using fettle::tests::support::run;
+using fettle::tests::support::TemporaryFolder;
+
+const std::string crank = "examples/slider_crank/slider_crank.scene.json";
+
+// What is said to bad input: exit code 3 and these words.
+void refused(const std::string& arguments, const std::vector<std::string>& words) {
+    const Answer answer = run(arguments, true);
+    CAPTURE(arguments, answer.out);
+    CHECK(answer.code == 3);
+    for (const std::string& word : words) CHECK(answer.says(word));
+}
+
+}  // namespace
+
+TEST_CASE("messages: options and words that are not taken name what was probably meant") {
+    refused("simulate " + crank + " --stpes 9", {"there is no option --stpes; did you mean --steps?", "see fettle simulate --help"});
+    refused("simulate --stpes 9 " + crank, {"there is no option --stpes; did you mean --steps?"});
+    refused("export " + crank + " --tto x.stl", {"there is no option --tto; did you mean --to?"});
+    refused("simulate a b", {"\"b\" is one word too many: `simulate` takes SCENE"});
+    refused("simulate", {"SCENE is missing: Scene or design", "see fettle simulate --help"});
+    refused("export " + crank, {"--to is missing"});
+    refused("simulate " + crank + " --steps", {"--steps: a whole number is wanted after it"});
+    refused("clearance " + crank + " --process", {"--process: a value is wanted after it"});
+    refused("simulate " + crank + " --steps 99999999999", {"99999999999 is out of range: a whole number of at most 2147483647"});
+    refused("simulate " + crank + " --steps 2.5", {"a whole number is wanted, found \"2.5\""});
+    refused("simulate " + crank + " --steps 3 --time 1", {"--steps", "--time", "do not go together"});
+    refused("", {"no command was given"});
+    const Answer unknown = run("frobnicate", true);
+    CHECK(unknown.says("there is no command \"frobnicate\"; there are new, "));
+}
+
+TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
+    for (const std::string option : {"--minimum", "--pairs", "--process", "--out", "--certificate"})
+        refused("clearance " + crank + " " + option + " ''", {option + ": a value is wanted, found an empty text"});
+}
+
+TEST_CASE("messages: steps of no motion are refused, not passed over") {
+    refused("clearance " + crank + " --steps 3", {"--steps", "add --motion or --kinematic"});
+    refused("clearance " + crank + " --time 1", {"--time", "add --motion or --kinematic"});
+}
+
+TEST_CASE("messages: files of another version, and a scene that is not there") {
+    const TemporaryFolder folder;
+    refused("validate " + folder.write("nine.scene.json", R"({"fettle_scene": 9, "units": "mm", "bodies": []})"),
+            {"#/fettle_scene: a file of version 9 is not read: this program reads version 1; was it written for a newer fettle?"});
+    refused("validate " + folder.write("nine.design.json", R"({"fettle_design": 9, "scene": "nine.scene.json"})"),
+            {"#/fettle_design: a file of version 9 is not read"});
+    const std::string alone = folder.write("alone.design.json", R"({"fettle_design": 1, "scene": "gone.scene.json", "units": "mm"})");
+    refused("validate " + alone, {alone + "#/scene: there is no scene file " + folder.file("gone.scene.json"), "[file_not_found]"});
+    refused("validate " + folder.write("half.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": -1,
+                "bodies": [{"name": "a", "mesh": "a.stl"}]})"),
+            {"it must be greater than 0"});
+}
+
+TEST_CASE("messages: a motor without a joint is told once, by what is missing") {
+    const TemporaryFolder folder;
+    const Answer answer = run("validate " + folder.write("motor.scene.json", R"({"fettle_scene": 1, "units": "mm",
+        "bodies": [{"name": "a", "shape": {"generator": "box", "dimensions": {"size_x": 1, "size_y": 1, "size_z": 1}}}],
+        "joints": [{"name": "hinge", "type": "revolute", "b": "a", "point": [0, 0, 0], "axis": [0, 0, 1]}],
+        "motors": [{"name": "drive"}]})"),
+                              true);
+    CHECK(answer.code == 3);
+    CHECK(answer.says("the key `joint` is required here"));
+    CHECK_FALSE(answer.says("``"));
+}
+
+TEST_CASE("messages: one part, or one part twice, is no question of clearance") {
+    const TemporaryFolder folder;
+    const core::geometry::Mesh box = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01});
+    const std::string file = folder.write("a.stl", core::mesh_files::stl_bytes({{"a", &box}}));
+    refused("clearance " + file + " --unit mm --minimum 1mm", {file + ": is one part, and a clearance is between two"});
+    refused("clearance " + file + " " + file + " --unit mm --minimum 1mm", {file + ": is named twice"});
+    refused("clearance " + folder.path.string() + " " + file + " --unit mm --minimum 1mm", {"is named twice"});
+}
+
+TEST_CASE("messages: lengths are in the file's unit, and one step is one step") {
+    const DesignFolder folder;
+    const Answer one = run("simulate " + folder.file("small.scene.json") + " --steps 1");
+    CAPTURE(one.out);
+    CHECK(one.says("ok after 1 step, "));
+    CHECK(one.says("smallest distance of two bodies over the path: at least 0."));
+    CHECK(one.says(" mm, proven"));
+    CHECK(run("clearance " + folder.file("small.scene.json") + " --motion --steps 1").says("(1 step, 0.005 s)"));
+    CHECK(core::base::counted(0, "step") == "0 steps");
+    CHECK(core::base::length_text(6.8e-5, 1e-3) == "0.068 mm");
+    CHECK(core::base::length_text(0.0254, 0.0254) == "1 in");
+    CHECK(core::base::length_text(2, 0.37) == "2 m");  // a unit without a name
+}
+
+TEST_CASE("messages: each evaluation says which requirement it misses, by how much, and what it is for") {
+    const DesignFolder folder;
+    const Answer answer = run("optimise " + folder.design() + " --optimiser ipopt --no-report --out " + folder.file("out"), true);
+    CAPTURE(answer.out);
+    CHECK(answer.says("meets every requirement"));
+    CHECK(answer.says("the best so far"));
+    CHECK_FALSE(answer.says("violation "));
+    CHECK(answer.says(", required at least 15 mm: "));
+    CHECK(answer.says(", required 1.5 to 4 g: "));
+    CHECK(answer.says("mass cube"));
+    CHECK(answer.says(", counts "));  // what the objective is made of
+    for (const char* strange : {"inf]", "in the file's unit", "is worth", "kappa", "residual", "held by: "})
+        CHECK_FALSE(answer.says(strange));
+}
+
+TEST_CASE("requirements in words") {
+    using description::Bounds;
+    CHECK(description::required_text({.lower = 3e-4, .unit = 1e-3}, "mm") == "at least 0.3 mm");
+    CHECK(description::required_text({.upper = 2}, "") == "at most 2");
+    CHECK(description::required_text({.lower = 0.02995, .upper = 0.03005, .unit = 1e-3}, "mm") == "29.95 to 30.05 mm");
+    CHECK(description::required_text({.lower = 1, .upper = 1}, "") == "exactly 1");
+    description::Measurement measured;
+    measured.lower = 3.02e-4;
+    measured.upper = 3.04e-4;
+    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 to 0.304 mm");
+    measured.upper = measured.lower;
+    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 mm");
+    CHECK(core::base::unit_name(core::base::Dimension::area, 1e-3 * 1e-3) == "mm^2");
+    CHECK(core::base::unit_name(core::base::Dimension::number, 1).empty());
+}
+
+TEST_CASE("what is met as written and not with the play taken up is in doubt, and said so first") {
+    const problem::DesignProblem problem = problem_of(DesignFolder());
+    const description::Design& design = problem.design();
+    studies::OptimiseOutcome outcome;
+    outcome.report.status = optimisers::OptimiserStatus::optimal;
+    outcome.report.message = "ipopt: no change near by promises a gain above the tolerance";
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.final.usable = outcome.play_taken_up.usable = true;
+    outcome.report.feasible = true;
+    for (const description::Constraint& constraint : design.constraints) {
+        const double met = std::isfinite(constraint.bounds.upper) ? 0.5 * (constraint.bounds.lower + constraint.bounds.upper)
+                                                                  : constraint.bounds.lower + constraint.bounds.unit;
+        outcome.final.constraints.push_back(description::exact(met));
+    }
+    outcome.play_taken_up.constraints = outcome.final.constraints;
+    CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
+    const std::size_t stroke = 3;
+    REQUIRE(design.constraints[stroke].name.find("stroke") == 0);
+    outcome.play_taken_up.constraints[stroke] = description::exact(design.constraints[stroke].bounds.upper + 1e-3);
+    outcome.in_doubt = studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up);
+    CHECK(outcome.in_doubt == std::vector<std::size_t>{stroke});
+    outcome.play_taken_up_by = "contact 0.28 mm wide";
+    const std::string told = outcome_text(design, outcome, Console({}), {"out"});
+    CAPTURE(told);
+    CHECK(told.find("in doubt: this holds for the motion as simulated; with the play of the fits taken up 1 requirement is not met") <
+          told.find("objective "));
+    CHECK(told.find("31 mm, as written 15 mm, required 0 to 30 mm: NOT MET") != std::string::npos);
+    CHECK(told.find("What to do: ") != std::string::npos);
+    const auto checks = outcome_checks(design, outcome, "a.design.json");
+    REQUIRE(checks.size() == design.constraints.size() + 1);
+    CHECK(checks[stroke].outcome == CheckOutcome::remarked);
+    outcome.play_taken_up.usable = false;
+    CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
+}
+
+TEST_CASE("a folder in which another program's report lies is left alone") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json"), theirs = "<html>my own page</html>";
+    for (const std::string& command : {"simulate " + scene + " --steps 1", "clearance " + scene, "optimise " + folder.design()}) {
+        folder.write("out/report.html", theirs);
+        refused(command + " --out " + folder.file("out"), {"report.html: is there and was not written by fettle"});
+        std::stringstream kept;
+        kept << std::ifstream(folder.file("out/report.html")).rdbuf();
+        CHECK(kept.str() == theirs);
+    }
+    std::filesystem::remove(folder.file("out/report.html"));
+    CHECK(run("simulate " + scene + " --steps 1 --out " + folder.file("out")).code == 0);
+    CHECK(run("simulate " + scene + " --steps 1 --out " + folder.file("out")).code == 0);  // its own it replaces
+    folder.write("out/result.json", R"({"my": "numbers"})");
+    refused("clearance " + scene + " --out " + folder.file("out"), {"result.json: is there and was not written by fettle"});
+}
+
+}  // namespace fettle::design::cli::messages_test

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/tests/fuzz/readers.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/certificate/range_checker.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/geometry/mesh_repair.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/check_scene.hpp"
+#include "fettle/core/records/continuation.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/cli/ccd_queries.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/expression.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/report/report_folder.hpp"
+#include "fettle/design/urdf/urdf_parser.hpp"
+#include "fettle/design/urdf/urdf_scene.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+/// What a thread of TBB's that is still waiting for work holds at the end of the process is no leak.
+extern "C" const char* __lsan_default_suppressions() { return "leak:enqueue_task\n"; }
+
+namespace fettle::tests::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+using core::files::JsonNode;
+
+/// A folder for files that readers take by name, with what the samples refer to beside them.
+class Scratch {
+public:
+    Scratch() {
+        fs::create_directory(folder_.path / "run");
+        for (const char* beside : {"obj/parts.obj", "design/slider.json", "scene/shapes.json"})
+            fs::copy_file(corpus() / beside, folder_.path / fs::path(beside).filename());
+        fs::copy_file(corpus() / "scene/shapes.json", folder_.path / "follower.scene.json");
+        fs::copy_file(corpus() / "obj/parts.obj", folder_.path / "tetrahedron.obj");
+    }
+    std::string file(const std::string& name) const { return folder_.file(name); }
+    std::string write(const std::string& name, std::string_view bytes) const {
+        const std::string path = file(name);
+        const int out = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        for (std::string_view left = bytes; out >= 0 && !left.empty();) {
+            const ssize_t written = ::write(out, left.data(), left.size());
+            if (written <= 0) throw std::runtime_error("cannot write " + path);
+            left.remove_prefix(static_cast<std::size_t>(written));
+        }
+        ::close(out);
+        return path;
+    }
+    static fs::path corpus() { return fs::path(FETTLE_SOURCE_DIR) / "tests/fuzz/corpus"; }
+
+private:
+    support::TemporaryFolder folder_;
+};
+
+const Scratch& scratch() {
+    static const Scratch folder;
+    return folder;
+}
+
+/// What `fettle validate` does with a mesh.
+void read_mesh_as(const std::string& name, std::string_view bytes) {
+    const std::string path = scratch().write(name, bytes);
+    auto mesh = core::mesh_files::read_mesh(path);
+    if (name == "a.3mf") (void)core::mesh_files::read_mesh_parts(path, {1e-3, false});
+    if (!mesh) return;
+    (void)core::geometry::validate_mesh(*mesh, {});
+    core::geometry::repair_mesh(*mesh);
+    (void)core::geometry::judge_mesh(*mesh, true);
+}
+
+void visit(const JsonNode& node) {
+    (void)node.number();
+    (void)node.length(1e-3);
+    (void)node.boolean();
+    (void)node.string();
+    (void)node.numbers();
+    (void)node.vector3();
+    (void)node.shown();
+    (void)node["units"].choice({"mm", "m"});
+    if (node.is_array())
+        for (const JsonNode& each : node.elements()) visit(each);
+    if (!node.is_object()) return;
+    node.allow_keys({"units", "number"});
+    for (const auto& [key, each] : node.members()) visit(each);
+}
+
+void read_json(std::string_view bytes) {
+    (void)core::files::has_top_level_key(scratch().write("a.json", bytes), "fettle_design");
+    auto document = core::files::JsonDocument::parse(std::string(bytes), "a.json");
+    if (!document) return;
+    visit(document->root());
+    (void)document->warnings();
+}
+
+/// Small enough to be built while others are waiting.
+bool is_small(const core::scene::Scene& scene) {
+    std::size_t triangles = 0;
+    for (const core::scene::Body& body : scene.bodies) triangles += body.mesh.triangles.size() + body.mesh.edges.size();
+    return scene.bodies.size() < 20 && triangles < 5000;
+}
+
+void read_scene(std::string_view bytes) {
+    for (const bool strict : {false, true}) {
+        core::scene::ReadOptions options = design::reading::scene_read_options();
+        options.strict_meshes = strict;
+        const auto scene = core::scene::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
+        if (!scene || !is_small(*scene)) return;
+        (void)core::model::check_scene(*scene, strict);
+        if (!strict) (void)core::model::build_model(*scene);
+    }
+}
+
+void read_design(std::string_view bytes) {
+    auto file = design::reading::parse_design(std::string(bytes), scratch().file("a.design.json"));
+    if (!file || !is_small(file->design.scene)) return;
+    (void)design::problem::DesignProblem::create(std::move(file->design));
+}
+
+void read_trajectory(std::string_view bytes) {
+    const auto stored = core::records::read_trajectory(scratch().write("a.trajectory.json", bytes));
+    if (stored) (void)core::records::resumable(*stored, stored->model);
+}
+
+const core::records::StoredTrajectory& sample(const std::string& name) {
+    static const auto path = core::records::read_trajectory(Scratch::corpus() / "trajectory/path.json").value();
+    static const auto start = core::records::read_trajectory(Scratch::corpus() / "trajectory/start.json").value();
+    return name == "path" ? path : start;
+}
+
+void read_certificate(std::string_view bytes) {
+    const auto certificate = core::certificate::read_certificate(scratch().write("a.certificate.json", bytes));
+    if (!certificate) return;
+    auto fitting = *certificate;  // a changed hash would end the check at once
+    fitting.geometry_hash = core::records::geometry_hash(sample("path").model);
+    (void)core::certificate::check_certificate(fitting, sample("path"));
+    (void)uncovered_pairs(fitting, 2);
+}
+
+void read_range_certificate(std::string_view bytes) {
+    const auto certificate = core::certificate::read_range_certificate(scratch().write("r.certificate.json", bytes));
+    if (certificate) (void)core::certificate::check_range_certificate(*certificate, sample("start"));
+}
+
+void read_poses_as(const char* name, std::string_view bytes) {
+    (void)core::records::read_poses(scratch().write(name, bytes), sample("path").model);
+}
+
+void read_urdf(std::string_view bytes) {
+    const auto robot = design::urdf::parse_urdf(bytes, "a.urdf");
+    if (!robot) return;
+    const auto scene = design::urdf::scene_of_robot(*robot, {scratch().file(""), {}, "a", false});
+    if (scene && bytes.size() < 10'000) (void)core::scene::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
+}
+
+void read_expression(std::string_view bytes) {
+    std::vector<design::description::Parameter> parameters(2);
+    parameters[0].name = "width";
+    parameters[1].name = "height";
+    const auto formula = design::reading::parse_expression(bytes, parameters, "formula");
+    if (formula) (void)design::reading::evaluate(*formula, VectorX::Constant(2, 0.5));
+}
+
+void read_ccd(std::string_view bytes) {
+    for (const char* name : {"a-vf.csv", "a.ccd.json"}) (void)design::cli::read_ccd_queries(scratch().write(name, bytes));
+}
+
+void read_result(std::string_view bytes) {
+    scratch().write("run/result.json", bytes);
+    (void)design::report::write_report(scratch().file("run"));
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+    static const std::vector<Reader> all{
+        {"stl", [](std::string_view bytes) { read_mesh_as("a.stl", bytes); }},
+        {"obj", [](std::string_view bytes) { read_mesh_as("a.obj", bytes); }},
+        {"off", [](std::string_view bytes) { read_mesh_as("a.off", bytes); }},
+        {"ply", [](std::string_view bytes) { read_mesh_as("a.ply", bytes); }},
+        {"3mf", [](std::string_view bytes) { read_mesh_as("a.3mf", bytes); }},
+        {"json", read_json},
+        {"scene", read_scene},
+        {"design", read_design},
+        {"trajectory", read_trajectory},
+        {"certificate", read_certificate},
+        {"range_certificate", read_range_certificate},
+        {"poses", [](std::string_view bytes) { read_poses_as("a.csv", bytes); }},
+        {"poses_json", [](std::string_view bytes) { read_poses_as("a.poses.json", bytes); }},
+        {"urdf", read_urdf},
+        {"expression", read_expression},
+        {"ccd", read_ccd},
+        {"result", read_result},
+        {"dae", [](std::string_view bytes) { read_mesh_as("a.dae", bytes); }, true},
+        {"gltf", [](std::string_view bytes) { read_mesh_as("a.gltf", bytes); }, true},
+        {"3ds", [](std::string_view bytes) { read_mesh_as("a.3ds", bytes); }, true},
+        {"amf", [](std::string_view bytes) { read_mesh_as("a.amf", bytes); }, true},
+    };
+    return all;
+}
+
+}  // namespace fettle::tests::fuzz
