@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
@@ -72,17 +73,13 @@ bool stays_outside(const SolidMesh& inner, const SolidMesh& outer, const Start& 
     const auto is_outside = [&](int v) { return side_of(inner.mesh->vertices.col(v), at, outer, room) == Side::outside; };
     if (!std::all_of(inner.samples.begin(), inner.samples.end(), is_outside)) return false;
     if (lower > closure.reach + room) return true;
-    const LidBody lids{closure.vertices,
-                       {closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid), closure.triangles.end()}};
     const int body = is_a_outer ? start.a : start.b, other = is_a_outer ? start.b : start.a;
     std::optional<geometry::BodyHierarchy> own;
-    const geometry::BodyHierarchy& hierarchy = inner.hierarchy != nullptr ? *inner.hierarchy : own.emplace(*inner.mesh);
-    LidBody of_other;  // two lids must not meet either
-    if (inner.closure)
-        of_other = {
-            inner.closure->vertices,
-            {inner.closure->triangles.begin() + static_cast<std::ptrdiff_t>(inner.closure->first_lid), inner.closure->triangles.end()}};
-    return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {*inner.mesh, hierarchy, of_other}, room);
+    const LidSurface lids{outer.lids->mesh, outer.lids->hierarchy},
+        surface{*inner.mesh, inner.hierarchy != nullptr ? *inner.hierarchy : own.emplace(*inner.mesh)};
+    if (!inner.lids) return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface}, room);
+    const LidSurface inner_lids{inner.lids->mesh, inner.lids->hierarchy};  // two lids must not meet either
+    return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface, &inner_lids}, room);
 }
 
 }  // namespace
@@ -98,6 +95,11 @@ SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet) {
     solid.mesh = &mesh;
     solid.is_closed = mesh.triangles.empty() || geometry::bounds_a_solid(mesh);
     if (!solid.is_closed && !is_sheet) solid.closure = geometry::closure_of(mesh);
+    if (solid.closure) {
+        geometry::Mesh lids = geometry::lids_of(*solid.closure);
+        geometry::BodyHierarchy hierarchy(lids);
+        solid.lids.emplace(SolidMesh::Lids{std::move(lids), std::move(hierarchy)});
+    }
     solid.samples = mesh.codimensional_points;
     const bool has_shells = mesh.triangle_shell.size() == mesh.triangles.size();
     std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);

@@ -33,11 +33,16 @@ struct SolidMesh {
         std::vector<geometry::Triangle> triangles;
         Vector3 low = Vector3::Zero(), high = Vector3::Zero();  ///< box
     };
+    struct Lids {
+        geometry::Mesh mesh;
+        geometry::BodyHierarchy hierarchy;
+    };
     const geometry::Mesh* mesh = nullptr;  ///< must stay where it is
     bool is_closed = false;                ///< geometry::bounds_a_solid, or no triangles: then nothing can be inside
     std::vector<Shell> shells;
     std::vector<int> samples;                            ///< one vertex of everything that hangs together
     std::optional<geometry::Closure> closure;            ///< of an open mesh that may be meant as a solid
+    std::optional<Lids> lids;                            ///< the closure's
     const geometry::BodyHierarchy* hierarchy = nullptr;  ///< of the mesh, if it is at hand; must stay where it is
 };
 /// @param is_sheet  It is meant to have no inside, unless it is closed.

@@ -16,8 +16,9 @@ constexpr long most_bounds = 400'000;      // beside one for each place
 constexpr double outwards = 1 + 1e-12;     // of radii and speeds, far above their rounding
 constexpr double centre_rounding = 1e-14;  // of a middle of points, in their sizes
 
-// Some points of a body: a node of its hierarchy, or a triangle (an edge or a point repeats its last corner), in a ball.
-struct Ball {
+// Some points of a body: a node of a hierarchy, or a triangle (an edge or a point repeats its last corner).
+struct Piece {
+    const LidSurface* surface = nullptr;
     int node = -1;  // -1: a triangle
     std::array<Vector3, 3> corners;
     Vector3 half = Vector3::Zero();  // of a node's box
@@ -26,8 +27,9 @@ struct Ball {
     double reach = 0;   // >= |X|
 };
 
-Ball ball_of(const std::array<Vector3, 3>& corners) {
-    Ball out;
+Piece triangle_of(const LidSurface& surface, const std::array<Vector3, 3>& corners) {
+    Piece out;
+    out.surface = &surface;
     out.corners = corners;
     out.centre = (corners[0] + corners[1] + corners[2]) / 3;
     for (const Vector3& x : corners) {
@@ -39,9 +41,10 @@ Ball ball_of(const std::array<Vector3, 3>& corners) {
     return out;
 }
 
-Ball ball_of(const geometry::BodyHierarchy& hierarchy, int index) {
-    const geometry::HierarchyNode& node = hierarchy.nodes()[static_cast<std::size_t>(index)];
-    Ball out;
+Piece node_of(const LidSurface& surface, int index) {
+    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[static_cast<std::size_t>(index)];
+    Piece out;
+    out.surface = &surface;
     out.node = index;
     out.half = node.half_extent;
     out.centre = node.center;
@@ -50,40 +53,68 @@ Ball ball_of(const geometry::BodyHierarchy& hierarchy, int index) {
     return out;
 }
 
-std::array<Vector3, 3> corners_of(const Matrix3X& vertices, const geometry::Triangle& t) {
-    return {vertices.col(t[0]), vertices.col(t[1]), vertices.col(t[2])};
+// A node's children or elements; a triangle's halves through the middle of its longest side, whose rounding is in the pieces' reach.
+std::vector<Piece> parts_of(const Piece& piece) {
+    const LidSurface& surface = *piece.surface;
+    if (piece.node < 0) {
+        const auto& x = piece.corners;
+        std::size_t longest = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if ((x[(i + 1) % 3] - x[i]).squaredNorm() > (x[(longest + 1) % 3] - x[longest]).squaredNorm()) longest = i;
+        const Vector3 &a = x[longest], &b = x[(longest + 1) % 3], &c = x[(longest + 2) % 3];
+        const Vector3 middle = 0.5 * (a + b);
+        return {triangle_of(surface, {a, middle, c}), triangle_of(surface, {middle, b, c})};
+    }
+    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[static_cast<std::size_t>(piece.node)];
+    if (!node.is_leaf()) return {node_of(surface, node.left), node_of(surface, node.right)};
+    std::vector<Piece> out;
+    for (int i = node.first; i < node.first + node.count; ++i) {
+        const geometry::HierarchyElement& element = surface.hierarchy.elements()[static_cast<std::size_t>(i)];
+        std::array<Vector3, 3> corners;
+        for (int k = 0; k < 3; ++k)
+            corners[static_cast<std::size_t>(k)] =
+                surface.mesh.vertices.col(element.vertices[static_cast<std::size_t>(std::min(k, element.vertex_count - 1))]);
+        out.push_back(triangle_of(surface, corners));
+    }
+    return out;
 }
 
-// Through the middle of its longest side; the middle's rounding is in the ball's radius.
-std::pair<Ball, Ball> halves_of(const Ball& triangle) {
-    const auto& x = triangle.corners;
-    int longest = 0;
-    for (int i = 1; i < 3; ++i)
-        if ((x[(i + 1) % 3] - x[i]).squaredNorm() > (x[(longest + 1) % 3] - x[longest]).squaredNorm()) longest = i;
-    const Vector3 &a = x[longest], &b = x[(longest + 1) % 3], &c = x[(longest + 2) % 3];
-    const Vector3 middle = 0.5 * (a + b);
-    return {ball_of({a, middle, c}), ball_of({middle, b, c})};
+Interval row_times(const Interval3& row, const Vector3& x) { return row[0] * Interval(x[0]) + row[1] * Interval(x[1]) + row[2] * Interval(x[2]); }
+
+// How far a piece reaches from its centre along a direction of the world.
+double reach_along(const Piece& piece, const IntervalMatrix& rotation, const Interval3& world) {
+    Interval3 m;  // the direction in the piece's frame
+    for (std::size_t k = 0; k < 3; ++k) m[k] = world[0] * rotation[0][k] + world[1] * rotation[1][k] + world[2] * rotation[2][k];
+    double reach = 0;
+    if (piece.node >= 0) {
+        for (int k = 0; k < 3; ++k) reach += m[static_cast<std::size_t>(k)].magnitude() * piece.half[k];
+    } else {
+        for (const Vector3& corner : piece.corners) reach = std::max(reach, row_times(m, corner - piece.centre).magnitude());
+    }
+    return outwards * (reach + 4 * centre_rounding * piece.reach * norm_bound(world));
 }
 
 class LidProver {
 public:
-    LidProver(const LidNeighbour& other, double room) : other_(other), room_(room) {}
+    explicit LidProver(double room) : room_(room) {}
 
-    bool prove(const BodyPath& path_a, const BodyPath& path_b, const std::vector<Ball>& lids, const std::vector<Ball>& others,
+    bool prove(const BodyPath& path_a, const BodyPath& path_b, const LidSurface& lids, const std::vector<const LidSurface*>& others,
                long& budget) {
         if (!(path_a.magnitude < base::largest_magnitude) || !(path_b.magnitude < base::largest_magnitude)) return false;
         a_ = &path_a;
         b_ = &path_b;
+        Interval3 drift;
+        for (std::size_t k = 0; k < 3; ++k) drift[k] = a_->drift[k] - b_->drift[k];
+        drift_ = norm_bound(drift);
         instants_.clear();
         std::vector<Cell> open;
-        for (const Ball& lid : lids)
-            for (const Ball& ball : others) open.push_back({{0, 1}, lid, ball});
+        for (const LidSurface* other : others) open.push_back({{0, 1}, node_of(lids, 0), node_of(*other, 0)});
         while (!open.empty()) {
             const Cell cell = open.back();
             open.pop_back();
             if (--budget < 0) return false;
             const double e = 0.5 * (cell.span.end - cell.span.start);
-            const double moved = outwards * e * (speed(*a_, cell.lid) + speed(*b_, cell.other));
+            const double moved = outwards * e * (drift_ + turning(*a_, cell.lid) + turning(*b_, cell.other));
             const double gap = apart(cell);
             if (gap - moved > room_) continue;
             const bool only_moves = gap > room_;  // apart at the middle: nothing but the motion is in the way
@@ -95,16 +126,14 @@ public:
 private:
     struct Cell {
         Span span;
-        Ball lid, other;
+        Piece lid, other;
     };
     struct Instant {
         IntervalMatrix a, b;
         Interval3 offset;  // q_a - q_b
     };
 
-    static double speed(const BodyPath& path, const Ball& ball) {
-        return norm_bound(path.drift) + path.speed * path.base_norm * ball.reach;
-    }
+    static double turning(const BodyPath& path, const Piece& piece) { return path.speed * path.base_norm * piece.reach; }
 
     const Instant& at(double s) {
         const auto [known, is_new] = instants_.try_emplace(s);
@@ -116,108 +145,62 @@ private:
         return known->second;
     }
 
-    // At the middle of the span, from below.
+    // At the middle of the span, from below: along the way between the centres, and along the normal of a lid's triangle.
     double apart(const Cell& cell) {
         const Instant& here = at(0.5 * (cell.span.start + cell.span.end));
         Interval3 between = here.offset;  // of the centres
         for (std::size_t k = 0; k < 3; ++k)
             between[k] = between[k] + row_times(here.a[k], cell.lid.centre) - row_times(here.b[k], cell.other.centre);
-        const Interval squared = square(between[0]) + square(between[1]) + square(between[2]);
-        const double by_balls = geometry::sqrt(squared).low - cell.lid.radius - cell.other.radius;
-        return std::max(by_balls, along_normal(cell, here, between));
-    }
-
-    static Interval row_times(const Interval3& row, const Vector3& x) {
-        return row[0] * Interval(x[0]) + row[1] * Interval(x[1]) + row[2] * Interval(x[2]);
-    }
-
-    // Along the lid's normal.
-    double along_normal(const Cell& cell, const Instant& here, const Interval3& between) const {
-        const auto& x = cell.lid.corners;
-        const Vector3 across = (x[1] - x[0]).cross(x[2] - x[0]);
-        const double length = across.norm();
-        if (!(length > 0)) return -base::infinity;
-        const Vector3 n = across / length;
-        const Interval3 world{row_times(here.a[0], n), row_times(here.a[1], n), row_times(here.a[2], n)};
-        const Interval gap = world[0] * between[0] + world[1] * between[1] + world[2] * between[2];
-        double reach = 0;
-        for (const Vector3& corner : x) reach = std::max(reach, std::abs(n.dot(corner - cell.lid.centre)));
-        reach = outwards * (reach + 4 * centre_rounding * cell.lid.reach);
-        const double away = std::max(gap.low, -gap.high) - reach - reach_along(cell.other, here, world);
-        return away > 0 ? away / (outwards * a_->base_norm) : away;
-    }
-
-    // How far the other's piece reaches from its centre along a direction.
-    static double reach_along(const Ball& ball, const Instant& here, const Interval3& world) {
-        Interval3 m;  // the direction in the other's frame
-        for (std::size_t k = 0; k < 3; ++k) m[k] = world[0] * here.b[0][k] + world[1] * here.b[1][k] + world[2] * here.b[2][k];
-        double reach = 0;
-        if (ball.node >= 0) {
-            for (int k = 0; k < 3; ++k) reach += m[static_cast<std::size_t>(k)].magnitude() * ball.half[k];
-        } else {
-            for (const Vector3& corner : ball.corners) reach = std::max(reach, row_times(m, corner - ball.centre).magnitude());
+        const Vector3 way(between[0].high, between[1].high, between[2].high);
+        double best = apart_along(Interval3{Interval(way[0]), Interval(way[1]), Interval(way[2])}, cell, here, between);
+        if (cell.lid.node < 0) {
+            const auto& x = cell.lid.corners;
+            const Vector3 n = (x[1] - x[0]).cross(x[2] - x[0]);
+            best = std::max(best, apart_along({row_times(here.a[0], n), row_times(here.a[1], n), row_times(here.a[2], n)}, cell, here, between));
         }
-        return outwards * (reach + 4 * centre_rounding * ball.reach);
+        return best;
+    }
+
+    static double apart_along(const Interval3& world, const Cell& cell, const Instant& here, const Interval3& between) {
+        const double length = norm_bound(world);
+        if (!(length > 0)) return -base::infinity;
+        const Interval gap = world[0] * between[0] + world[1] * between[1] + world[2] * between[2];
+        const double away = std::max(gap.low, -gap.high) - outwards * (reach_along(cell.lid, here.a, world) + reach_along(cell.other, here.b, world));
+        return away > 0 ? away / (outwards * length) : away;
     }
 
     // What is loosest; false if nothing can be halved any more.
-    bool split(const Cell& cell, bool in_time, std::vector<Cell>& open) const {
+    static bool split(const Cell& cell, bool in_time, std::vector<Cell>& open) {
         if (in_time) {
             const double middle = 0.5 * (cell.span.start + cell.span.end);
             if (!(cell.span.start < middle && middle < cell.span.end)) return false;
             open.push_back({{cell.span.start, middle}, cell.lid, cell.other});
             open.push_back({{middle, cell.span.end}, cell.lid, cell.other});
-            return true;
-        }
-        if (cell.other.radius >= cell.lid.radius) {
+        } else if (cell.other.radius >= cell.lid.radius) {
             if (!(cell.other.radius > 0)) return false;
-            for (const Ball& part : parts_of(cell.other)) open.push_back({cell.span, cell.lid, part});
-            return true;
+            for (const Piece& part : parts_of(cell.other)) open.push_back({cell.span, cell.lid, part});
+        } else {
+            for (const Piece& part : parts_of(cell.lid)) open.push_back({cell.span, part, cell.other});
         }
-        const auto [first, second] = halves_of(cell.lid);
-        open.push_back({cell.span, first, cell.other});
-        open.push_back({cell.span, second, cell.other});
         return true;
     }
 
-    std::vector<Ball> parts_of(const Ball& ball) const {
-        if (ball.node < 0) {
-            const auto [first, second] = halves_of(ball);
-            return {first, second};
-        }
-        const geometry::HierarchyNode& node = other_.hierarchy.nodes()[static_cast<std::size_t>(ball.node)];
-        if (!node.is_leaf()) return {ball_of(other_.hierarchy, node.left), ball_of(other_.hierarchy, node.right)};
-        std::vector<Ball> out;
-        for (int i = node.first; i < node.first + node.count; ++i) {
-            const geometry::HierarchyElement& element = other_.hierarchy.elements()[static_cast<std::size_t>(i)];
-            std::array<Vector3, 3> corners;
-            for (int k = 0; k < 3; ++k)
-                corners[static_cast<std::size_t>(k)] =
-                    other_.mesh.vertices.col(element.vertices[static_cast<std::size_t>(std::min(k, element.vertex_count - 1))]);
-            out.push_back(ball_of(corners));
-        }
-        return out;
-    }
-
-    const LidNeighbour& other_;
     double room_;
     const BodyPath *a_ = nullptr, *b_ = nullptr;
+    double drift_ = 0;  // >= |q_a' - q_b'|
     std::map<double, Instant> instants_;
 };
 
 }  // namespace
 
-bool lids_stay_apart(const LidPath& path, const LidBody& lids, const LidNeighbour& other, double room) {
+bool lids_stay_apart(const LidPath& path, const LidSurface& lids, const std::vector<const LidSurface*>& others, double room) {
     if (path.places.empty()) return false;
-    std::vector<Ball> of_body, of_other{ball_of(other.hierarchy, 0)};
-    for (const geometry::Triangle& t : lids.triangles) of_body.push_back(ball_of(corners_of(lids.vertices, t)));
-    for (const geometry::Triangle& t : other.lids.triangles) of_other.push_back(ball_of(corners_of(other.lids.vertices, t)));
-    LidProver prover(other, room);
-    long budget = most_bounds + static_cast<long>(path.places.size() * of_body.size() * of_other.size());
+    LidProver prover(room);
+    long budget = most_bounds + static_cast<long>(path.places.size() * others.size());
     for (const Place& place : path.places) {
         const BodyPath a = body_path(path.trajectory, place.step, place.segment, path.body),
                        b = body_path(path.trajectory, place.step, place.segment, path.other);
-        if (!prover.prove(a, b, of_body, of_other, budget)) return false;
+        if (!prover.prove(a, b, lids, others, budget)) return false;
     }
     return true;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Do the lids of an open mesh (geometry/closure.hpp) stay away from another body over a path? Proven by balls round pieces of both, or by
-/// the plane of a lid's triangle, in interval arithmetic: over a span of time of half length e about its middle m,
-///   |x_a(s) - x_b(s)| >= |c_a(m) - c_b(m)| - r_a - r_b - e (v_a + v_b),          v = |q'| + |w| |X|,
-///   |x_a(s) - x_b(s)| >= |n.(c_a(m) - c_b(m))| - h_a - h_b - e (v_a + v_b),      |n| = 1,
-/// c and r the balls' centres and radii, h how far the pieces reach from their centres along n. What is loosest is halved, time or a piece.
+/// Do the lids of an open mesh (geometry/closure.hpp) stay away from another body over a path? Proven for pieces of both (boxes of their
+/// hierarchies, triangles and their halves) by separating directions, the way between their centres or a lid's normal, in interval
+/// arithmetic: over a span of time of half length e about its middle m, with any n,
+///   |x_a(s) - x_b(s)| >= (|n.(c_a(m) - c_b(m))| - h_a - h_b) / |n| - e (|q_a' - q_b'| + |w_a| |X_a| + |w_b| |X_b|),
+/// c the pieces' centres, h how far they reach from them along n. What is loosest is halved, time or a piece.
 /// That is slow where they come near each other, and is given up after a while: then it is not known.
 #pragma once
 
@@ -27,20 +27,13 @@ struct LidPath {
     int body = 0, other = 0;  ///< whose lids they are, and what they are to stay away from
 };
 
-/// Triangles of a body, in its frame.
-struct LidBody {
-    Matrix3X vertices;
-    std::vector<geometry::Triangle> triangles;
-};
-
-/// What lids are to stay away from: a mesh, and its own lids if it has some.
-struct LidNeighbour {
+/// A surface of a body, in its frame.
+struct LidSurface {
     const geometry::Mesh& mesh;
     const geometry::BodyHierarchy& hierarchy;
-    const LidBody& lids;
 };
 
-/// True: proven that they stay farther apart than `room` [m] at all places. False also where there is no place.
-bool lids_stay_apart(const LidPath& path, const LidBody& lids, const LidNeighbour& other, double room);
+/// True: proven that the lids stay farther apart than `room` [m] from all of the others at all places. False also where there is no place.
+bool lids_stay_apart(const LidPath& path, const LidSurface& lids, const std::vector<const LidSurface*>& others, double room);
 
 }  // namespace fettle::core::certificate

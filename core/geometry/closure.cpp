@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 
@@ -44,6 +45,22 @@ std::optional<Closure> closure_of(const Mesh& mesh) {
     const double size = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();
     out.reach += 1e-14 * (size + out.vertices.cwiseAbs().maxCoeff());  // rounding
     return out;
+}
+
+Mesh lids_of(const Closure& closure) {
+    std::vector<int> index(static_cast<std::size_t>(closure.vertices.cols()), -1);
+    std::vector<int> used;
+    std::vector<Triangle> triangles(closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid), closure.triangles.end());
+    for (Triangle& t : triangles)
+        for (int& v : t) {
+            int& known = index[static_cast<std::size_t>(v)];
+            if (known < 0) {
+                known = static_cast<int>(used.size());
+                used.push_back(v);
+            }
+            v = known;
+        }
+    return make_mesh("lids", closure.vertices(Eigen::all, used), std::move(triangles));
 }
 
 }  // namespace fettle::core::geometry

@@ -22,4 +22,7 @@ struct Closure {
 /// Nothing for a mesh without boundary or without triangles, nor for one that bounds next to no volume with its lids: a flat sheet.
 std::optional<Closure> closure_of(const Mesh& mesh);
 
+/// The lids alone.
+Mesh lids_of(const Closure& closure);
+
 }  // namespace fettle::core::geometry
