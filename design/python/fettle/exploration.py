@@ -429,6 +429,8 @@ def _jobs(
 @contextlib.contextmanager
 def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Result]]]:
     """The file, locked, at its end; and what it has already. A new file goes again where it gets no result, for something was raised."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise _fail("file_unwritable", path, "results are added to it and read again: it has to be a regular file")
     with open(path, "a+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -436,3 +436,13 @@ def test_a_full_disk_costs_the_file_and_not_what_was_found(tmp_path):
         words = [sys.executable, "-m", "fettle", "explore", str(design), "--out", str(out), "--samples", "1", "--json"]
         lost = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, env=os.environ)
     assert lost.returncode == 3 and "standard output" in lost.stderr and "Traceback" not in lost.stderr
+
+
+def test_results_go_to_regular_files_alone(tmp_path):
+    """What is there is read first: of a device that would have no end."""
+    endless = tmp_path / "zero.jsonl"
+    endless.symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / "pipe.jsonl")
+    for place in (endless, tmp_path / "pipe.jsonl", tmp_path):
+        with pytest.raises(fettle.Error, match="regular file"):
+            fettle.explore(short_design(), place, samples=1, workers=1)
