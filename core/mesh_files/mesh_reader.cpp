@@ -13,6 +13,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/geometry/connectivity.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
@@ -153,6 +154,7 @@ void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::
         const int group = triangle_group[t];
         object[static_cast<std::size_t>(mesh.triangle_shell[t])] = group < 0 ? "" : groups[static_cast<std::size_t>(group)];
     }
+    for (std::string& name : object) name = base::shown_on_one_line(name);  // control characters and what is no UTF-8, escaped
     std::map<std::string, int> total, used;
     for (const std::string& name : object) ++total[name];
     for (std::size_t s = 0; s < object.size(); ++s) {

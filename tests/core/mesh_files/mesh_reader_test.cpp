@@ -149,6 +149,12 @@ TEST_CASE("OBJ: shells are named after their object") {
     CHECK(names("f 1 2 3\ng hub\nf 4 5 6\ng default\nf 7 8 9") == std::vector<std::string>{"n.obj/0", "hub", "n.obj/2"});
 }
 
+TEST_CASE("Names of objects hold nothing that a terminal or a file of JSON could not have") {
+    const Folder folder;
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\no red \x1b[31m \xff\nf 1 2 3\n";
+    CHECK(read_mesh(folder.write("names.obj", text)).value().shell_names.front() == "red \\x1b[31m \\xff");
+}
+
 TEST_CASE("vertices are welded on request, names survive") {
     const Folder folder;
     const std::string text =
