@@ -79,7 +79,9 @@ std::vector<Piece> parts_of(const Piece& piece) {
     return out;
 }
 
-Interval row_times(const Interval3& row, const Vector3& x) { return row[0] * Interval(x[0]) + row[1] * Interval(x[1]) + row[2] * Interval(x[2]); }
+Interval row_times(const Interval3& row, const Vector3& x) {
+    return row[0] * Interval(x[0]) + row[1] * Interval(x[1]) + row[2] * Interval(x[2]);
+}
 
 // How far a piece reaches from its centre along a direction of the world.
 double reach_along(const Piece& piece, const IntervalMatrix& rotation, const Interval3& world) {
@@ -156,7 +158,8 @@ private:
         if (cell.lid.node < 0) {
             const auto& x = cell.lid.corners;
             const Vector3 n = (x[1] - x[0]).cross(x[2] - x[0]);
-            best = std::max(best, apart_along({row_times(here.a[0], n), row_times(here.a[1], n), row_times(here.a[2], n)}, cell, here, between));
+            best = std::max(best,
+                            apart_along({row_times(here.a[0], n), row_times(here.a[1], n), row_times(here.a[2], n)}, cell, here, between));
         }
         return best;
     }
@@ -165,7 +168,8 @@ private:
         const double length = norm_bound(world);
         if (!(length > 0)) return -base::infinity;
         const Interval gap = world[0] * between[0] + world[1] * between[1] + world[2] * between[2];
-        const double away = std::max(gap.low, -gap.high) - outwards * (reach_along(cell.lid, here.a, world) + reach_along(cell.other, here.b, world));
+        const double away =
+            std::max(gap.low, -gap.high) - outwards * (reach_along(cell.lid, here.a, world) + reach_along(cell.other, here.b, world));
         return away > 0 ? away / (outwards * length) : away;
     }
 
