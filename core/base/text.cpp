@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 
 namespace fettle::core::base {
 namespace {
@@ -143,6 +144,13 @@ std::string csv_cell(std::string_view word) {
 std::string csv_word(std::string_view field) {
     if (field.starts_with('\'') && begins_formula(field)) field.remove_prefix(1);
     return std::string(field);
+}
+
+std::string percent(double share) {
+    char text[32];
+    const double hundredths = 100 * share;
+    std::snprintf(text, sizeof text, std::abs(hundredths) < 10 || !(std::abs(hundredths) < 1e9) ? "%.2g%%" : "%.0f%%", hundredths);
+    return text;
 }
 
 std::string counted(std::size_t count, const std::string& thing) { return std::to_string(count) + " " + thing + (count == 1 ? "" : "s"); }

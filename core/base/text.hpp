@@ -41,6 +41,9 @@ std::string csv_cell(std::string_view word);
 /// Without the ' that csv_cell began it with; quotes have been taken off before.
 std::string csv_word(std::string_view field);
 
+/// 0.0123 -> "1.2%", 1.234 -> "123%": two digits, and whole numbers from ten on.
+std::string percent(double share);
+
 /// 1, "step" -> "1 step"; 2, "step" -> "2 steps".
 std::string counted(std::size_t count, const std::string& thing);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
@@ -126,10 +127,7 @@ private:
     /// Of the lesser of the mass as it is told and as it is meant, if the volume told is too much by `over` or too little by `under`.
     std::string share(double over, double under) const {
         if (!(over < volume_)) return unbounded;
-        char text[96];
-        std::snprintf(text, sizeof text, "which changes its mass by at most %.2g%%",
-                      100 * std::min(std::max(over / (volume_ - over), under / volume_), 1e6));
-        return text;
+        return "which changes its mass by at most " + base::percent(std::min(std::max(over / (volume_ - over), under / volume_), 1e6));
     }
 
     void look_at_intersections() {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <utility>
+
+#include "fettle/core/base/text.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -12,18 +14,15 @@ namespace {
 double stored_energy(const energy::TermReport& r) { return r.spring_energy + r.contact_energy; }
 double energy_of(const energy::TermReport& r) { return r.kinetic_energy + r.potential_energy + stored_energy(r); }
 
-std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g%%", 100 * share);
-    return text;
-}
-
 }  // namespace
 
-BalanceSum::BalanceSum(const energy::TermReport& start, double h) : h_(h), most_stored_(stored_energy(start) + start.kinetic_energy) {
+BalanceSum::BalanceSum(const energy::TermReport& start, double h)
+    : h_(h),
+      most_stored_(stored_energy(start) + start.kinetic_energy),
+      least_potential_(start.potential_energy),
+      most_potential_(start.potential_energy) {
     sum_.energy_start = sum_.energy_end = energy_of(start);
     sum_.energy_scale = most_stored_;
-    sum_.angular_momentum_scale = start.angular_momentum.norm();
 }
 
 void BalanceSum::add(const StepOutputs& step) {
@@ -38,23 +37,38 @@ void BalanceSum::add(const StepOutputs& step) {
     most_stored_ = std::max(most_stored_, stored_energy(step) + step.kinetic_energy);
     sum_.energy_end = energy_of(step);
     sum_.energy_error = sum_.energy_end - sum_.energy_start - sum_.work + sum_.dissipated;
-    sum_.energy_scale = std::max({most_stored_, std::abs(sum_.work), sum_.dissipated});
+    most_work_ = std::max(most_work_, std::abs(sum_.work));
+    least_potential_ = std::min(least_potential_, step.potential_energy);
+    most_potential_ = std::max(most_potential_, step.potential_energy);
+    sum_.energy_scale = std::max({most_stored_, most_work_, sum_.dissipated, most_potential_ - least_potential_});
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const double potential = std::max(std::abs(least_potential_), std::abs(most_potential_));
+    sum_.energy_rounding = rounding * (most_stored_ + most_work_ + sum_.dissipated + potential);
     defect_ += step.momentum_defect;
     angular_defect_ += step.angular_momentum_defect;
     sum_.momentum_error = defect_.norm();
     sum_.angular_momentum_error = angular_defect_.norm();
-    sum_.angular_momentum_scale = std::max(sum_.angular_momentum_scale, step.angular_momentum.norm());
+    most_angular_ = std::max(most_angular_, step.angular_momentum_size);
+    angular_impulses_ += step.angular_impulse;
+    most_impulse_ = std::max(most_impulse_, step.angular_impulse);
+    angular_rounding_ += step.angular_momentum_rounding;
+    sum_.angular_momentum_scale = most_angular_ + angular_impulses_;
+    sum_.angular_momentum_uncertainty = 0.5 * most_impulse_ + angular_rounding_;
 }
 
 std::string balance_warning(const model::Model& model, const Balance& balance) {
     constexpr double gain = 0.01, angular = 0.05;
     if (!std::isfinite(balance.energy_error)) return "energies are no finite numbers";
-    if (balance.energy_error > gain * balance.energy_scale)
-        return "the motion has gained energy from nowhere, " + percent(balance.energy_error / balance.energy_scale) +
-               " of what it has at most: a shorter `timestep` makes it less";
-    if (balance.angular_momentum_error > angular * balance.angular_momentum_scale)
+    if (balance.energy_error > gain * balance.energy_scale + balance.energy_rounding)
+        return "the motion has gained energy from nowhere, " + base::percent(balance.energy_error / balance.energy_scale) +
+               " of what it has at most: a shorter `timestep` makes it less" +
+               (model.integrator == scene::Integrator::newmark
+                    ? ", and `\"integrator\": \"bdf2\"` or `\"implicit_euler\"` loses energy where parts meet, where `newmark` may gain it"
+                    : "");
+    if (balance.angular_momentum_error > angular * balance.angular_momentum_scale + balance.angular_momentum_uncertainty)
         return "the time integration has changed the angular momentum by " +
-               percent(balance.angular_momentum_error / balance.angular_momentum_scale) + " of its largest: a shorter `timestep`" +
+               base::percent(balance.angular_momentum_error / balance.angular_momentum_scale) +
+               " of what moves and acts: a shorter `timestep`" +
                (model.integrator == scene::Integrator::implicit_euler
                     ? ", or `\"integrator\": \"bdf2\"` or `\"newmark\"`, makes it less (implicit Euler brakes what turns)"
                     : " makes it less");

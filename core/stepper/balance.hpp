@@ -16,10 +16,16 @@ struct Balance {
     double work = 0;                          ///< by motors, prescribed coordinates, torques and forces that have no potential [J]
     double dissipated = 0;                    ///< by friction and dampers [J]
     double energy_error = 0;                  ///< energy_end - energy_start - work + dissipated: > 0 comes from nowhere, < 0 is lost [J]
-    double energy_scale = 0;                  ///< what passed through the motion: largest kinetic + stored energy, |work|, dissipated [J]
-    double momentum_error = 0;                ///< |sum over the steps of StepOutputs::momentum_defect| [kg m/s]
-    double angular_momentum_error = 0;        ///< the same of angular_momentum_defect, about the world's origin [kg m^2/s]
-    double angular_momentum_scale = 0;        ///< largest |angular momentum| about the world's origin [kg m^2/s]
+    /// What passed through the motion: the largest of kinetic + stored energy, of |work|, dissipated, and how far the potential energy of
+    /// gravity and constant forces has swung [J].
+    double energy_scale = 0;
+    double energy_rounding = 0;         ///< of the energies that energy_error is the difference of [J]
+    double momentum_error = 0;          ///< |sum over the steps of StepOutputs::momentum_defect| [kg m/s]
+    double angular_momentum_error = 0;  ///< the same of angular_momentum_defect, about the world's origin [kg m^2/s]
+    /// The largest sum of the bodies' |angular momentum| and the sum of what forces did to them (StepOutputs::angular_impulse) [kg m^2/s].
+    double angular_momentum_scale = 0;
+    /// To what angular_momentum_error is known: half of the largest step's impulse, and rounding [kg m^2/s].
+    double angular_momentum_uncertainty = 0;
 };
 
 /// The balance of steps that are added one by one.
@@ -34,14 +40,17 @@ public:
 private:
     double h_ = 0;
     bool has_steps_ = false;
-    double supplied_ = 0, dissipated_ = 0;  // powers at the end of the step before [W]
-    double most_stored_ = 0;                // or in motion [J]
+    double supplied_ = 0, dissipated_ = 0;                                                      // powers at the end of the step before [W]
+    double most_stored_ = 0;                                                                    // or in motion [J]
+    double most_work_ = 0, least_potential_ = 0, most_potential_ = 0;                           // [J]
+    double most_angular_ = 0, angular_impulses_ = 0, most_impulse_ = 0, angular_rounding_ = 0;  // [kg m^2/s]
     Vector3 defect_ = Vector3::Zero(), angular_defect_ = Vector3::Zero();
     Balance sum_;
 };
 
 /// What a user should know of it, with a remedy; empty: nothing. Energy that comes from nowhere is told from 1% of the scale on, angular
-/// momentum from 5% on. Energy that is lost is not: implicit Euler and BDF2 stop what collides by losing it.
+/// momentum from 5% on, and nothing that is within rounding or less than is known of it. Energy that is lost is not: implicit Euler and
+/// BDF2 stop what collides by losing it.
 std::string balance_warning(const model::Model& model, const Balance& balance);
 
 }  // namespace fettle::core::stepper

@@ -2,6 +2,7 @@
 #include "fettle/core/stepper/step_outputs.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/energy/loads.hpp"
@@ -36,14 +37,28 @@ Vector6 out_of_chart(const Vector6& force, const Vector3& theta) {
     return out;
 }
 
-// The forces that the solve has left unbalanced on each body, in the chart: of the prescribed coordinates what the drive supplies. Without
-// the rows' forces.
+// What joints, gears and motors that are rows do to each body, of the sign of a gradient: force and torque about its reference point,
+// world.
+std::vector<Vector6> row_forces(const energy::StepProblem& problem, const solver::NewtonResult& solved) {
+    const model::Mechanism& mechanism = problem.model->mechanism;
+    std::vector<Vector6> out(problem.model->bodies.size(), Vector6::Zero());
+    if (solved.multipliers.size() == 0) return out;
+    const auto rows = row_jacobian(mechanism.set, mechanism.rows, placed(mechanism.set.frames, solved.poses));
+    add_transposed(rows, solved.multipliers / problem.weight, out);
+    return out;
+}
+
+// The forces that the solve has left unbalanced on each body, in the chart: of the prescribed coordinates what the drive supplies.
 std::vector<Vector6> unbalanced(const energy::StepProblem& problem, const solver::NewtonResult& solved) {
     const auto& points = solved.path.back();
     std::vector<Vector6> out =
         energy::chart_derivatives(problem, points, solved.poses, solved.contacts, contact::HessianKind::none).gradient;
-    for (std::size_t i = 0; i < out.size(); ++i)
+    const std::vector<Vector6> rows = row_forces(problem, solved);
+    for (std::size_t i = 0; i < out.size(); ++i) {
         out[i] = (out[i] + inertia_if_held(problem, i, points[i], solved.poses[i])) / problem.weight;
+        out[i].head<3>() += rows[i].head<3>();
+        out[i].tail<3>() += kinematics::left_jacobian(points[i].rotation_vector).transpose() * rows[i].tail<3>();
+    }
     return out;
 }
 
@@ -91,16 +106,12 @@ Vector6 about_origin(Vector6 force, const Vector3& position) {
 }
 
 // What acts on a body beside gravity is what its inertia shows, less what the solve has left unbalanced.
-void add_momentum_defects(const energy::StepProblem& problem, const solver::NewtonResult& solved, std::vector<Vector6> unbalanced,
+void add_momentum_defects(const energy::StepProblem& problem, const solver::NewtonResult& solved, const std::vector<Vector6>& unbalanced,
                           const StepState& start, const StepState& end, StepOutputs& out) {
     const model::Model& model = *problem.model;
     const auto& points = solved.path.back();
-    for (std::size_t i = 0; i < unbalanced.size(); ++i) unbalanced[i] = out_of_chart(unbalanced[i], points[i].rotation_vector);
-    if (solved.multipliers.size() > 0) {
-        const model::Mechanism& mechanism = model.mechanism;
-        const auto rows = row_jacobian(mechanism.set, mechanism.rows, placed(mechanism.set.frames, solved.poses));
-        add_transposed(rows, solved.multipliers / problem.weight, unbalanced);
-    }
+    const double h = model.timestep;
+    double angular_at_start = 0, angular_at_end = 0;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const model::Body& body = model.bodies[i];
         bool solved_for = true;
@@ -109,15 +120,24 @@ void add_momentum_defects(const energy::StepProblem& problem, const solver::Newt
         kinematics::PoseGradient inertia;
         energy::add_inertia_gradient(solved.poses[i], problem.pose_hat[i], body.moments, inertia);
         const Vector3 position = solved.poses[i].position, arm = solved.poses[i].rotation * body.moments.topRightCorner<3, 1>();
-        Vector6 force = tangent_gradient(inertia) / problem.weight - unbalanced[i];
+        Vector6 force = tangent_gradient(inertia) / problem.weight - out_of_chart(unbalanced[i], points[i].rotation_vector);
+        const double reach = position.norm() + body.radius;
+        out.angular_impulse += h * (force.head<3>().norm() * reach + force.tail<3>().norm());
+        constexpr double unit = std::numeric_limits<double>::epsilon();
+        out.angular_momentum_rounding += 16 * unit * body.moments(3, 3) * reach * reach / h;  // of poses, which velocities are made of
         force.head<3>() += body.moments(3, 3) * model.gravity;
         force.tail<3>() += arm.cross(model.gravity);
-        const Vector6 defect = energy::momenta(end.history.poses[i], end.history.velocities[i], body.moments) -
-                               energy::momenta(start.history.poses[i], start.history.velocities[i], body.moments) -
-                               model.timestep * about_origin(force, position);
+        const Vector6 before = energy::momenta(start.history.poses[i], start.history.velocities[i], body.moments);
+        const Vector6 after = energy::momenta(end.history.poses[i], end.history.velocities[i], body.moments);
+        const Vector6 defect = after - before - h * about_origin(force, position);
+        angular_at_start += before.tail<3>().norm();
+        angular_at_end += after.tail<3>().norm();
         out.momentum_defect += defect.head<3>();
         out.angular_momentum_defect += defect.tail<3>();
+        for (const ContactForce& c : out.contacts)
+            if (c.a == static_cast<int>(i) || c.b == static_cast<int>(i)) out.angular_impulse += h * (c.normal + c.friction.norm()) * reach;
     }
+    out.angular_momentum_size = std::max(angular_at_start, angular_at_end);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace fettle::core::stepper {
 using energy::ContactForce;
 
 /// What holds or drives a body's prescribed coordinates: force and torque on the body, world, about its reference point; 0 where it is
-/// free. A body without mass (kinematic) needs what its contacts ask for; one with mass, its inertia and loads too.
+/// free. A body without mass (kinematic) needs what its contacts and joints ask for; one with mass, its inertia and loads too.
 struct DriveForce {
     int body = 0;
     Vector3 force = Vector3::Zero();   ///< [N]
@@ -33,6 +33,10 @@ struct StepOutputs : energy::TermReport {
     /// half a step's impulse.
     Vector3 momentum_defect = Vector3::Zero();          ///< [kg m/s]
     Vector3 angular_momentum_defect = Vector3::Zero();  ///< about the world's origin [kg m^2/s]
+    /// What that defect is measured against, of the same bodies, about the world's origin [kg m^2/s]: the sum of their |angular momentum|,
+    /// where it is larger, at the step's start or end; of their forces (all but gravity together, and each contact's) times the farthest
+    /// that the body reaches and the step; and what rounding of poses makes of the defect.
+    double angular_momentum_size = 0, angular_impulse = 0, angular_momentum_rounding = 0;
 };
 
 /// Energies and momenta of a state, before any step.

@@ -110,8 +110,8 @@ std::string balance_text(const core::stepper::Balance& b) {
     std::string text = formatted("energy: %.4g J at the start, %.4g J at the end; %.4g J supplied, %.4g J lost by friction and dampers",
                                  b.energy_start, b.energy_end, b.work, b.dissipated);
     if (b.energy_scale > 0)
-        text += formatted("; %.4g J %s by the time integration (%.2g%% of the most that moves or is stored)", std::abs(b.energy_error),
-                          b.energy_error > 0 ? "gained" : "lost", 100 * std::abs(b.energy_error) / b.energy_scale);
+        text += formatted("; %.4g J %s by the time integration (%s of what passed through the motion)", std::abs(b.energy_error),
+                          b.energy_error > 0 ? "gained" : "lost", core::base::percent(std::abs(b.energy_error) / b.energy_scale).c_str());
     return text + "\n";
 }
 

@@ -37,6 +37,13 @@ TEST_CASE("Text in XML is what it was when it is read again, and what XML does n
     CHECK(xml_text("\xEF\xBF\xBF") == "\xEF\xBF\xBD");  // U+FFFF is no character of XML
 }
 
+TEST_CASE("A share is told with two digits, and without an exponent", "[base]") {
+    CHECK(percent(0.0123) == "1.2%");
+    CHECK(percent(0.98) == "98%");
+    CHECK(percent(1.2345) == "123%");
+    CHECK(percent(0) == "0%");
+}
+
 TEST_CASE("A field of a table is quoted where it must be, and no formula for a spreadsheet", "[base]") {
     CHECK(csv_cell("pin") == "pin");
     CHECK(csv_cell("a,b") == "\"a,b\"");
