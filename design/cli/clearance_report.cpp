@@ -47,7 +47,8 @@ Solids worse_of(Solids x, Solids y) {
 
 std::optional<core::clearance::Touch> both(const std::optional<core::clearance::Touch>& x, const std::optional<core::clearance::Touch>& y) {
     if (!x || !y) return x ? x : y;
-    return core::clearance::Touch{x->area + y->area, x->time, std::max(x->depth, y->depth), std::min(x->room, y->room)};
+    return core::clearance::Touch{x->area + y->area, x->time, std::max(x->depth, y->depth), std::min(x->room, y->room),
+                                  x->is_whole && y->is_whole};
 }
 
 // The whole pair: the least of its members.
