@@ -66,7 +66,8 @@ enum class Solids {
     unproven,    ///< nothing is claimed: the surfaces are not proven to stay apart
     disjoint,    ///< no point is in both, over all the time
     overlap,     ///< one lies inside the other's material
-    not_closed,  ///< a body is not closed, so that nothing is in both; neither does one come where the other would be if it were closed
+    not_closed,  ///< a body is not closed, so that nothing is in both; neither does one come where the other would be if it were closed,
+                 ///< unless the scene says that it is a sheet, which has no inside: of that it was not looked at
     unverified,  ///< one may lie inside the other: a mesh is not closed, and the other is within what would close it, or may come there
 };
 const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed", "not verified"

@@ -34,16 +34,16 @@ public:
         bodies_.resize(model_.bodies.size());
         solids_.resize(model_.bodies.size());
         for (std::size_t i = 0; i < certificate_.pairs.size(); ++i) {
-            const std::size_t before = report_.faults.size();
-            check_pair(certificate_.pairs[i], "/pairs/" + std::to_string(i));
-            if (report_.faults.size() == before) check_segments(i);
-            if (report_.faults.size() == before) check_solids(certificate_.pairs[i], "/pairs/" + std::to_string(i) + "/solids");
+            const PairCertificate& pair = certificate_.pairs[i];
+            const std::string where = "/pairs/" + std::to_string(i);
+            if (check_pair(pair, where) && check_segments(pair, where + "/segments/")) check_solids(pair, where + "/solids");
         }
         return report_;
     }
 
 private:
-    void fault(const std::string& where, const std::string& message) { add(report_, {where, message}); }
+    // False: how a check ends that finds one. The list has an end, so that its length tells nothing.
+    bool fault(const std::string& where, const std::string& message) { return add(report_, {where, message}), false; }
 
     static void add(CertificateReport& report, CertificateFault fault) {
         if (report.faults.size() < most_faults) report.faults.push_back(std::move(fault));
@@ -66,8 +66,12 @@ private:
         const base::Errors errors = check_joints(joints, model_.bodies.size());
         for (const base::Error& e : errors) fault(e.where, e.message);
         if (!errors.empty()) return;
+        joints_are_sound_ = true;
         const ProvenDeviations proven = prove_deviations(joints, model_, trajectory_);
-        if (!proven.fault.empty()) return fault("/joints", proven.fault);
+        if (!proven.fault.empty()) {
+            fault("/joints", proven.fault);
+            return;
+        }
         for (std::size_t i = 0; i < joints.bodies.size(); ++i)
             if (!(joints.deviations[i] >= proven.of_body[i]))
                 fault("/joints/deviations/" + std::to_string(i), "joints may have the body farther from the path than is claimed");
@@ -81,12 +85,19 @@ private:
 
     // Decided here, then compared: the lower bound is proven by now.
     void check_solids(const PairCertificate& pair, const std::string& where) {
-        if (pair.solids == Solids::overlap) return fault(where, "the solids overlap: there is no clearance to certify");
+        if (pair.solids == Solids::overlap) {
+            fault(where, "the solids overlap: there is no clearance to certify");
+            return;
+        }
         const SolidMesh &a = solid(pair.a), &b = solid(pair.b);
         PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
         if (ask_for_path(a, b)) start.path = places_;
+        if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);
         const Solids found = solids_of(a, b, start, pair.lower);
-        if (found == Solids::overlap) return fault(where, "one body lies inside the other's material");
+        if (found == Solids::overlap) {
+            fault(where, "one body lies inside the other's material");
+            return;
+        }
         if (pair.solids == Solids::unproven || pair.solids == found) return;
         fault(where, std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
                          (found == Solids::not_closed   ? "which cannot be verified: a body is not closed"
@@ -103,22 +114,22 @@ private:
 
     bool is_body(int body) const { return body >= 0 && body < static_cast<int>(model_.bodies.size()); }
 
-    void check_pair(const PairCertificate& pair, const std::string& where) {
+    // Can the rest of it be looked at?
+    bool check_pair(const PairCertificate& pair, const std::string& where) {
         if (!is_body(pair.a) || !is_body(pair.b) || pair.a == pair.b) return fault(where, "a pair of two bodies of the model is wanted");
         if (!(pair.lower >= 0) || !(pair.upper >= pair.lower) || !std::isfinite(pair.upper))
             return fault(where, "bounds with 0 <= lower <= upper are wanted");
-        check_upper(pair, where);
-        if (pair.lower == 0) return;  // nothing to prove
+        if (!check_upper(pair, where)) return false;
+        if (pair.lower == 0) return true;  // nothing to prove
         if (pair.segments.size() != places_.size())
             return fault(where + "/segments", std::to_string(places_.size()) + " proofs are wanted, one per segment of the path");
-        if (prepare(pair.a, where)) prepare(pair.b, where);
+        return prepare(pair.a, where) && prepare(pair.b, where);
     }
 
-    // All of a pair, on the threads; what is reported is in the order of the path.
-    void check_segments(std::size_t index) {
-        const PairCertificate& pair = certificate_.pairs[index];
-        if (pair.lower == 0 || report_.faults.size() == most_faults) return;
-        const std::string where = "/pairs/" + std::to_string(index) + "/segments/";
+    // All of a pair, on the threads; what is reported is in the order of the path. Is all of it proven?
+    bool check_segments(const PairCertificate& pair, const std::string& where) {
+        if (pair.lower == 0) return true;
+        if (report_.faults.size() == most_faults) return false;  // no more can be told
         std::vector<CertificateReport> reports(places_.size());
         base::parallel_for(static_cast<int>(places_.size()), 1, [&](int i) {
             reports[static_cast<std::size_t>(i)] = check_segment(pair, static_cast<std::size_t>(i), where + std::to_string(i));
@@ -128,6 +139,7 @@ private:
             report_.pieces += part.pieces;
             for (CertificateFault& found : part.faults) add(report_, std::move(found));
         }
+        return std::all_of(reports.begin(), reports.end(), [](const CertificateReport& part) { return part.accepted(); });
     }
 
     // The body's parts, once; false if its lists are wrong.
@@ -190,7 +202,7 @@ private:
         return report;
     }
 
-    void check_upper(const PairCertificate& pair, const std::string& where) {
+    bool check_upper(const PairCertificate& pair, const std::string& where) {
         const Place place{pair.step, pair.segment};
         const auto is_place = [&](const Place& p) { return p.step == place.step && p.segment == place.segment; };
         const auto found = std::find_if(places_.begin(), places_.end(), is_place);
@@ -202,17 +214,19 @@ private:
         const auto index = static_cast<std::size_t>(found - places_.begin());
         const BodyPath a = path(index, pair.a), b = path(index, pair.b);
         const Interval distance = distance_at(a, b, X_a, X_b, pair.s);
-        if (!(distance.high <= pair.upper)) fault(where + "/upper", "the witness's points are farther apart");
+        if (!(distance.high <= pair.upper)) return fault(where + "/upper", "the witness's points are farther apart");
         const double size =
             norm_bound(X_a) + norm_bound(X_b) + norm_bound(a.place) + norm_bound(b.place) + norm_bound(a.drift) + norm_bound(b.drift);
         const double turned = 1 + norm_bound(a.theta) + norm_bound(b.theta) + a.speed + b.speed;
         if (!(pair.upper - distance.low <= 1e-11 * size * turned + 1e-300))
-            fault(where + "/upper", "the witness's points are closer: the bound is not attained");
+            return fault(where + "/upper", "the witness's points are closer: the bound is not attained");
+        return true;
     }
 
     const Certificate& certificate_;
     const model::Model& model_;
     const stepper::Trajectory& trajectory_;
+    bool joints_are_sound_ = false;  // as data: the charges can be asked for
     std::vector<Place> places_;
     std::vector<std::optional<CertifiedBody>> bodies_;
     std::vector<std::optional<SolidMesh>> solids_;

@@ -14,20 +14,7 @@ namespace {
 
 enum class Side { outside, inside, unknown };
 
-Interval3 placed(const IntervalMatrix& rotation, const Vector3& x) {
-    Interval3 out;
-    for (std::size_t i = 0; i < 3; ++i)
-        out[i] = rotation[i][0] * Interval(x[0]) + rotation[i][1] * Interval(x[1]) + rotation[i][2] * Interval(x[2]);
-    return out;
-}
-
-Vector3 middle(const Interval3& x) { return {0.5 * (x[0].low + x[0].high), 0.5 * (x[1].low + x[1].high), 0.5 * (x[2].low + x[2].high)}; }
-
-Matrix3 middle(const IntervalMatrix& m) {
-    Matrix3 out;
-    for (int i = 0; i < 3; ++i) out.row(i) = middle(m[static_cast<std::size_t>(i)]);
-    return out;
-}
+constexpr double above_rounding = 1 + 1e-12;  // of sums of lengths, far above their rounding
 
 // Both bodies where their paths begin, as seen from the place of one of them.
 struct Start {
@@ -35,19 +22,12 @@ struct Start {
     Interval3 offset;  // q_inner - q_outer
 };
 
-bool is_within(const Vector3& x, const geometry::Closure& closure) {
-    return geometry::winding_number(x, closure.vertices, closure.triangles).value_or(1) != 0;
-}
-
 Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double lower) {
-    Interval3 world = placed(at.inner, x);
-    for (std::size_t k = 0; k < 3; ++k) world[k] = world[k] + at.offset[k];
+    const Interval3 world = times(at.inner, exactly(x)) + at.offset;
     const Vector3 near = middle(at.outer).inverse() * middle(world);
     if (!near.allFinite() || !(near.cwiseAbs().maxCoeff() < largest_magnitude)) return Side::unknown;
-    Interval3 off = placed(at.outer, near);
-    for (std::size_t k = 0; k < 3; ++k) off[k] = off[k] - world[k];
-    if (!(norm_bound(off) < lower)) return Side::unknown;
-    const bool inside = outer.closure ? is_within(near, *outer.closure) : is_in_material(near, outer);
+    if (!(norm_bound(times(at.outer, exactly(near)) - world) < lower)) return Side::unknown;
+    const bool inside = outer.closure ? geometry::is_within(near, *outer.closure) : is_in_material(near, outer);
     return inside ? Side::inside : Side::outside;
 }
 
@@ -72,20 +52,21 @@ bool stays_outside(const SolidMesh& inner, const SolidMesh& outer, const Start& 
     const double room = std::min(0.5 * lower, 1e-9 * size);
     const auto is_outside = [&](int v) { return side_of(inner.mesh->vertices.col(v), at, outer, room) == Side::outside; };
     if (!std::all_of(inner.samples.begin(), inner.samples.end(), is_outside)) return false;
-    if (lower > closure.reach + room) return true;
+    const double away = above_rounding * (room + start.charge);  // of the lids
+    if (lower > above_rounding * (closure.reach + away)) return true;
     const int body = is_a_outer ? start.a : start.b, other = is_a_outer ? start.b : start.a;
     std::optional<geometry::BodyHierarchy> own;
     const LidSurface lids{outer.lids->mesh, outer.lids->hierarchy},
         surface{*inner.mesh, inner.hierarchy != nullptr ? *inner.hierarchy : own.emplace(*inner.mesh)};
-    if (!inner.lids) return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface}, room);
+    if (!inner.lids) return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface}, away);
     const LidSurface inner_lids{inner.lids->mesh, inner.lids->hierarchy};  // two lids must not meet either
-    return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface, &inner_lids}, room);
+    return lids_stay_apart({start.trajectory, start.path, body, other}, lids, {&surface, &inner_lids}, away);
 }
 
 }  // namespace
 
 SolidMesh solid_of(const model::Body& body) {
-    SolidMesh solid = solid_mesh(body.mesh, body.mass_kind != scene::MassKind::volume);
+    SolidMesh solid = solid_mesh(body.mesh, is_sheet(body));
     solid.hierarchy = body.hierarchy.get();
     return solid;
 }
@@ -100,26 +81,17 @@ SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet) {
         geometry::BodyHierarchy hierarchy(lids);
         solid.lids.emplace(SolidMesh::Lids{std::move(lids), std::move(hierarchy)});
     }
-    solid.samples = mesh.codimensional_points;
-    const bool has_shells = mesh.triangle_shell.size() == mesh.triangles.size();
-    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    solid.samples = geometry::samples_of(mesh);
+    solid.shells.resize(mesh.shell_names.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto shell = static_cast<std::size_t>(has_shells ? mesh.triangle_shell[t] : 0);
-        if (shell >= solid.shells.size()) solid.shells.resize(shell + 1);
-        SolidMesh::Shell& part = solid.shells[shell];
-        if (part.triangles.empty()) {
-            solid.samples.push_back(mesh.triangles[t][0]);
-            part.low = part.high = mesh.vertices.col(mesh.triangles[t][0]);
-        }
+        SolidMesh::Shell& part = solid.shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
+        if (part.triangles.empty()) part.low = part.high = mesh.vertices.col(mesh.triangles[t][0]);
         part.triangles.push_back(mesh.triangles[t]);
         for (const int v : mesh.triangles[t]) {
-            on_triangle[static_cast<std::size_t>(v)] = true;
             part.low = part.low.cwiseMin(mesh.vertices.col(v));
             part.high = part.high.cwiseMax(mesh.vertices.col(v));
         }
     }
-    for (const geometry::Edge& edge : mesh.edges)
-        if (!on_triangle[static_cast<std::size_t>(edge[0])]) solid.samples.push_back(edge[0]);
     return solid;
 }
 
@@ -141,15 +113,13 @@ Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start,
         const BodyPath path_a = body_path(start.trajectory, start.step, start.segment, start.a),
                        path_b = body_path(start.trajectory, start.step, start.segment, start.b);
         if (!is_usable(path_a) || !is_usable(path_b)) return Solids::unproven;
-        Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, {}}, back{at.outer, at.inner, {}};
-        for (std::size_t k = 0; k < 3; ++k) {
-            at.offset[k] = path_a.place[k] - path_b.place[k];
-            back.offset[k] = -at.offset[k];
-        }
+        const Start at{pose_at(path_a, 0).rotation, pose_at(path_b, 0).rotation, path_a.place - path_b.place},
+            back{at.outer, at.inner, path_b.place - path_a.place};
         const Side a_in_b = b_holds ? any_inside(a, b, at, lower) : Side::outside;
         const Side b_in_a = a_holds ? any_inside(b, a, back, lower) : Side::outside;
         if (a_in_b == Side::inside || b_in_a == Side::inside) return Solids::overlap;
         if (a_in_b == Side::unknown || b_in_a == Side::unknown) return Solids::unproven;
+        if (!(lower > start.charge)) return Solids::unproven;
         if (b.closure && !stays_outside(a, b, at, start, false, lower)) return Solids::unverified;
         if (a.closure && !stays_outside(b, a, back, start, true, lower)) return Solids::unverified;
     }

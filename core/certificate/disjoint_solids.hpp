@@ -11,8 +11,10 @@
 /// What is not closed has no inside, yet it may have been meant to have one: a part that lies in it is not told as clear of it. Whether
 /// that can be excluded is decided here, for every command: nothing of the other body is within the mesh with its openings closed
 /// (geometry/closure.hpp) where the time begins, and nothing of it ever meets a lid, so that nothing comes in. The lids are out of reach
-/// where `lower` is more than any point of them is from the surface; else lid_distance.hpp looks along the path. What a scene says to be a
-/// shell, wires or points (scene::MassKind) is meant to have no inside.
+/// where `lower` is more than any point of them is from the surface; else lid_distance.hpp looks along the path. Where bodies may be a
+/// little off the path (PairStart::charge), surfaces and lids have to stay apart by more than that: so they do on the way from one to the
+/// other, and what is outside of the path's bodies is outside of theirs. What a scene says to be a shell, wires or points (model::is_sheet)
+/// is meant to have no inside.
 #pragma once
 
 #include <optional>
@@ -45,7 +47,7 @@ struct SolidMesh {
     std::optional<Lids> lids;                            ///< the closure's
     const geometry::BodyHierarchy* hierarchy = nullptr;  ///< of the mesh, if it is at hand; must stay where it is
 };
-/// @param is_sheet  It is meant to have no inside, unless it is closed.
+/// Contract: connectivity built. @param is_sheet  It is meant to have no inside, unless it is closed.
 SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet = false);
 SolidMesh solid_of(const model::Body& body);
 
@@ -60,12 +62,15 @@ struct PairStart {
     /// All of the time, from `step`, `segment` on, for bodies that are not closed; empty: it is not a path along which they can be
     /// followed.
     std::vector<Place> path{};
+    /// How far the two may be from that path, together: it is decided for wherever they are within that [m]
+    double charge = 0;
 };
 /// Is `path` of use for the two?
 inline bool ask_for_path(const SolidMesh& a, const SolidMesh& b) { return a.closure.has_value() || b.closure.has_value(); }
 
 /// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
-/// `not_closed` or `unverified` where one is not closed; `unproven` if lower is 0 or within rounding.
+/// `not_closed` or `unverified` where one is not closed; `unproven` if lower is 0 or within rounding, or if it is no more than the charge
+/// (and of the path itself neither is inside the other).
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower);
 
 }  // namespace fettle::core::certificate

@@ -14,15 +14,6 @@ using Bernstein = std::array<double, 4>;
 // Of more, the box is tried first.
 constexpr std::size_t few_points = 192;
 
-Interval3 exactly(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Interval3 operator+(const Interval3& a, const Interval3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Interval3 operator-(const Interval3& a, const Interval3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Interval3 operator*(const Interval& s, const Interval3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Interval dot(const Interval3& a, const Interval3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Interval3 times(const IntervalMatrix& m, const Interval3& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
-Interval3 transposed_times(const IntervalMatrix& m, const Interval3& v) { return v[0] * m[0] + v[1] * m[1] + v[2] * m[2]; }
-
 // Coefficients of omega and omega', of z = x^2.
 struct Coefficients {
     Interval b, c, b_g, c_g;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The certificate checker's own mathematics: rigid motion and the bound of a leaf in interval arithmetic. Used by
-/// certificate_checker.cpp alone; nothing here is used by the search.
+/// what checks and by what both ask alike (disjoint_solids.hpp); nothing here is used by the search for distances.
 ///
 /// Motion. R(s) = exp([theta]) B, theta = theta0 + s w, B the stored base as it is. R' = [omega] R with, x = |theta|,
 ///   omega = w + b k + c theta x k,   k = theta x w = theta0 x w (constant),   b = (1 - cos x)/x^2,   c = (x - sin x)/x^3,
@@ -34,6 +34,22 @@ namespace fettle::core::certificate {
 using geometry::Interval;
 using geometry::Interval3;
 using IntervalMatrix = std::array<Interval3, 3>;  ///< rows
+
+inline Vector3 middle(const Interval3& x) {
+    return {0.5 * (x[0].low + x[0].high), 0.5 * (x[1].low + x[1].high), 0.5 * (x[2].low + x[2].high)};
+}
+inline Matrix3 middle(const IntervalMatrix& m) {
+    Matrix3 out;
+    for (int i = 0; i < 3; ++i) out.row(i) = middle(m[static_cast<std::size_t>(i)]);
+    return out;
+}
+inline Interval3 exactly(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Interval3 operator+(const Interval3& a, const Interval3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Interval3 operator-(const Interval3& a, const Interval3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Interval3 operator*(const Interval& s, const Interval3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline Interval dot(const Interval3& a, const Interval3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Interval3 times(const IntervalMatrix& m, const Interval3& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
+inline Interval3 transposed_times(const IntervalMatrix& m, const Interval3& v) { return v[0] * m[0] + v[1] * m[1] + v[2] * m[2]; }
 
 /// One body on one path segment, the stored numbers as they are.
 struct BodyPath {

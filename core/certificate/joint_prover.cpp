@@ -24,13 +24,6 @@ constexpr double largest_turn = 1.4;     // of both bodies of an angle, over a s
 constexpr double inflation = 1 + 1e-10;  // of sums of up to 300 products that are not negative: far more than their rounding
 constexpr double unit = 0x1p-52;
 
-Interval3 exactly(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Interval3 operator+(const Interval3& a, const Interval3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Interval3 operator-(const Interval3& a, const Interval3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Interval3 operator*(const Interval& s, const Interval3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Interval dot(const Interval3& a, const Interval3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Interval3 times(const IntervalMatrix& m, const Interval3& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
-
 // Everything within `radius` of it.
 Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
 Interval3 widened(const Interval3& x, double radius) { return {widened(x[0], radius), widened(x[1], radius), widened(x[2], radius)}; }

@@ -8,13 +8,15 @@
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/geometry/self_intersection.hpp"
 
 namespace fettle::core::certificate {
 namespace {
 
-constexpr long most_bounds = 400'000;      // beside one for each place
-constexpr double outwards = 1 + 1e-12;     // of radii and speeds, far above their rounding
-constexpr double centre_rounding = 1e-14;  // of a middle of points, in their sizes
+constexpr long most_bounds = 400'000;        // beside one for each place
+constexpr std::size_t most_instants = 4096;  // whose poses are kept
+constexpr double outwards = 1 + 1e-12;       // of radii and speeds, far above their rounding
+constexpr double centre_rounding = 1e-14;    // of a middle of points, in their sizes
 
 // Some points of a body: a node of a hierarchy, or a triangle (an edge or a point repeats its last corner).
 struct Piece {
@@ -79,19 +81,14 @@ std::vector<Piece> parts_of(const Piece& piece) {
     return out;
 }
 
-Interval row_times(const Interval3& row, const Vector3& x) {
-    return row[0] * Interval(x[0]) + row[1] * Interval(x[1]) + row[2] * Interval(x[2]);
-}
-
 // How far a piece reaches from its centre along a direction of the world.
 double reach_along(const Piece& piece, const IntervalMatrix& rotation, const Interval3& world) {
-    Interval3 m;  // the direction in the piece's frame
-    for (std::size_t k = 0; k < 3; ++k) m[k] = world[0] * rotation[0][k] + world[1] * rotation[1][k] + world[2] * rotation[2][k];
+    const Interval3 m = transposed_times(rotation, world);  // the direction in the piece's frame
     double reach = 0;
     if (piece.node >= 0) {
         for (int k = 0; k < 3; ++k) reach += m[static_cast<std::size_t>(k)].magnitude() * piece.half[k];
     } else {
-        for (const Vector3& corner : piece.corners) reach = std::max(reach, row_times(m, corner - piece.centre).magnitude());
+        for (const Vector3& corner : piece.corners) reach = std::max(reach, dot(m, exactly(corner - piece.centre)).magnitude());
     }
     return outwards * (reach + 4 * centre_rounding * piece.reach * norm_bound(world));
 }
@@ -105,9 +102,7 @@ public:
         if (!(path_a.magnitude < base::largest_magnitude) || !(path_b.magnitude < base::largest_magnitude)) return false;
         a_ = &path_a;
         b_ = &path_b;
-        Interval3 drift;
-        for (std::size_t k = 0; k < 3; ++k) drift[k] = a_->drift[k] - b_->drift[k];
-        drift_ = norm_bound(drift);
+        drift_ = norm_bound(a_->drift - b_->drift);
         instants_.clear();
         std::vector<Cell> open;
         for (const LidSurface* other : others) open.push_back({{0, 1}, node_of(lids, 0), node_of(*other, 0)});
@@ -119,6 +114,7 @@ public:
             const double moved = outwards * e * (drift_ + turning(*a_, cell.lid) + turning(*b_, cell.other));
             const double gap = apart(cell);
             if (gap - moved > room_) continue;
+            if (are_seen_to_be_near(cell)) return false;
             const bool only_moves = gap > room_;  // apart at the middle: nothing but the motion is in the way
             if (!split(cell, only_moves || moved > std::max(cell.lid.radius, cell.other.radius), open)) return false;
         }
@@ -138,36 +134,48 @@ private:
     static double turning(const BodyPath& path, const Piece& piece) { return path.speed * path.base_norm * piece.reach; }
 
     const Instant& at(double s) {
-        const auto [known, is_new] = instants_.try_emplace(s);
-        if (!is_new) return known->second;
-        known->second.a = pose_at(*a_, s).rotation;
-        known->second.b = pose_at(*b_, s).rotation;
-        for (std::size_t k = 0; k < 3; ++k)
-            known->second.offset[k] = (a_->place[k] + Interval(s) * a_->drift[k]) - (b_->place[k] + Interval(s) * b_->drift[k]);
-        return known->second;
+        const auto known = instants_.find(s);
+        if (known != instants_.end()) return known->second;
+        if (instants_.size() >= most_instants) instants_.clear();
+        const Interval3 offset = (a_->place + Interval(s) * a_->drift) - (b_->place + Interval(s) * b_->drift);
+        return instants_.emplace(s, Instant{pose_at(*a_, s).rotation, pose_at(*b_, s).rotation, offset}).first->second;
     }
 
     // At the middle of the span, from below: along the way between the centres, and along the normal of a lid's triangle.
     double apart(const Cell& cell) {
         const Instant& here = at(0.5 * (cell.span.start + cell.span.end));
-        Interval3 between = here.offset;  // of the centres
-        for (std::size_t k = 0; k < 3; ++k)
-            between[k] = between[k] + row_times(here.a[k], cell.lid.centre) - row_times(here.b[k], cell.other.centre);
-        const Vector3 way(between[0].high, between[1].high, between[2].high);
-        double best = apart_along(Interval3{Interval(way[0]), Interval(way[1]), Interval(way[2])}, cell, here, between);
+        const Interval3 gap = between(cell, here);
+        double best = apart_along(exactly(middle(gap)), cell, here, gap);
         if (cell.lid.node < 0) {
             const auto& x = cell.lid.corners;
             const Vector3 n = (x[1] - x[0]).cross(x[2] - x[0]);
-            best = std::max(best,
-                            apart_along({row_times(here.a[0], n), row_times(here.a[1], n), row_times(here.a[2], n)}, cell, here, between));
+            best = std::max(best, apart_along(times(here.a, exactly(n)), cell, here, gap));
         }
         return best;
+    }
+
+    // From the centre of one piece to that of the other, in the world.
+    static Interval3 between(const Cell& cell, const Instant& here) {
+        return here.offset + times(here.a, exactly(cell.lid.centre)) - times(here.b, exactly(cell.other.centre));
+    }
+
+    // Two triangles that cross, or whose centres are too near, at the middle of the span: no halving proves anything of them.
+    bool are_seen_to_be_near(const Cell& cell) {
+        if (cell.lid.node >= 0 || cell.other.node >= 0) return false;
+        const Instant& here = at(0.5 * (cell.span.start + cell.span.end));
+        if (norm_bound(between(cell, here)) <= room_) return true;
+        std::array<Vector3, 3> lid, other;
+        for (std::size_t k = 0; k < 3; ++k) {
+            lid[k] = middle(times(here.a, exactly(cell.lid.corners[k])) + here.offset);
+            other[k] = middle(times(here.b, exactly(cell.other.corners[k])));
+        }
+        return geometry::triangles_intersect(lid, other);
     }
 
     static double apart_along(const Interval3& world, const Cell& cell, const Instant& here, const Interval3& between) {
         const double length = norm_bound(world);
         if (!(length > 0)) return -base::infinity;
-        const Interval gap = world[0] * between[0] + world[1] * between[1] + world[2] * between[2];
+        const Interval gap = dot(world, between);
         const double away =
             std::max(gap.low, -gap.high) - outwards * (reach_along(cell.lid, here.a, world) + reach_along(cell.other, here.b, world));
         return away > 0 ? away / (outwards * length) : away;

@@ -3,8 +3,9 @@
 /// hierarchies, triangles and their halves) by separating directions, the way between their centres or a lid's normal, in interval
 /// arithmetic: over a span of time of half length e about its middle m, with any n,
 ///   |x_a(s) - x_b(s)| >= (|n.(c_a(m) - c_b(m))| - h_a - h_b) / |n| - e (|q_a' - q_b'| + |w_a| |X_a| + |w_b| |X_b|),
-/// c the pieces' centres, h how far they reach from them along n. What is loosest is halved, time or a piece.
-/// That is slow where they come near each other, and is given up after a while: then it is not known.
+/// c the pieces' centres in the world, h how far they reach from them along n, q the bodies' reference points, w_a, w_b their turns over
+/// the segment (rotation vectors), |X_a|, |X_b| how far the pieces' points are from them at most. What is loosest is halved, time or a
+/// piece. That is slow where they come near each other, and is given up after a while: then it is not known.
 #pragma once
 
 #include <vector>

@@ -14,15 +14,6 @@ constexpr std::size_t few_region_points = 192;  // of more, their box stands for
 constexpr std::size_t most_moves = 1 << 16;     // kept
 constexpr double unit = 1 + 1e-8;               // above any power of |z| that is needed: linkage.hpp lets it be off 1 by 1e-9
 
-Interval3 exact3(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Interval3 sum3(const Interval3& a, const Interval3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Interval3 minus3(const Interval3& a, const Interval3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Interval3 times3(const Interval& s, const Interval3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Interval dot3(const Interval3& a, const Interval3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Interval3 turned3(const IntervalMatrix& m, const Interval3& v) { return {dot3(m[0], v), dot3(m[1], v), dot3(m[2], v)}; }
-Interval3 transposed_turned3(const IntervalMatrix& m, const Interval3& v) {
-    return sum3(sum3(times3(v[0], m[0]), times3(v[1], m[1])), times3(v[2], m[2]));
-}
 IntervalMatrix product3(const IntervalMatrix& a, const IntervalMatrix& b) {
     IntervalMatrix out;
     for (std::size_t i = 0; i < 3; ++i)
@@ -34,7 +25,7 @@ IntervalMatrix product3(const IntervalMatrix& a, const IntervalMatrix& b) {
 IntervalMatrix exponential(const Interval3& t) {
     const Interval z = square(t[0]) + square(t[1]) + square(t[2]), x = sqrt(z);
     const Interval a = sinc(x), b = Interval(0.5) * square(sinc(Interval(0.5) * x)), cosine = Interval(1) - z * b;
-    const Interval3 at = times3(a, t), bt = times3(b, t);
+    const Interval3 at = a * t, bt = b * t;
     return {Interval3{cosine + bt[0] * t[0], bt[0] * t[1] - at[2], bt[0] * t[2] + at[1]},
             Interval3{bt[0] * t[1] + at[2], cosine + bt[1] * t[1], bt[1] * t[2] - at[0]},
             Interval3{bt[0] * t[2] - at[1], bt[1] * t[2] + at[0], cosine + bt[2] * t[2]}};
@@ -44,8 +35,8 @@ IntervalMatrix exponential(const Interval3& t) {
 // rounding and the functional's width |X| bounds.
 double least_along(const Interval3& f, const Region& region, bool by_box) {
     if (by_box)
-        return dot3(f, {Interval(region.low.x(), region.high.x()), Interval(region.low.y(), region.high.y()),
-                        Interval(region.low.z(), region.high.z())})
+        return dot(f, {Interval(region.low.x(), region.high.x()), Interval(region.low.y(), region.high.y()),
+                       Interval(region.low.z(), region.high.z())})
             .low;
     Vector3 middle;
     Interval3 width;
@@ -58,7 +49,7 @@ double least_along(const Interval3& f, const Region& region, bool by_box) {
         const double value = middle[0] * x[0] + middle[1] * x[1] + middle[2] * x[2];
         if (!(value >= low)) low = value;  // also what is no number
     }
-    const Interval rounding = Interval(0x1p-49) * Interval(norm_bound(exact3(middle))) + Interval(norm_bound(width));
+    const Interval rounding = Interval(0x1p-49) * Interval(norm_bound(exactly(middle))) + Interval(norm_bound(width));
     return (Interval(low) - rounding * Interval(region.radius) - Interval(1e-290)).low;
 }
 
@@ -84,7 +75,7 @@ RangeProver::Side RangeProver::side_of(const std::vector<Screw>& screws, const s
         Interval tilt = 0;
         for (std::size_t i = 0; i < j; ++i)
             if (screws[i].turn != 0)
-                tilt = tilt + Interval(2 * unit) * Interval(norm_bound(cross(exact3(screws[i].axis), exact3(screws[j].axis))));
+                tilt = tilt + Interval(2 * unit) * Interval(norm_bound(cross(exactly(screws[i].axis), exactly(screws[j].axis))));
         side.tilt.push_back(tilt.high);
     }
     return side;
@@ -97,10 +88,10 @@ const RangeProver::Placement& RangeProver::move(Side& side, std::size_t screw, d
     if (!is_new) return found->second;
     const Screw& s = side.screws[screw];
     const Interval d = Interval(value) - Interval(side.starts[screw]);
-    const Interval3 axis = exact3(s.axis), point = exact3(s.point);
+    const Interval3 axis = exactly(s.axis), point = exactly(s.point);
     Placement& out = found->second;
-    out.rotation = exponential(times3(Interval(s.turn) * d, axis));
-    out.place = sum3(minus3(point, turned3(out.rotation, point)), times3(Interval(s.slide) * d, axis));
+    out.rotation = exponential((Interval(s.turn) * d) * axis);
+    out.place = point - times(out.rotation, point) + (Interval(s.slide) * d) * axis;
     return out;
 }
 
@@ -110,10 +101,10 @@ RangeProver::Placement RangeProver::after(Side& side, std::size_t first, const s
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j)
             out.rotation[i][j] = Interval(side.start.rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
-    out.place = exact3(side.start.position);
+    out.place = exactly(side.start.position);
     for (std::size_t j = side.screws.size(); j-- > first;) {
         const Placement& by = move(side, j, at[static_cast<std::size_t>(side.screws[j].coordinate)]);
-        out = {product3(by.rotation, out.rotation), sum3(turned3(by.rotation, out.place), by.place)};
+        out = {product3(by.rotation, out.rotation), times(by.rotation, out.place) + by.place};
     }
     return out;
 }
@@ -128,13 +119,11 @@ std::vector<double> RangeProver::radii(Side& side, const Region& region, const R
     for (std::size_t j = count; j-- > 0;) {
         const Screw& screw = side.screws[j];
         const Placement inner = after(side, j + 1, center);
-        const Interval3 axis = exact3(screw.axis), point = exact3(screw.point);
-        const auto distance = [&](const Interval3& X) {
-            return norm_bound(cross(axis, minus3(sum3(turned3(inner.rotation, X), inner.place), point)));
-        };
+        const Interval3 axis = exactly(screw.axis), point = exactly(screw.point);
+        const auto distance = [&](const Interval3& X) { return norm_bound(cross(axis, times(inner.rotation, X) + inner.place - point)); };
         double most = 0;
         if (region.points.size() <= few_region_points) {
-            for (const Vector3& x : region.points) most = std::max(most, distance(exact3(x)));
+            for (const Vector3& x : region.points) most = std::max(most, distance(exactly(x)));
         } else {
             most = distance({Interval(region.low.x(), region.high.x()), Interval(region.low.y(), region.high.y()),
                              Interval(region.low.z(), region.high.z())});
@@ -153,18 +142,17 @@ std::vector<double> RangeProver::radii(Side& side, const Region& region, const R
 void RangeProver::add_losses(Side& side, const Region& region, const RangeBox& box, const std::vector<Vector3>& normals, Losses& losses) {
     const std::vector<double> r = radii(side, region, box);
     double length = 0;
-    for (const Vector3& n : normals) length = std::max(length, norm_bound(exact3(n)));
+    for (const Vector3& n : normals) length = std::max(length, norm_bound(exactly(n)));
     for (std::size_t j = 0; j < side.screws.size(); ++j) {
         const Screw& screw = side.screws[j];
         const auto k = static_cast<std::size_t>(screw.coordinate);
         const Interval half = Interval(0.5) * (Interval(box.high[k]) - Interval(box.low[k])), turn = Interval(std::abs(screw.turn)) * half;
         const Interval slide = Interval(std::abs(screw.slide)) * half, speed = turn * Interval(r[j]) + slide;
         double across = 0, change = 0;
-        for (const Vector3& n : normals) across = std::max(across, norm_bound(cross(exact3(n), exact3(screw.axis))));
+        for (const Vector3& n : normals) across = std::max(across, norm_bound(cross(exactly(n), exactly(screw.axis))));
         across = std::min((Interval(across) + Interval(side.tilt[j]) * Interval(length)).high, (Interval(length) * Interval(unit)).high);
         for (std::size_t c = 0; normals.size() > 1 && c < normals.size(); ++c)
-            if ((c >> k & 1) == 0)
-                change = std::max(change, norm_bound(minus3(exact3(normals[c | std::size_t{1} << k]), exact3(normals[c]))));
+            if ((c >> k & 1) == 0) change = std::max(change, norm_bound(exactly(normals[c | std::size_t{1} << k]) - exactly(normals[c])));
         Interval loss = Interval(0.5) * (square(turn) * Interval(r[j]) * Interval(across) + Interval(change) * speed);
         for (std::size_t i = 0; i < j; ++i)
             if (side.screws[i].coordinate == screw.coordinate)
@@ -189,11 +177,11 @@ bool RangeProver::is_above(const Region& a, const Region& b, const RangeBox& box
     std::vector<double> at(n);
     for (std::size_t c = 0; c < std::size_t{1} << n; ++c) {
         for (std::size_t k = 0; k < n; ++k) at[k] = (c >> k & 1) != 0 ? box.high[k] : box.low[k];
-        const Interval3 normal = exact3(normals[normals.size() == 1 ? 0 : c]);
+        const Interval3 normal = exactly(normals[normals.size() == 1 ? 0 : c]);
         const Placement place_a = after(a_, 0, at), place_b = after(b_, 0, at);
-        const Interval3 of_a = transposed_turned3(place_a.rotation, normal), of_b = transposed_turned3(place_b.rotation, normal);
+        const Interval3 of_a = transposed_times(place_a.rotation, normal), of_b = transposed_times(place_b.rotation, normal);
         const Interval3 from_b{-of_b[0], -of_b[1], -of_b[2]};
-        const Interval offset = dot3(normal, minus3(place_a.place, place_b.place));
+        const Interval offset = dot(normal, place_a.place - place_b.place);
         const auto apart = [&](bool box_a, bool box_b) {
             return (Interval(least_along(of_a, a, box_a)) + Interval(least_along(from_b, b, box_b)) + offset).low;
         };
@@ -211,7 +199,7 @@ long RangeProver::prove(const Region& a, const Region& b, const RangeBox& box, c
     double length = 0;
     for (const Vector3& normal : normals) {
         if (!normal.allFinite()) return 0;
-        length = std::max(length, norm_bound(exact3(normal)));
+        length = std::max(length, norm_bound(exactly(normal)));
     }
     if (!(length > 1e-6 && length < 1e6)) return 0;
     const Losses lost = losses(a, b, box, normals);
@@ -237,7 +225,7 @@ long RangeProver::prove(const Region& a, const Region& b, const RangeBox& box, c
 
 Interval RangeProver::distance_at(const Interval3& X_a, const Interval3& X_b, const std::vector<double>& at) {
     const Placement a = after(a_, 0, at), b = after(b_, 0, at);
-    const Interval3 d = sum3(minus3(turned3(a.rotation, X_a), turned3(b.rotation, X_b)), minus3(a.place, b.place));
+    const Interval3 d = (times(a.rotation, X_a) - times(b.rotation, X_b)) + (a.place - b.place);
     return sqrt(square(d[0]) + square(d[1]) + square(d[2]));
 }
 

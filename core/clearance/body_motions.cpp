@@ -64,7 +64,7 @@ std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<
         const model::Body& body = model.bodies[bodies[i]];
         const model::Body& earlier = model.bodies[bodies[first[i]]];
         const bool is_copy =
-            first[i] != static_cast<std::size_t>(i) && earlier.mass_kind == body.mass_kind && have_same_shape(earlier.mesh, body.mesh);
+            first[i] != static_cast<std::size_t>(i) && is_sheet(earlier) == is_sheet(body) && have_same_shape(earlier.mesh, body.mesh);
         if (is_copy) return;
         first[i] = static_cast<std::size_t>(i);
         shapes[bodies[i]].tree = std::make_shared<const PieceTree>(make_piece_tree(body.mesh, *body.hierarchy));

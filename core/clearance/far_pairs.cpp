@@ -71,6 +71,7 @@ private:
         const auto &a = *shapes_[static_cast<std::size_t>(request.a)].solid, &b = *shapes_[static_cast<std::size_t>(request.b)].solid;
         certificate::PairStart start{trajectory_, first.step, first.segment, request.a, request.b};
         if (ask_for_path(a, b)) start.path = places_;
+        start.charge = request.charge;
         return certificate::solids_of(a, b, start, lower);
     }
 
@@ -97,7 +98,7 @@ PairClearance far_pair(const PairRequest& request, double lower, Solids solids) 
     PairClearance result;
     result.a = request.a;
     result.b = request.b;
-    result.minimum = request.minimum;
+    result.minimum = required_gap(request);
     result.is_far = true;
     result.lower = lower;
     result.upper = result.sampled = infinity;

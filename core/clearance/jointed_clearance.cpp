@@ -86,7 +86,6 @@ PairClearance unbounded(PairClearance pair, double minimum, const std::string& r
 
 PairClearance undecided(PairClearance pair, const std::string& reason) {
     pair.intersecting = false;
-    pair.touch.reset();
     pair.overlap.reset();
     if (pair.solids == Solids::overlap || !(pair.lower > 0)) pair.solids = Solids::unproven;
     pair.status = PairStatus::undecided;
@@ -100,7 +99,7 @@ const char* const between_nodes = "joints part between the nodes of the path by 
 PairClearance charged(PairClearance pair, double minimum, double charge) {
     pair.minimum = minimum;
     if (!(charge > 0)) return pair;
-    const bool was_clash = pair.is_clash(), is_deep = pair.overlap && pair.overlap->depth_lower > charge;
+    const bool was_clash = pair.is_clash(), is_deep = pair.overlap && pair.overlap->depth_lower > charge, was_apart = pair.lower > 0;
     pair.lower = std::max(0.0, pair.lower - charge);
     pair.upper += charge;
     for (MarginInterval& interval : pair.margin) {
@@ -108,9 +107,15 @@ PairClearance charged(PairClearance pair, double minimum, double charge) {
         interval.upper += charge;
     }
     pair.clash_not_before = 0;  // of the path's own clash
-    if (pair.touch && pair.touch->room > charge) return pair;
+    const bool was_touching = pair.touch.has_value();
+    if (was_touching && !(pair.touch->room > charge)) pair.touch.reset();
+    if (pair.touch && pair.status == PairStatus::contact) return pair;
     if (was_clash) return is_deep ? pair : undecided(std::move(pair), between_nodes);
-    if (pair.status == PairStatus::undecided) return pair.lower > 0 ? pair : undecided(pair, pair.reason);
+    if (pair.status == PairStatus::undecided) {
+        if (pair.lower > 0 || pair.touch) return pair;
+        return undecided(pair, was_apart || was_touching ? between_nodes : pair.reason);
+    }
+    // What touches on the path and was found in each other there is not known to be so where the joints have it.
     if (pair.status == PairStatus::violated ? pair.upper < minimum : pair.lower > 0 && pair.lower >= minimum) return pair;
     return undecided(std::move(pair), between_nodes);
 }
@@ -180,6 +185,7 @@ std::vector<PairClearance> certify_jointed(const model::Model& model, const step
         const double charge = charge_of(pair);
         if (pair.minimum > 0) pair.minimum += charge;
         pair.far += charge;
+        pair.charge = charge;
     }
     std::vector<PairClearance> results = certify_clearance(model, trajectory, asked, options);
     const auto is_unproven = [&](int a, int b) {
@@ -189,10 +195,10 @@ std::vector<PairClearance> certify_jointed(const model::Model& model, const step
     for (std::size_t i = 0; i < results.size(); ++i) {
         if (is_unproven(pairs[i].a, pairs[i].b)) {
             results[i] =
-                unbounded(std::move(results[i]), pairs[i].minimum,
+                unbounded(std::move(results[i]), required_gap(pairs[i]),
                           "where joints met at all times have the bodies between the nodes of the path is not proven: " + path.refusal);
         } else {
-            results[i] = charged(std::move(results[i]), pairs[i].minimum, charge_of(pairs[i]));
+            results[i] = charged(std::move(results[i]), required_gap(pairs[i]), charge_of(pairs[i]));
         }
     }
     if (options.certificate == nullptr) return results;

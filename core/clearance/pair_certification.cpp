@@ -66,7 +66,7 @@ public:
         : pair_(pair), request_(request), options_(options), record_(record) {
         result_.a = request.a;
         result_.b = request.b;
-        result_.minimum = request.minimum;
+        result_.minimum = required_gap(request);
         search_.tolerance = options.tolerance;
         search_.max_evaluations = options.max_evaluations;
         search_.should_stop = options.should_stop;
@@ -120,6 +120,7 @@ private:
             }
             closer.sampled = found_.sampled;
             found_ = closer;
+            if (record_) complete_certificate(pair_, found_, record_->certificate);
             return;
         }
         if (record_) record_->certificate = before;
@@ -154,6 +155,7 @@ private:
         certificate::PairStart start{pair_.trajectory, first.step, first.segment, result_.a, result_.b};
         if (ask_for_path(pair_.solid_a, pair_.solid_b))
             for (const PairSegment& segment : pair_.segments) start.path.push_back({segment.step, segment.segment});
+        start.charge = request_.charge;
         return start;
     }
 
@@ -166,8 +168,11 @@ private:
         if (!room) return;
         Touch touch{0, time_of(pair_, found_.nearest.segment, found_.nearest.s), depth, *room};
         for (const Instant& at : instants()) {
-            const double area = touching_area(pair_, at.segment, at.s, depth);
-            if (area > touch.area) touch = {area, time_of(pair_, at.segment, at.s), depth, *room};
+            const TouchingArea found = touching_area(pair_, at.segment, at.s, depth);
+            touch.is_whole = touch.is_whole && found.is_whole;
+            if (!(found.area > touch.area)) continue;
+            touch.area = found.area;
+            touch.time = time_of(pair_, at.segment, at.s);
         }
         result_.touch = touch;
         crosses_ = result_.intersecting;
@@ -321,7 +326,7 @@ PairClearance unmeasured(const PairRequest& request, const std::string& reason) 
     PairClearance result;
     result.a = request.a;
     result.b = request.b;
-    result.minimum = request.minimum;
+    result.minimum = required_gap(request);
     result.upper = result.sampled = infinity;
     result.complete = false;
     result.reason = reason;

@@ -61,18 +61,25 @@ struct PairRequest {
     /// A pair that is proven to stay at least so far apart is left at that, unmeasured: PairClearance::is_far. Contract: > 0, >= minimum
     /// [m]
     double far = std::numeric_limits<double>::infinity();
-    bool may_touch = false;  ///< that they touch (Touch) is accepted
+    bool may_touch = false;  ///< that they touch (Touch) is accepted, and so is every gap: the minimum does not count
     /// How deep they may be in each other and still touch [m]; 0: a hundred-thousandth of the larger body's size (touching.hpp)
     double touch_depth = 0;
+    /// How far the two may be from the path, together, where joints have them [m]. Bounds are of the path and do not contain it; that one
+    /// is not inside the other is told for wherever they are within that (certificate::PairStart)
+    double charge = 0;
 };
+
+/// What is judged: a pair that may touch is not wanted apart.
+inline double required_gap(const PairRequest& request) { return request.may_touch ? 0 : request.minimum; }
 
 /// Two bodies whose surfaces meet, and of which it is proven that they are nowhere deeper in each other than faces are that lie on each
 /// other to within rounding.
 struct Touch {
-    double area = 0;   ///< of the faces that do, the most at up to 32 instants looked at [m^2]; 0: none, they meet in edges and points
-    double time = 0;   ///< of that instant [s]
-    double depth = 0;  ///< at no time a ball of this diameter is in both [m]
-    double room = 0;   ///< by how much places may be off without undoing that proof [m]
+    double area = 0;       ///< of the faces that do, the most at up to 32 instants looked at [m^2]; 0: none, they meet in edges and points
+    double time = 0;       ///< of that instant [s]
+    double depth = 0;      ///< at no time a ball of this diameter is in both [m]
+    double room = 0;       ///< by how much places may be off without undoing that proof [m]
+    bool is_whole = true;  ///< false: there were too many faces to look at all of them, the area is at least so large
 };
 
 struct ClearanceOptions {

@@ -11,6 +11,8 @@
 #include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/geometry/self_intersection.hpp"
+#include "fettle/core/geometry/shells.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -34,6 +36,19 @@ Vector3 common_direction(const std::vector<Vector3>& normals) {
         if (most < 1e-3) break;
     }
     return d;
+}
+
+// Do its shells wind round nothing twice: none crosses another or itself, and those within others are cavities, or parts in these? Else
+// a surface may lie in the middle of the material.
+bool winds_once(const geometry::Mesh& mesh) {
+    if (!geometry::self_intersections(mesh, 1).empty()) return false;
+    const std::vector<geometry::Shell> shells = geometry::shells_of(mesh);
+    const auto are_turned = [&](int outwards) {
+        return std::all_of(shells.begin(), shells.end(), [&](const geometry::Shell& shell) {
+            return shell.volume_sign == (shell.depth % 2 == 0 ? outwards : -outwards);
+        });
+    };
+    return are_turned(1) || are_turned(-1);
 }
 
 // Each vertex moved inwards by at most `by`, faces by half of that where the corners are not too sharp.
@@ -149,18 +164,22 @@ std::optional<double> proven_touch(const PairMotion& pair, const certificate::Pa
     if (pair.b.elements.size() < pair.a.elements.size()) std::swap(order[0], order[1]);
     for (const bool is_a : order) {
         const certificate::SolidMesh& solid = is_a ? pair.solid_a : pair.solid_b;
-        if (!solid.is_closed || solid.shells.empty()) continue;
+        if (!solid.is_closed || solid.shells.empty() || !winds_once(*(is_a ? pair.a : pair.b).mesh)) continue;
         if (const auto room = apart_if_thinner(pair, is_a, start, depth, search)) return room;
     }
     return std::nullopt;
 }
 
-double touching_area(const PairMotion& pair, int segment, double s, double depth) {
+TouchingArea touching_area(const PairMotion& pair, int segment, double s, double depth) {
     const Looked looked{pair, instant_at(pair.segments[static_cast<std::size_t>(segment)], s), depth};
-    double area = 0;
+    TouchingArea found;
     long looks = 0;
     std::vector<std::pair<int, int>> open{{0, 0}};
-    while (!open.empty() && ++looks <= most_looks) {
+    while (!open.empty()) {
+        if (++looks > most_looks) {
+            found.is_whole = false;
+            break;
+        }
         const auto [i, j] = open.back();
         open.pop_back();
         const Piece &a = pair.a.pieces[static_cast<std::size_t>(i)], &b = pair.b.pieces[static_cast<std::size_t>(j)];
@@ -179,10 +198,10 @@ double touching_area(const PairMotion& pair, int segment, double s, double depth
                 of_a[k] = looked.of_a(pair.a.mesh->vertices.col(x.vertices[k]));
                 of_b[k] = looked.of_b(pair.b.mesh->vertices.col(y.vertices[k]));
             }
-            area += common_area(of_a, of_b, depth);
+            found.area += common_area(of_a, of_b, depth);
         }
     }
-    return area;
+    return found;
 }
 
 }  // namespace fettle::core::clearance

@@ -19,8 +19,12 @@ struct Closure {
     double reach = 0;
 };
 
-/// Nothing for a mesh without boundary or without triangles, nor for one that bounds next to no volume with its lids: a flat sheet.
+/// Nothing for a mesh without boundary or without triangles, nor for one that winds round next to nothing with its lids: one whose
+/// connected parts are flat sheets, each of them.
 std::optional<Closure> closure_of(const Mesh& mesh);
+
+/// Is the point, in the mesh's frame, where the closure winds round it, or on the closure?
+bool is_within(const Vector3& point, const Closure& closure);
 
 /// The lids alone.
 Mesh lids_of(const Closure& closure);

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/predicates.hpp"
@@ -45,6 +46,21 @@ std::optional<int> winding_number(const Vector3& point, const Matrix3X& vertices
 
 bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
     return winding_number(point, vertices, triangles).value_or(0) != 0;
+}
+
+std::vector<int> samples_of(const Mesh& mesh) {
+    FETTLE_ASSERT(mesh.triangle_shell.size() >= mesh.triangles.size(), "samples need a mesh with connectivity (build_connectivity)");
+    std::vector<int> out = mesh.codimensional_points;
+    std::vector<bool> seen(mesh.shell_names.size(), false), on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const int v : mesh.triangles[t]) on_triangle[static_cast<std::size_t>(v)] = true;
+        const auto shell = static_cast<std::size_t>(mesh.triangle_shell[t]);
+        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
+        seen[shell] = true;
+    }
+    for (const Edge& edge : mesh.edges)
+        if (!on_triangle[static_cast<std::size_t>(edge[0])]) out.push_back(edge[0]);
+    return out;
 }
 
 bool bounds_a_solid(const Mesh& mesh) { return bounds_a_solid(sorted_half_edges(mesh)); }

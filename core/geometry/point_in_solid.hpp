@@ -19,6 +19,10 @@ std::optional<int> winding_number(const Vector3& point, const Matrix3X& vertices
 /// union. (For containment of whole bodies.) Contract: as above.
 bool point_in_solid(const Vector3& point, const Matrix3X& vertices, const std::vector<Triangle>& triangles);
 
+/// One vertex of everything that hangs together in a mesh with connectivity: enough to tell inside from outside where surfaces do not
+/// cross.
+std::vector<int> samples_of(const Mesh& mesh);
+
 /// Has every directed edge of the triangles its reverse, as often? Then inside and outside have a meaning, even where more than two
 /// triangles meet in an edge. False without triangles.
 bool bounds_a_solid(const Mesh& mesh);

@@ -40,6 +40,7 @@ Body build_body(const scene::Body& from, geometry::Mesh mesh, const Vector3& ref
     body.reference_point = reference_point;
     body.density = from.density;
     body.mass_kind = from.mass_kind;
+    body.mass_kind_given = from.mass_kind_given;
     if (from.inertial) body.given_mass = from.inertial->mass;
     body.mesh = std::move(mesh);
     body.mesh.vertices.colwise() -= reference_point;

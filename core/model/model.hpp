@@ -27,6 +27,7 @@ struct Body {
     Vector3 reference_point = Vector3::Zero();  ///< c in the file's frame [m]
     double density = 0;                         ///< per what `mass_kind` says
     scene::MassKind mass_kind = scene::MassKind::volume;
+    bool mass_kind_given = true;                 ///< false: its scene does not say so, its mesh suggests it
     std::optional<double> given_mass;            ///< [kg], of a body whose mass and inertia are given: they follow from no mesh and density
     Matrix4 moments = Matrix4::Zero();           ///< M = integral of rho [X;1][X;1]^T [kg m^2, kg m, kg]; zero if not dynamic
     kinematics::Pose pose_start;                 ///< of the reference point's frame
@@ -45,6 +46,10 @@ struct Body {
     std::shared_ptr<const geometry::BodyHierarchy> hierarchy;
     std::shared_ptr<const geometry::FlatFeatures> flat;
 };
+
+/// Does its scene say that it is a shell, wires or points? Then it has no inside, where its mesh is not closed. That a mesh is wide open
+/// says nothing of what it is meant to be: a cup without its lid is.
+inline bool is_sheet(const Body& body) { return body.mass_kind_given && body.mass_kind != scene::MassKind::volume; }
 
 inline bool is_free(const Body& body, int dof) { return !body.prescribed[dof].has_value(); }
 

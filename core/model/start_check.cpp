@@ -98,29 +98,12 @@ bool bounds_a_solid(const PlacedBody& placed) {
 /// Of an open mesh that may be meant as a solid: what it bounds if it is closed, in the body's frame.
 const std::optional<geometry::Closure>& closure(const PlacedBody& placed) {
     static const std::optional<geometry::Closure> none;
-    if (placed.body->mass_kind != scene::MassKind::volume) return none;
+    if (is_sheet(*placed.body)) return none;
     return placed.facts->closure.get([&] { return geometry::closure_of(placed.body->mesh); });
 }
 
-/// One vertex of everything that hangs together in a mesh: enough to tell inside from outside once no surfaces cross.
-std::vector<int> samples_of(const geometry::Mesh& mesh) {
-    std::vector<int> out = mesh.codimensional_points;
-    std::vector<bool> seen(mesh.shell_names.size(), false);
-    std::vector<bool> on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
-        const int shell = mesh.triangle_shell[t];
-        if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
-        seen[shell] = true;
-    }
-    for (const auto& edge : mesh.edges) {
-        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
-    }
-    return out;
-}
-
 const std::vector<int>& samples(const PlacedBody& placed) {
-    return placed.facts->samples.get([&] { return samples_of(placed.body->mesh); });
+    return placed.facts->samples.get([&] { return geometry::samples_of(placed.body->mesh); });
 }
 
 struct Approach {
@@ -288,7 +271,7 @@ std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBo
         const kinematics::Pose& pose = outer.body->pose_start;
         const auto is_within = [&](int v) {
             const Vector3 x = pose.rotation.transpose() * (inner.vertices.col(v) - pose.position);
-            return geometry::winding_number(x, closure(outer)->vertices, closure(outer)->triangles).value_or(1) != 0;
+            return geometry::is_within(x, *closure(outer));
         };
         if (std::none_of(tried.begin(), tried.end(), is_within)) continue;
         return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +

@@ -20,7 +20,9 @@ std::uint64_t geometry_hash(const model::Model& model) {
         for (const auto& edge : body.mesh.edges) {
             for (const int v : edge) hash.add(static_cast<std::uint32_t>(v));
         }
-        if (body.mass_kind != scene::MassKind::volume) hash.add(static_cast<std::uint64_t>(body.mass_kind));
+        if (body.mass_kind == scene::MassKind::volume) continue;
+        hash.add(static_cast<std::uint64_t>(body.mass_kind));
+        if (!body.mass_kind_given) hash.add(static_cast<std::uint64_t>(0));
     }
     return hash.value();
 }

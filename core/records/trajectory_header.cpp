@@ -70,7 +70,7 @@ void read_vertices(const JsonNode& node, geometry::Mesh& mesh) {
 
 model::Body read_body(const JsonNode& node) {
     model::Body body;
-    node.allow_keys({"name", "type", "group", "reference_point", "mass_per", "mesh"});
+    node.allow_keys({"name", "type", "group", "reference_point", "mass_per", "mass_per_given", "mesh"});
     body.name = node.require("name").string().value_or("");
     if (const std::string fault = base::name_fault(body.name); !fault.empty())
         node["name"].fail(ErrorCode::out_of_range, "a name is text on one line; this one " + fault);
@@ -80,6 +80,7 @@ model::Body read_body(const JsonNode& node) {
     const std::string kind = node["mass_per"].choice(mass_kind_names()).value_or("volume");
     const auto& kinds = mass_kind_names();
     body.mass_kind = static_cast<scene::MassKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+    body.mass_kind_given = node["mass_per_given"].boolean().value_or(true);
     body.group = node.require("group").integer(-1).value_or(-1);
     const auto reference = read_row(node.require("reference_point"), 3, "x y z");
     if (!reference.empty()) body.reference_point = Vector3(reference[0], reference[1], reference[2]);

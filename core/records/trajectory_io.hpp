@@ -12,9 +12,10 @@
 ///                      that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep
-///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mass_per (of a scene, where it is not
-///           "volume": then an open mesh is meant to have no inside), mesh { name, vertices, triangles, edges } },
-///           vertices x y z after x y z, relative to the reference point; triangles three indices after three; edges those of no triangle
+///   bodies  list of { name, type "dynamic" | "static" | "kinematic", group, reference_point [3], mass_per (where it is not "volume":
+///           then an open mesh is meant to have no inside, unless it is suggested by the mesh alone: mass_per_given false), mesh { name,
+///           vertices, triangles, edges } }, vertices x y z after x y z, relative to the reference point; triangles three indices after
+///           three; edges those of no triangle
 ///   time    only where the steps are not even: at the start; timestep is then their mean
 ///   poses   [body], at the start: 12 numbers, rotation matrix row by row, then the position of the reference point
 /// Then a line for each time step:

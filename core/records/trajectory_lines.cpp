@@ -39,6 +39,10 @@ void write_body(JsonWriter& out, const model::Body& body) {
     if (body.mass_kind != scene::MassKind::volume) {
         out.key("mass_per");
         out.string(mass_kind_names()[static_cast<std::size_t>(body.mass_kind)]);
+        if (!body.mass_kind_given) {
+            out.key("mass_per_given");
+            out.text += "false";
+        }
     }
     out.key("mesh");
     out.text += '{';

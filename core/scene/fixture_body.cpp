@@ -98,6 +98,7 @@ MeshMass look_at_mass(const geometry::Mesh& mesh) {
 /// A solid that is inside out is turned: which side is out is not what its file meant to say. @return whether it is
 bool decide_mass(const files::JsonNode& node, const MeshMass& mass, const geometry::Mesh& mesh, Body& body) {
     body.mass_kind = mass.kind;
+    body.mass_kind_given = false;
     if (body.type != BodyType::dynamic_body || mesh.triangles.empty()) return false;
     if (mass.kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
     if (mass.has_gaps && !mass.inside_out) node.warn("the mesh has gaps: it is a solid with these capped");

@@ -111,6 +111,7 @@ struct Body {
     double density = 1000;      ///< per what `mass_kind` says
     bool density_given = true;  ///< false: the file names none, and `density` stands for nothing (a static or kinematic body)
     MassKind mass_kind = MassKind::volume;
+    bool mass_kind_given = true;                 ///< false: the file has no word for it, and `mass_kind` is what the mesh suggests
     std::optional<Inertial> inertial;            ///< given, in place of density times what the mesh has
     std::string material;                        ///< for friction; empty: none named
     std::optional<double> mu;                    ///< its own friction coefficient

@@ -47,7 +47,8 @@ Solids worse_of(Solids x, Solids y) {
 
 std::optional<core::clearance::Touch> both(const std::optional<core::clearance::Touch>& x, const std::optional<core::clearance::Touch>& y) {
     if (!x || !y) return x ? x : y;
-    return core::clearance::Touch{x->area + y->area, x->time, std::max(x->depth, y->depth), std::min(x->room, y->room)};
+    return core::clearance::Touch{x->area + y->area, x->time, std::max(x->depth, y->depth), std::min(x->room, y->room),
+                                  x->is_whole && y->is_whole};
 }
 
 // The whole pair: the least of its members.
@@ -142,9 +143,11 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
     if (!pair.overlap.empty()) json["overlap"] = pair.overlap;
-    if (least.touch)
+    if (least.touch) {
         json["touching"] = {
             {"area", least.touch->area}, {"depth", least.touch->depth}, {"time", least.touch->time}, {"allowed", pair.spec.may_touch}};
+        if (!least.touch->is_whole) json["touching"]["at_least"] = true;
+    }
     if (least.is_clash()) json["clash_not_before"] = least.clash_not_before;
     if (least.overlap) {
         json["depth"] = {{"lower", least.overlap->depth_lower},

@@ -50,8 +50,10 @@ std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" 
 
 // "over 240 mm^2, accepted".
 std::string touched(const ReportedPair& pair, const Lengths& lengths) {
-    const double area = pair.least.touch->area / (lengths.metres() * lengths.metres());
-    return (area > 0 ? formatted("over %.4g ", area) + lengths.unit() + "^2" : std::string("in edges and points")) +
+    const core::clearance::Touch& touch = *pair.least.touch;
+    const double area = touch.area / (lengths.metres() * lengths.metres());
+    const char* const over = touch.is_whole ? "over " : "over at least ";
+    return (area > 0 || !touch.is_whole ? over + formatted("%.4g ", area) + lengths.unit() + "^2" : std::string("in edges and points")) +
            (pair.spec.may_touch ? ", accepted" : "");
 }
 

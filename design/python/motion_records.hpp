@@ -52,7 +52,7 @@ FETTLE_RECORD(fettle::core::clearance::Overlap, "Overlap", field("depth_lower", 
               field("depth_upper", &Type::depth_upper), field("volume_lower", &Type::volume_lower),
               field("volume_upper", &Type::volume_upper), field("time", &Type::time), field("center", &Type::center))
 FETTLE_RECORD(fettle::core::clearance::Touch, "Touch", field("area", &Type::area), field("time", &Type::time), field("depth", &Type::depth),
-              field("room", &Type::room))
+              field("room", &Type::room), field("is_whole", &Type::is_whole))
 FETTLE_RECORD(fettle::core::clearance::PairClearance, "PairClearance", field("a", &Type::a), field("b", &Type::b),
               field("minimum", &Type::minimum), field("lower", &Type::lower), field("upper", &Type::upper),
               field("is_bounded", &Type::is_bounded), field("is_far", &Type::is_far), field("status", &Type::status),

@@ -106,11 +106,11 @@ FETTLE_RECORD(fettle::core::scene::Inertial, "Inertial", field("mass", &Type::ma
 FETTLE_RECORD(fettle::core::scene::Body, "Body", field("name", &Type::name), field("where", &Type::where), field("type", &Type::type),
               field("mesh", &Type::mesh), field("shape", &Type::shape), field("mesh_policy", &Type::mesh_policy),
               field("density", &Type::density), field("density_given", &Type::density_given), field("mass_kind", &Type::mass_kind),
-              field("inertial", &Type::inertial), field("material", &Type::material), field("mu", &Type::mu), field("pose", &Type::pose),
-              field("linear_velocity", &Type::linear_velocity), field("angular_velocity", &Type::angular_velocity),
-              field("prescribed", &Type::prescribed), field("script", &Type::script), field("force", &Type::force),
-              field("torque", &Type::torque), field("damping", &Type::damping), field("reference_point", &Type::reference_point),
-              field("group", &Type::group))
+              field("mass_kind_given", &Type::mass_kind_given), field("inertial", &Type::inertial), field("material", &Type::material),
+              field("mu", &Type::mu), field("pose", &Type::pose), field("linear_velocity", &Type::linear_velocity),
+              field("angular_velocity", &Type::angular_velocity), field("prescribed", &Type::prescribed), field("script", &Type::script),
+              field("force", &Type::force), field("torque", &Type::torque), field("damping", &Type::damping),
+              field("reference_point", &Type::reference_point), field("group", &Type::group))
 FETTLE_RECORD(fettle::core::scene::Scene, "Scene", path_field("path", &Type::path), field("length_unit", &Type::length_unit),
               field("bodies", &Type::bodies), field("gravity", &Type::gravity), field("timestep", &Type::timestep),
               field("end_time", &Type::end_time), field("dhat", &Type::dhat), field("dmin", &Type::dmin), field("kappa", &Type::kappa),

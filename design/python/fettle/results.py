@@ -116,7 +116,7 @@ class PairRequest(Record):
     b: Union[int, str] = 0
     minimum: Number = number("length", 0.0)  #: [m]
     far: Number = number("length", math.inf)  #: [m]
-    may_touch: bool = False  #: that they touch is accepted
+    may_touch: bool = False  #: that they touch is accepted, and so is every gap: `minimum` does not count
     touch_depth: Number = number("length", 0.0)  #: how deep they may be in each other and still touch [m]; 0: 1e-5 of the larger one's size
 
 
@@ -167,6 +167,7 @@ class Touch(Record):
     time: float = 0.0
     depth: float = 0.0  #: [m]
     room: float = 0.0
+    is_whole: bool = True  #: False: of too many faces to look at all; the area is at least so large
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -138,6 +138,7 @@ class Body(Record):
     density: Number = number("density", 1000.0)  #: [kg/m^3], [kg/m^2], [kg/m] or [kg], by mass_kind
     density_given: bool = True
     mass_kind: Literal["volume", "area", "length", "vertex"] = "volume"
+    mass_kind_given: bool = True  #: False: the file does not say so, the mesh suggests it
     inertial: Optional[Inertial] = None  #: in place of density times what the mesh has
     material: str = ""
     mu: Optional[float] = None

@@ -285,6 +285,26 @@ std::pair<int, int> damage_campaign(std::mt19937& random, int wanted, int per_ca
 
 }  // namespace
 
+TEST_CASE("Pairs at fault are not looked at further, however many faults there are", "[clearance]") {
+    std::mt19937 random(5);
+    Case c = random_case(random, 1, 1, 1e-3);
+    REQUIRE(check_certificate(c.certificate, c.model, c.trajectory).accepted());
+    const PairCertificate good = c.certificate.pairs.at(0);
+    PairCertificate bad = good;
+    bad.a = 2'000'000'000;
+    c.certificate.pairs.assign(1001, bad);
+    c.certificate.pairs.push_back(good);
+    CHECK(check_certificate(c.certificate, c.model, c.trajectory).faults.size() == 1000);
+    PairCertificate nowhere = good;  // of a path that is none
+    nowhere.lower = 0;
+    nowhere.segments.clear();
+    c.certificate.pairs.assign(1001, nowhere);
+    c.trajectory.steps.clear();
+    c.trajectory.poses.resize(1);
+    c.certificate.path_hash = core::records::path_hash(c.trajectory);
+    CHECK(check_certificate(c.certificate, c.model, c.trajectory).faults.size() == 1000);
+}
+
 TEST_CASE("Certificates of random motions are accepted and damaged ones rejected", "[clearance]") {
     std::mt19937 random(1);
     const auto [made, rejected] = damage_campaign(random, 400, 40);

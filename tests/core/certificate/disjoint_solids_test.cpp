@@ -101,4 +101,24 @@ TEST_CASE("Inside and outside are told right up to rounding", "[clearance]") {
     }
 }
 
+TEST_CASE("What bodies may be off their path counts for lids as for surfaces", "[clearance]") {
+    const Solid whole = box({1, 1, 1}), part = box({0.01, 0.01, 0.01});
+    auto triangles = whole.mesh.triangles;
+    const core::geometry::Triangle gone = triangles.back();
+    triangles.pop_back();
+    const Solid open = make_solid(whole.mesh.vertices, triangles);
+    const auto corner = [&](std::size_t k) { return Vector3(whole.mesh.vertices.col(gone[k])); };
+    const Vector3 out = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    // 0.1 above the middle of the opening, 0.47 and more from its edges.
+    const Vector3 place = (corner(0) + corner(1) + corner(2)) / 3 + 0.11 * out;
+    core::stepper::Trajectory trajectory;
+    trajectory.poses.push_back({{Matrix3::Identity(), Vector3::Zero()}, {Matrix3::Identity(), place}});
+    const SolidMesh a = solid_mesh(open.mesh), b = solid_mesh(part.mesh);
+    const auto found = [&](double charge) { return solids_of(a, b, {trajectory, -1, 0, 0, 1, {Place{}}, charge}, 0.4); };
+    CHECK(found(0) == Solids::not_closed);
+    CHECK(found(0.05) == Solids::not_closed);
+    CHECK(found(0.2) == Solids::unverified);
+    CHECK(found(0.45) == Solids::unproven);
+}
+
 }  // namespace fettle::core::certificate::disjoint_solids_test

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::clash_test {
@@ -221,6 +223,48 @@ TEST_CASE("A part in a mesh that is not closed is not told as clear of it", "[cl
     }
 }
 
+TEST_CASE("Beside its mirror image an open box is no less open", "[clearance]") {
+    const Solid open = open_box({1, 1, 1});
+    const auto count = static_cast<int>(open.mesh.vertices.cols());
+    Matrix3X vertices(3, 2 * count);
+    vertices << open.mesh.vertices, open.mesh.vertices.colwise() + Vector3(5, 0, 0);
+    auto triangles = open.mesh.triangles;
+    for (const auto& t : open.mesh.triangles) triangles.push_back({t[1] + count, t[0] + count, t[2] + count});
+    const auto model = model_of({make_solid(vertices, triangles), box({0.1, 0.1, 0.1})}, {zero, zero});
+    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0.1}}, options_with(1e-6))[0];
+    CHECK(result.solids == Solids::unverified);
+    CHECK(result.status == PairStatus::undecided);
+}
+
+TEST_CASE("What joints may have off the path counts for the lids of an open mesh", "[clearance]") {
+    const auto model = model_of({open_box({1, 1, 1}), box({0.1, 0.1, 0.1})}, {zero, {0, 0, 1.4}});
+    const auto found = [&](double charge) {
+        core::clearance::PairRequest request{0, 1, 0.01};
+        request.charge = charge;
+        return certify_clearance(model, as_assembled(model), {request}, options_with(1e-6))[0].solids;
+    };
+    CHECK(found(0) == Solids::not_closed);
+    CHECK(found(0.1) == Solids::not_closed);
+    CHECK(found(0.35) != Solids::not_closed);
+}
+
+TEST_CASE("A cup in a fixture, which has no word for sheets, is not taken for one", "[clearance]") {
+    const std::string cup = R"({"vertices": [[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1],[-1,-1,1],[1,-1,1],[1,1,1],[-1,1,1]], "type": "static",
+        "faces": [[0,2,1],[0,3,2],[0,1,5],[0,5,4],[1,2,6],[1,6,5],[2,3,7],[2,7,6],[3,0,4],[3,4,7]]})";
+    const std::string part = R"({"vertices": [[0.1,0.1,0.1],[0.2,0.1,0.1],[0.1,0.2,0.1],[0.1,0.1,0.2]],
+        "faces": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]})";
+    const auto scene = core::scene::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [)" + cup + ", " + part + "]}}", "cup.json");
+    REQUIRE(scene);
+    CHECK(scene->bodies[0].mass_kind == core::scene::MassKind::area);
+    const auto built = core::model::build_model(*scene);
+    REQUIRE(built);
+    CHECK(!is_sheet(built->bodies[0]));
+    const auto result = certify_clearance(*built, as_assembled(*built), {{0, 1, 0.01}}, options_with(1e-6))[0];
+    CHECK(result.lower > 0.01);
+    CHECK(result.solids == Solids::unverified);
+    CHECK(result.status == PairStatus::undecided);
+}
+
 TEST_CASE("A part that stays outside of a mesh that is not closed is clear of it, near its opening too", "[clearance]") {
     for (const double gap : {5.0, 0.5, 1e-2}) {
         for (const Vector3& side : {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0)}) {
@@ -284,6 +328,7 @@ TEST_CASE("What is proven apart is so with a certificate too, however small the 
         CHECK(proven.lower > 0);
         REQUIRE(certificate.pairs.size() == 1);
         CHECK(certificate.pairs[0].lower == proven.lower);
+        CHECK(certificate.pairs[0].upper <= proven.upper + 1e-13);  // what was found nearest by any search, and its rounding
         CHECK(check_certificate(certificate, model, trajectory).accepted());
     }
 }

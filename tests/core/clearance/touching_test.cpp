@@ -130,6 +130,67 @@ TEST_CASE("A slide that keeps touching its rail does so all along its path; one 
     CHECK(lifted.status == PairStatus::contact);
 }
 
+TEST_CASE("Of parts that overlap within one body a touch is not proven; beside each other, or in a cavity, they do no harm",
+          "[clearance]") {
+    const auto together = [](const Solid& first, const Solid& second, const Vector3& shift, bool turned = false) {
+        const auto count = static_cast<int>(first.mesh.vertices.cols());
+        Matrix3X x(3, count + second.mesh.vertices.cols());
+        x << first.mesh.vertices, second.mesh.vertices.colwise() + shift;
+        auto triangles = first.mesh.triangles;
+        for (const auto& t : second.mesh.triangles)
+            triangles.push_back({t[0] + count, t[turned ? 2U : 1U] + count, t[turned ? 1U : 2U] + count});
+        return make_solid(x, triangles);
+    };
+    const auto touch = [](const Solid& body) {
+        const auto model = model_of({body, body}, {zero, {0, 0, 0.02}});
+        return judged(model, 0, true).touch.has_value();
+    };
+    const Solid block = box({0.03, 0.02, 0.01}), small = box({0.02, 0.01, 0.005});
+    CHECK(touch(block));
+    CHECK(touch(together(block, small, {0.1, 0, 0})));
+    CHECK(touch(together(block, small, zero, true)));
+    CHECK(!touch(together(block, small, zero)));
+    CHECK(!touch(together(block, block, {0.0301, 0.0102, 0})));
+}
+
+TEST_CASE("A pair that may touch is judged by no minimum, near or far", "[clearance]") {
+    for (const double gap : {0.0, 1e-5, 5e-5, 2e-4, 1e-3}) {
+        const PairClearance found = judged(lid_on_base(gap), 3e-4, true);
+        CAPTURE(gap, found.reason);
+        CHECK(found.minimum == 0);
+        CHECK(found.status == (gap < 1e-4 ? PairStatus::contact : PairStatus::clear));
+    }
+}
+
+TEST_CASE("Of too many faces the area that touches is told as a part of it", "[clearance]") {
+    const auto sheet = [](int n) {
+        Matrix3X x(3, n * n);
+        std::vector<geometry::Triangle> triangles;
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                x.col(i * n + j) << i, j, 0;
+                if (i + 1 == n || j + 1 == n) continue;
+                triangles.push_back({i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1});
+                triangles.push_back({i * n + j, (i + 1) * n + j + 1, i * n + j + 1});
+            }
+        }
+        return make_solid(x, triangles);
+    };
+    const auto area = [&](int n, double depth) {
+        const auto model = model_of({sheet(n), sheet(n)}, {zero, zero});
+        const auto trajectory = as_assembled(model);
+        const PieceTree a = make_piece_tree(model.bodies[0].mesh, *model.bodies[0].hierarchy),
+                        b = make_piece_tree(model.bodies[1].mesh, *model.bodies[1].hierarchy);
+        const certificate::SolidMesh solid_a = certificate::solid_of(model.bodies[0]), solid_b = certificate::solid_of(model.bodies[1]);
+        const PairMotion pair{a,          b,
+                              trajectory, {pair_segment(kinematics::PathSegment{}, kinematics::PathSegment{}, a.radius(), b.radius())},
+                              solid_a,    solid_b};
+        return touching_area(pair, 0, 0, depth);
+    };
+    CHECK(area(4, 1e-6).is_whole);
+    CHECK(!area(34, 1e3).is_whole);  // all of them are near each other
+}
+
 TEST_CASE("Edges and corners that meet touch without an area", "[clearance]") {
     const auto edge_on = model_of({box({1, 1, 1}), box({1, 1, 1})}, {zero, {2, 2, 0}});
     const PairClearance found = judged(edge_on, 0, true);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/geometry/closure.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/point_in_solid.hpp"
@@ -47,6 +49,45 @@ TEST_CASE("of a sheet that is flat lids enclose nothing") {
     REQUIRE(bottom.size() == 2);
     CHECK(!closure_of(make_mesh("plane", plane.vertices, bottom)));
     CHECK(closure_of(without(plane, 0, 1)));
+}
+
+TEST_CASE("parts and faces that are turned over do not cancel what a closure bounds", "[geometry]") {
+    const Mesh open = without(tests::box_mesh({-1, -1, -1}, {1, 1, 1}), 0, 1),
+               beside = without(tests::box_mesh({4, -1, -1}, {6, 1, 1}), 0, 1);
+    const auto of_pair = closure_of(tests::joined(open, tests::inside_out(beside)));
+    REQUIRE(of_pair);
+    CHECK(is_within({0.1, 0.2, 0}, *of_pair));
+    CHECK(is_within({5.1, 0.2, 0}, *of_pair));
+    CHECK(!is_within({2.5, 0, 0}, *of_pair));
+    Mesh half_turned = tests::ellipsoid_mesh({2, 2, 2}, 10);  // its lower half the wrong way round
+    for (Triangle& t : half_turned.triangles)
+        if (half_turned.vertices(2, t[0]) + half_turned.vertices(2, t[1]) + half_turned.vertices(2, t[2]) < 0) std::swap(t[1], t[2]);
+    build_connectivity(half_turned);
+    const auto of_halves = closure_of(half_turned);
+    REQUIRE(of_halves);
+    CHECK(is_within({0.3, 0.2, 0.7}, *of_halves));
+    CHECK(is_within({0.3, 0.2, -0.7}, *of_halves));
+}
+
+TEST_CASE("of sheets that are flat each, in planes of their own, lids enclose nothing", "[geometry]") {
+    const auto sheet = [](const Vector3& normal, const Vector3& place, int n) {
+        const Vector3 u = normal.unitOrthogonal(), v = normal.normalized().cross(u);
+        Matrix3X x(3, n * n);
+        std::vector<Triangle> triangles;
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                x.col(i * n + j) = place + i * u + 2 * j * v;
+                if (i + 1 == n || j + 1 == n) continue;
+                triangles.push_back({i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1});
+                triangles.push_back({i * n + j, (i + 1) * n + j + 1, i * n + j + 1});
+            }
+        }
+        return make_mesh("sheet", x, triangles);
+    };
+    const Mesh one = sheet({0.3, -2, 0.7}, {100, 3, -20}, 12), other = sheet({1, 1, 0.1}, {-40, 2, 2}, 5);
+    CHECK(!closure_of(one));
+    CHECK(!closure_of(tests::joined(one, other)));
+    CHECK(closure_of(tests::joined(one, without(tests::box_mesh({-1, -1, -1}, {1, 1, 1}), 0, 1))));
 }
 
 }  // namespace fettle::core::geometry::closure_test

@@ -90,7 +90,10 @@ bool same_bits(const auto& a, const auto& b) {
 
 TEST_CASE("A trajectory reads back bit for bit, with all that certifying needs", "[stepper]") {
     const Folder folder;
-    const model::Model model = two_boxes();
+    model::Model model = two_boxes();
+    model.bodies[0].mass_kind = scene::MassKind::area;
+    model.bodies[1].mass_kind = scene::MassKind::area;
+    model.bodies[1].mass_kind_given = false;
     Trajectory trajectory = random_path(model, 20);
     trajectory.time_start = 0.1;
     trajectory.steps[3].nodes[1][0].rotation_vector.x() = -0.0;
@@ -135,6 +138,8 @@ TEST_CASE("A trajectory reads back bit for bit, with all that certifying needs",
         CHECK(is.mesh.edges == was.mesh.edges);
         CHECK(is.type == was.type);
         CHECK(is.group == was.group);
+        CHECK(is.mass_kind == was.mass_kind);
+        CHECK(is.mass_kind_given == was.mass_kind_given);
         CHECK(is.radius == was.radius);
         CHECK(same_bits(is.reference_point, was.reference_point));
         CHECK(is.hierarchy != nullptr);
