@@ -159,7 +159,7 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     if (!problem) return console.input_errors(problem.errors());
     tell_warnings(console, problem->warnings());
     const std::string out = output_folder(options, *file);
-    const Errors errors = try_run_folder(out);
+    const Errors errors = try_run_folder(out, {"design.final.json"});
     if (!errors.empty()) return console.input_errors(errors);
     const Run run{options, *file, *problem, common, console, {out, 0, options.repair}};
     if (options.starts > 0) return run_all(run);
