@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
@@ -79,8 +80,9 @@ std::string joined_names(const Json& list) {
 
 std::string line_of(const StartResult& start) {
     std::string text = formatted("seed %-8llu %-12s", static_cast<unsigned long long>(start.seed), start.status.c_str());
-    if (!start.result.is_object()) return text + " " + start.message;
-    text += formatted(" objective %-12.8g %3d %s", number(start.result, "objective"), start.result["evaluations"].get<int>(),
+    const double objective = number(start.result, "objective");
+    if (!std::isfinite(objective)) return text + " " + start.message;  // no design was evaluated
+    text += formatted(" objective %-12.8g %3d %s", objective, start.result["evaluations"].get<int>(),
                       start.result["evaluations"] == 1 ? "evaluation" : "evaluations");
     const double violation = number(start.result, "constraint_violation");
     if (violation > 0) return text + formatted(", largest violation %.3g", violation);

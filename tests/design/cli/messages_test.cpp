@@ -189,6 +189,29 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
 }
 
+TEST_CASE("what a requirement costs is said of the limit that holds") {
+    const problem::DesignProblem problem = problem_of(DesignFolder());
+    description::Design design = problem.design();
+    studies::OptimiseOutcome outcome;
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.report.feasible = true;
+    outcome.report.best.objective = 1;
+    optimisers::Optimality& optimality = outcome.report.optimality;
+    optimality.step = VectorX::Zero(outcome.start.size());
+    optimality.multipliers = VectorX::Zero(static_cast<Eigen::Index>(design.constraints.size()));
+    const Eigen::Index clearance = 0, stroke = 3;
+    REQUIRE(design.constraints[stroke].name.find("stroke") == 0);
+    optimality.multipliers[clearance] = 2e3;
+    optimality.multipliers[stroke] = -1e3;
+    const std::string told = outcome_text(design, outcome, Console({}), {"out"});
+    CAPTURE(told);
+    CHECK(told.find(": with a lower limit that is 0.01 mm lower, the objective could be lower by 0.02") != std::string::npos);
+    CHECK(told.find(": with an upper limit that is 0.01 mm higher, the objective could be lower by 0.01") != std::string::npos);
+    description::Bounds& exact = design.constraints[stroke].bounds;
+    exact.lower = exact.upper;
+    CHECK(outcome_text(design, outcome, Console({}), {"out"}).find("with 0.01 mm more required") != std::string::npos);
+}
+
 TEST_CASE("a folder in which another program's report lies is left alone") {
     const DesignFolder folder;
     const std::string scene = folder.file("small.scene.json"), theirs = "<html>my own page</html>";

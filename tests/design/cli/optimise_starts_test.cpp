@@ -64,6 +64,12 @@ TEST_CASE("a start's line tells what holds a design that meets its requirements,
     CHECK(good.find("held by mass; width (upper bound)") != std::string::npos);
     CHECK(bad.find("held by") == std::string::npos);
     CHECK(bad.find("largest violation 0.25") != std::string::npos);
+    StartResult stopped = ended(0, 0);
+    stopped.result = {{"constraint_violation", nullptr}, {"objective", nullptr}, {"evaluations", 0}};
+    stopped.message = "stopped as asked after 0 evaluations";
+    const std::string none = starts_text({stopped});
+    CHECK(none.find("nan") == std::string::npos);
+    CHECK(none.find("stopped as asked after 0 evaluations") != std::string::npos);
 }
 
 TEST_CASE("--starts: seeds that are too large are refused") {
