@@ -111,8 +111,8 @@ std::string view_page(const Model& model, const Trajectory* trajectory, const st
     source.kind = report::ReportKind::clearance;  // of which nothing was judged: no distance is certified for a look
     source.name = title;
     source.gravity = model.gravity;
-    source.result = {{"status", "undecided"},
-                     {"message", "Parts and their motion as they were given; certify_clearance proves distances."},
+    source.result = {{"status", "shown"},
+                     {"message", "As they were given; no distance was judged here: certify_clearance proves distances."},
                      {"motion", !path.steps.empty()},
                      {"pairs", nlohmann::ordered_json::array()}};
     source.motion = report::Motion{model, path};
