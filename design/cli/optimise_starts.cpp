@@ -11,6 +11,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_text.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/child_process.hpp"
 
@@ -133,7 +134,14 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
             const std::filesystem::path folder = starts[next].out;
             std::error_code fault;
             std::filesystem::create_directories(folder, fault);
-            if (!fault) std::filesystem::remove(folder / "result.json", fault);  // of an earlier run: it would pass for this one's
+            const Errors others = answers::others_file(folder / "result.json");
+            if (!fault && others.empty())
+                std::filesystem::remove(folder / "result.json", fault);  // of an earlier run: it would pass for this one's
+            if (!others.empty()) {
+                starts[next] = {starts[next].seed, folder.string(), "failed", others[0].where + ": " + others[0].message, Json(),
+                                exit_bad_input};
+                continue;
+            }
             if (fault) {
                 starts[next] = {starts[next].seed, folder.string(), "failed", "its folder cannot be written: " + fault.message(), Json(),
                                 exit_bad_input};

@@ -121,6 +121,13 @@ TEST_CASE("--starts: a link where a log goes is not followed, and runs that leav
     CHECK(contents(kept) == "mine");
     CHECK_FALSE(std::filesystem::is_symlink(out + "/start-0/log.txt"));
 
+    const std::string theirs = folder.write("theirs/start-0/result.json", R"({"my": "numbers"})");
+    const Answer left =
+        run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --json --out " + folder.file("theirs"));
+    CHECK(left.code == 3);
+    CHECK(left.json().at("message").get<std::string>().find("was not written by fettle") != std::string::npos);
+    CHECK(contents(theirs) == R"({"my": "numbers"})");
+
     const std::string none = folder.file("none");
     folder.write("none/start-0", "a file where a folder is wanted");
     const Answer failed = run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --json --out " + none);
