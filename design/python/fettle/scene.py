@@ -306,8 +306,8 @@ def _faults_of_classes(scene: Scene) -> List[Fault]:
     if faults:
         return faults
     for body in scene.bodies:
-        given = body.prescribed if isinstance(body.prescribed, (list, tuple)) else [body.prescribed]
-        for k, curve in enumerate(given):
+        curves: Any = body.prescribed
+        for k, curve in enumerate(curves if isinstance(curves, (list, tuple)) else [curves]):
             faults += _unless(curve, MotionCurve, f"body `{body.name}`/prescribed/{k}") if curve is not None else []
     for joint in mechanism.joints:
         faults += _unless(joint.forces, CoordinateForces, f"joint `{joint.name}`/forces")
