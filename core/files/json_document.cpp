@@ -229,10 +229,17 @@ JsonNode JsonNode::child(const void* value, std::string_view key) const {
     return {context_, value, std::move(pointer)};
 }
 
+// However many of its members are asked for, one after the other.
+void JsonNode::fail_as_no_object() const {
+    const base::Errors& errors = context_->errors;
+    if (!errors.empty() && errors.back().code == ErrorCode::wrong_type && errors.back().where == where()) return;
+    fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+}
+
 JsonNode JsonNode::operator[](std::string_view key) const {
     if (!exists()) return child(nullptr, key);
     if (!is_object()) {
-        fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+        fail_as_no_object();
         return child(nullptr, key);
     }
     const json& object = value_of(value_);
@@ -266,7 +273,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
     std::vector<std::pair<std::string, JsonNode>> out;
     if (!exists()) return out;
     if (!is_object()) {
-        fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+        fail_as_no_object();
         return out;
     }
     for (const auto& [key, value] : value_of(value_).items()) out.emplace_back(key, child(&value, key));
@@ -301,7 +308,7 @@ std::vector<std::string> JsonNode::other_keys(const std::vector<std::string_view
 
 void JsonNode::allow_keys(const std::vector<std::string_view>& known) const {
     if (!exists()) return;
-    if (!is_object()) return fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+    if (!is_object()) return fail_as_no_object();
     for (const std::string& key : other_keys(known))
         (*this)[key].fail(ErrorCode::unknown_key, "unknown key `" + key + "`; " + did_you_mean(key, known, '`'));
 }

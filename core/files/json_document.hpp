@@ -57,7 +57,8 @@ public:
     void fail(base::ErrorCode code, std::string message) const;
     void warn(const std::string& message) const;
 
-    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, once per call.
+    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, told once for all calls that follow
+    /// one another.
     JsonNode operator[](std::string_view key) const;
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;
@@ -97,6 +98,7 @@ private:
     friend class JsonDocument;
     struct Context;
     JsonNode(Context* context, const void* value, std::string pointer) : context_(context), value_(value), pointer_(std::move(pointer)) {}
+    void fail_as_no_object() const;
     JsonNode child(const void* value, std::string_view key) const;
     std::vector<std::string> other_keys(const std::vector<std::string_view>& known) const;
     bool check_range(double number, const NumberRange& range, std::string_view unit) const;

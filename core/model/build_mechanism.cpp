@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 
 #include "fettle/core/model/choose_kappa.hpp"
@@ -27,6 +28,17 @@ constexpr int x_axis = 0, y_axis = 1, z_axis = 2;
 bool has_rows_of_its_own(JointKind kind) { return kind != JointKind::gear && kind != JointKind::rack; }
 
 bool turns(JointKind kind) { return kind == JointKind::revolute || kind == JointKind::screw; }
+
+const char* kind_of(const scene::Joint&) { return "joint"; }
+const char* kind_of(const scene::Spring&) { return "spring"; }
+const char* kind_of(const scene::Motor&) { return "motor"; }
+const char* kind_of(const scene::PointLoad&) { return "load"; }
+
+// In its file; of what was made in memory by its name.
+template <class Part>
+std::string place_of_part(const Part& part) {
+    return part.where.empty() ? std::string(kind_of(part)) + " `" + part.name + "`" : part.where;
+}
 
 // Two unit vectors across z, the same for the same z.
 Matrix3 axes_about(const Vector3& z) {
@@ -92,7 +104,8 @@ private:
         std::set<std::string_view> names;
         for (const Part& part : list) {
             if (part.name.empty() || names.insert(part.name).second) continue;
-            fail(ErrorCode::inconsistent, part.where, "another " + kind + " is called `" + part.name + "` already; names are unique");
+            fail(ErrorCode::inconsistent, place_of_part(part),
+                 "another " + kind + " is called `" + part.name + "` already; names are unique");
         }
     }
 
@@ -179,8 +192,8 @@ private:
 
     void add_joint(const scene::Joint& from) {
         if (!joint_of_name_.try_emplace(from.name, static_cast<int>(out_.joints.size())).second)
-            return fail(ErrorCode::inconsistent, from.where, "another joint is called `" + from.name + "` already");
-        const std::optional<Ends> ends = add_ends(from.a, from.b, from.where);
+            return fail(ErrorCode::inconsistent, place_of_part(from), "another joint is called `" + from.name + "` already");
+        const std::optional<Ends> ends = add_ends(from.a, from.b, place_of_part(from));
         if (!ends) return;
         Joint joint;
         joint.name = from.name;
@@ -261,11 +274,11 @@ private:
 
     // ratio (first) - second = constant.
     void add_coupling(const scene::Joint& from) {
-        const Joint *first = find_joint(from.of[0], from.where), *second = find_joint(from.of[1], from.where);
+        const Joint *first = find_joint(from.of[0], place_of_part(from)), *second = find_joint(from.of[1], place_of_part(from));
         if (!first || !second) return;
         const bool fits = turns(first->kind) && turns(second->kind) == (from.kind == JointKind::gear);
         if (first == second || !fits)
-            return fail(ErrorCode::inconsistent, from.where,
+            return fail(ErrorCode::inconsistent, place_of_part(from),
                         from.kind == JointKind::gear ? "a gear couples the angles of two different joints"
                                                      : "a rack couples an angle and a slide: a revolute joint, then a prismatic one");
         const std::vector<constraint::RowPart> parts{{first->coordinate, from.ratio}, {second->coordinate, -1}};
@@ -281,15 +294,16 @@ private:
 
     void add_spring(const scene::Spring& from) {
         if (!from.joint.empty()) {
-            const Joint* joint = find_joint(from.joint, from.where);
+            const Joint* joint = find_joint(from.joint, place_of_part(from));
             if (joint) add_forces(from.forces, joint->coordinate, from.name);
             return;
         }
-        const std::optional<Ends> ends = add_ends(from.a, from.b, from.where);
+        const std::optional<Ends> ends = add_ends(from.a, from.b, place_of_part(from));
         if (!ends) return;
         const int length = add_measure({MeasureKind::distance, ends->frame_a, ends->frame_b, 0, 0, {}});
         if (!(value_as_written(length) > 0))
-            return fail(ErrorCode::out_of_range, from.where, "the ends of `" + from.name + "` are at one place: it has no direction");
+            return fail(ErrorCode::out_of_range, place_of_part(from),
+                        "the ends of `" + from.name + "` are at one place: it has no direction");
         add_forces(from.forces, length, from.name);
     }
 
@@ -308,7 +322,7 @@ private:
     }
 
     void add_motor(const scene::Motor& from) {
-        const Joint* joint = find_joint(from.joint, from.where);
+        const Joint* joint = find_joint(from.joint, place_of_part(from));
         if (!joint) return;
         const int coordinate = joint->coordinate;
         const double length = turns(joint->kind) ? lever(joint->a, joint->b) : 1;
@@ -317,7 +331,7 @@ private:
             return;
         }
         if (turns(joint->kind) && largest_stride(from.curve) > 0.9 * std::numbers::pi)
-            return fail(ErrorCode::out_of_range, from.where,
+            return fail(ErrorCode::out_of_range, place_of_part(from),
                         "`" + from.name +
                             "` turns by half a turn or more in one time step, so that its turns cannot be counted: use a "
                             "shorter time step");
@@ -335,7 +349,7 @@ private:
         if (from.force.isZero(0)) return;
         scene::Attachment origin;
         origin.axis = from.force;
-        const std::optional<Ends> ends = add_ends(origin, {from.body, from.point, Vector3::UnitZ()}, from.where);
+        const std::optional<Ends> ends = add_ends(origin, {from.body, from.point, Vector3::UnitZ()}, place_of_part(from));
         if (!ends) return;
         const int along = add_measure({MeasureKind::offset, ends->frame_a, ends->frame_b, z_axis, 0, OffsetAxis::of_a});
         scene::Curve constant;

@@ -277,20 +277,32 @@ double times_the_others(const std::vector<scene::Body>& bodies, std::size_t body
     return *middle > 0 ? longest_side(bodies[body]) / *middle : 1;
 }
 
-/// A size or a density that is possible, but hardly meant: a unit that is another one than was thought makes a factor of 1000. Scenes of
-/// the source paper are taken as they are.
+void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
+    constexpr double strongest = 1000;  // [m/s^2]
+    if (!(scene.gravity.norm() > strongest)) return;
+    check.warnings.push_back(
+        (scene.path.empty() ? "scene" : scene.path + "#") + "/gravity: gravity is " +
+        base::format_quantity(scene.gravity.norm(), "m/s^2", 4) +
+        ", which is hardly meant; is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths (9.81 on the Earth)");
+}
+
+/// A size, a density or a gravity that is possible, but hardly meant: a unit that is another one than was thought makes a factor of 1000.
+/// Scenes of the source paper are taken as they are.
 void doubt_units(const scene::Scene& scene, SceneCheck& check) {
-    constexpr double largest = 10, smallest = 10e-6;    // [m]
+    const auto lenient = [](const scene::Body& body) { return body.mesh_policy == MeshPolicy::lenient; };
+    if (!std::all_of(scene.bodies.begin(), scene.bodies.end(), lenient)) doubt_gravity(scene, check);
+    constexpr double largest = 3, largest_static = 10;                   // [m]; a ground may be large
+    const double smallest = scene.length_unit < 10e-6 ? 10e-6 : 0.1e-3;  // [m]; whoever chose micrometres has small parts
     constexpr double mistaken = 250;                    // times as large or small as the others: nearer to 1000 than to them
     constexpr double lightest = 10, heaviest = 30'000;  // [kg/m^3]
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const scene::Body& body = scene.bodies[i];
-        if (body.mesh_policy == MeshPolicy::lenient) continue;
+        if (lenient(body)) continue;
         const std::string name = place_of(scene, body) + ": body `" + body.name + "`: ";
         const bool moves = body.type == BodyType::dynamic_body, solid = moves && !body.inertial && body.mass_kind == MassKind::volume;
         const double size = longest_side(body), times = times_the_others(scene.bodies, i);
         const bool stranger = times > mistaken ? body.type != BodyType::static_body : times < 1 / mistaken && scene.bodies.size() > 2;
-        if (size > largest || size < smallest || stranger) {
+        if (size > (body.type == BodyType::static_body ? largest_static : largest) || size < smallest || stranger) {
             std::string what = "its size is " + in_metres(size);
             if (solid && check.measures[i].amount() > 0)
                 what += " and its mass " + base::format_quantity(body.density * check.measures[i].amount(), "kg", 3);

@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
 
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/exports/glb_writer.hpp"
 
 namespace fettle::design::answers {
@@ -16,26 +19,47 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::size_t head = 256;                          // bytes, in which a report says who made it
-constexpr std::string_view made_by_us = "Made by fettle";  // of report/web/index.html
+constexpr std::size_t head = 256;  // bytes, in which a file says who made it
 
-bool is_anothers(const std::filesystem::path& file) {
+// What a file has there that is written by us: a report (of report/web/index.html), animated parts, a table (records/step_tables.hpp).
+std::string_view mark_of(const std::string& name) {
+    if (name == "motion.glb") return "\"generator\":\"fettle ";
+    if (name == "steps.csv") return "time,kinetic_energy,";
+    if (name == "contacts.csv") return "time,a,b,";
+    if (name == "drives.csv") return "time,body,fx,";
+    if (name == "joints.csv") return "time,name,fx,";
+    return "Made by fettle";
+}
+
+bool is_ours(const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    if (name == "design.final.json") return core::files::has_top_level_key(file, "fettle_design");
+    if (name == "result.json") return core::files::has_top_level_key(file, "status");
+    if (file.extension() == ".json") return core::records::is_trajectory_file(file);
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) return false;
-    if (file.extension() == ".json") return !core::files::has_top_level_key(file, "status");
+    if (!stream) return true;
     std::string text(head, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(head));
-    return text.find(made_by_us) == std::string::npos;
+    return text.find(mark_of(name)) != std::string::npos;
 }
 
 }  // namespace
 
-Errors others_files(const std::filesystem::path& folder) {
+Errors others_file(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored) || is_ours(file)) return {};
+    return {{ErrorCode::inconsistent, file.string(),
+             "is there and was not written by fettle: it would be replaced; write elsewhere, or move it away"}};
+}
+
+Errors others_files(const std::filesystem::path& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> names{"report.html",  "result.json", "trajectory.json", "trajectory.start.json", "motion.glb", "steps.csv",
+                                   "contacts.csv", "drives.csv",  "joints.csv"};
+    names.insert(names.end(), more.begin(), more.end());
     Errors errors;
-    for (const char* name : {"report.html", "result.json"}) {
-        if (!is_anothers(folder / name)) continue;
-        errors.push_back({ErrorCode::inconsistent, (folder / name).string(),
-                          "is there and was not written by fettle: it would be replaced; name another folder, or move it away"});
+    for (const std::string& name : names) {
+        const Errors found = others_file(folder / name);
+        errors.insert(errors.end(), found.begin(), found.end());
     }
     return errors;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/files/atomic_file.hpp"
@@ -28,7 +29,12 @@ void replace_motion(core::files::FilesTogether& files, const std::string& folder
 [[nodiscard]] Errors add_animation(core::files::FilesTogether& files, const std::string& folder, const core::model::Model& model,
                                    const core::stepper::Trajectory& trajectory);
 
-/// Is FOLDER/report.html, or FOLDER/result.json, of another program? It is not to be replaced. Errors: inconsistent, with what to do.
-[[nodiscard]] Errors others_files(const std::filesystem::path& folder);
+/// Is there a file of this name that another program wrote? It is not to be replaced. By its beginning or its keys, which are those that
+/// its name promises: result.json, design.final.json, a trajectory (any other JSON), motion.glb, a table of steps, a report (anything
+/// else). Errors: inconsistent, with what to do.
+[[nodiscard]] Errors others_file(const std::filesystem::path& file);
+
+/// The same of all that a run writes or takes away in FOLDER: report, answer, trajectories, animated parts, tables; and of `more` names.
+[[nodiscard]] Errors others_files(const std::filesystem::path& folder, const std::vector<std::string>& more = {});
 
 }  // namespace fettle::design::answers

@@ -10,6 +10,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/clearance_folder.hpp"
 #include "fettle/design/cli/clearance_ranges.hpp"
@@ -154,6 +155,9 @@ Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
         if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+    }
+    if (!options.certificate.empty() && !core::records::is_trajectory_file(options.subject.path)) {  // a trajectory is written beside it
+        if (Errors errors = answers::others_file(certificate_trajectory(options.certificate)); !errors.empty()) return errors;
     }
     if (!options.out.empty()) {
         if (Errors errors = try_run_folder(options.out); !errors.empty()) return errors;

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "fettle/design/cli/session.hpp"
 
@@ -36,6 +38,23 @@ std::vector<std::string> python_words(const ExploreOptions& options, const Commo
     if (common.json) words.emplace_back("--json");
     if (common.quiet) words.emplace_back("--quiet");
     return words;
+}
+
+// Python's side does nothing with them: none is dropped in silence.
+Errors refused_options(const CommonOptions& common) {
+    const CheckFiles& files = common.check_files;
+    const std::pair<const char*, bool> given[] = {
+        {"--threads", common.threads > 0},         {"--log", !common.log.empty()},       {"--strict", common.strict},
+        {"--mesh-dir", !common.mesh_dirs.empty()}, {"--junit", !files.junit.empty()},    {"--sarif", !files.sarif.empty()},
+        {"--markdown", !files.markdown.empty()},   {"--annotations", files.annotations},
+    };
+    Errors errors;
+    for (const auto& [option, is_given] : given) {
+        if (!is_given) continue;
+        const std::string instead = std::string_view(option) == "--threads" ? "; --workers says how many processes work at once" : "";
+        errors.push_back({ErrorCode::unsupported, "command line", std::string("explore does not take ") + option + instead});
+    }
+    return errors;
 }
 
 // Where the package lies beside this program: in the build tree, or installed with it.
@@ -101,7 +120,8 @@ Command add_explore(CommandLine& program, const CommonOptions& common) {
     line.option("--dask", options->dask,
                 "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust");
     line.closing_words("Example:  fettle explore hinge.design.json --out sweep.jsonl --sweep pin_radius=10 --sweep wall=1.6:3:8");
-    return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); }};
+    return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); },
+            [&common] { return refused_options(common); }};
 }
 
 }  // namespace fettle::design::cli

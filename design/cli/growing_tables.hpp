@@ -19,7 +19,7 @@ public:
     GrowingTables(const std::filesystem::path& folder, const core::model::Model& model);
 
     /// Before the first step: the rows of the tables beside `trajectory`, of the run that this one goes on with, up to the time `until`
-    /// [s].
+    /// [s]; none where that run was killed (its file has another name), for tables that lie beside it are of another run.
     void go_on_with(const std::filesystem::path& trajectory, double until);
     /// The rows of the last step. Contract: called after each.
     void write(const core::stepper::Simulation& so_far);

@@ -139,6 +139,10 @@ int run(int argc, char** argv) {
         }
         return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands, argc, argv)}});
     }
+    for (const Command& command : commands) {
+        if (!command.line.is_chosen() || !command.refused) continue;
+        if (const Errors errors = command.refused(); !errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
+    }
     if (!common.log.empty()) {
         const Errors errors = try_output_file(common.log);
         if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);

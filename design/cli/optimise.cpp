@@ -107,7 +107,7 @@ int tell_interrupted(const Run& run, const std::vector<StartResult>& rows) {
     json["starts"] = starts_json(rows);
     json["out"] = run.facts.out;
     std::string told = run.console.coloured("interrupted", false) + ": not all starts have been run\n" + starts_text(rows);
-    if (best) told += "the best so far is in " + rows[*best].out + "\n";
+    told += best ? "the best so far is in " + rows[*best].out + "\n" : std::string("no start has ended with a design\n");
     run.console.found(
         {"no better design is near", CheckOutcome::undecided, "interrupted", "not all starts have been run", run.options.path});
     told += "go on where it stopped: " + resume_command(run.options, run.facts.out) + "\n";
@@ -159,7 +159,7 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     if (!problem) return console.input_errors(problem.errors());
     tell_warnings(console, problem->warnings());
     const std::string out = output_folder(options, *file);
-    const Errors errors = try_run_folder(out);
+    const Errors errors = try_run_folder(out, {"design.final.json"});
     if (!errors.empty()) return console.input_errors(errors);
     const Run run{options, *file, *problem, common, console, {out, 0, options.repair}};
     if (options.starts > 0) return run_all(run);

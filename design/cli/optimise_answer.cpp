@@ -48,6 +48,13 @@ std::string share_text(double gain, double objective) {
     return objective == 0 ? "" : formatted(" (%.2g%% of it)", 100 * gain / std::abs(objective));
 }
 
+// By so little may a requirement that holds ask for less.
+std::string eased_text(const description::Constraint& constraint, bool lower_bound) {
+    const std::string amount = description::amount_text(0.01, 1, description::unit_name(constraint));
+    if (constraint.bounds.lower == constraint.bounds.upper) return "with " + amount + (lower_bound ? " less" : " more") + " required";
+    return (lower_bound ? "with a lower limit that is " : "with an upper limit that is ") + amount + (lower_bound ? " lower" : " higher");
+}
+
 // What each requirement that holds costs, the dearest first; what could still move; what is too rough to tell.
 std::string verdict_text(const Design& design, const optimisers::Optimality& o, const std::string& minimised, double objective) {
     std::string text;
@@ -55,10 +62,9 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
     if (!costs.empty()) text += "what the requirements cost:\n";
     for (const answers::Cost& cost : costs) {
         const double worth = 0.01 * std::abs(cost.per_unit);
-        const std::string unit = description::unit_name(design.constraints[cost.constraint]);
-        text += formatted("  %s: with %s required, %s could be lower by %.3g%s\n", cost.requirement.c_str(),
-                          (description::amount_text(0.01, 1, unit) + (cost.per_unit > 0 ? " less" : " more")).c_str(), minimised.c_str(),
-                          worth, share_text(worth, objective).c_str());
+        text += formatted("  %s: %s, %s could be lower by %.3g%s\n", cost.requirement.c_str(),
+                          eased_text(design.constraints[cost.constraint], cost.per_unit > 0).c_str(), minimised.c_str(), worth,
+                          share_text(worth, objective).c_str());
     }
     for (const int k : o.improvable) {
         const description::Parameter& p = design.parameters[static_cast<size_t>(k)];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_text.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/child_process.hpp"
 
@@ -79,8 +81,9 @@ std::string joined_names(const Json& list) {
 
 std::string line_of(const StartResult& start) {
     std::string text = formatted("seed %-8llu %-12s", static_cast<unsigned long long>(start.seed), start.status.c_str());
-    if (!start.result.is_object()) return text + " " + start.message;
-    text += formatted(" objective %-12.8g %3d %s", number(start.result, "objective"), start.result["evaluations"].get<int>(),
+    const double objective = number(start.result, "objective");
+    if (!std::isfinite(objective)) return text + " " + start.message;  // no design was evaluated
+    text += formatted(" objective %-12.8g %3d %s", objective, start.result["evaluations"].get<int>(),
                       start.result["evaluations"] == 1 ? "evaluation" : "evaluations");
     const double violation = number(start.result, "constraint_violation");
     if (violation > 0) return text + formatted(", largest violation %.3g", violation);
@@ -131,7 +134,14 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
             const std::filesystem::path folder = starts[next].out;
             std::error_code fault;
             std::filesystem::create_directories(folder, fault);
-            if (!fault) std::filesystem::remove(folder / "result.json", fault);  // of an earlier run: it would pass for this one's
+            const Errors others = answers::others_file(folder / "result.json");
+            if (!fault && others.empty())
+                std::filesystem::remove(folder / "result.json", fault);  // of an earlier run: it would pass for this one's
+            if (!others.empty()) {
+                starts[next] = {starts[next].seed, folder.string(), "failed", others[0].where + ": " + others[0].message, Json(),
+                                exit_bad_input};
+                continue;
+            }
             if (fault) {
                 starts[next] = {starts[next].seed, folder.string(), "failed", "its folder cannot be written: " + fault.message(), Json(),
                                 exit_bad_input};

@@ -36,8 +36,8 @@ Errors try_output_folder(const fs::path& folder) {
     return errors;
 }
 
-Errors try_run_folder(const fs::path& folder) {
-    Errors errors = answers::others_files(folder);
+Errors try_run_folder(const fs::path& folder, const std::vector<std::string>& more) {
+    Errors errors = answers::others_files(folder, more);
     return errors.empty() ? try_output_folder(folder) : errors;
 }
 

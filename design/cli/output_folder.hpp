@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
@@ -16,7 +17,8 @@ namespace fettle::design::cli {
 [[nodiscard]] Errors try_output_folder(const std::filesystem::path& folder);
 
 /// The same of a folder for the results of a run, in which nothing of another program may be replaced (answers/run_folder.hpp).
-[[nodiscard]] Errors try_run_folder(const std::filesystem::path& folder);
+/// @param more  names of files that this run writes beside what every run does.
+[[nodiscard]] Errors try_run_folder(const std::filesystem::path& folder, const std::vector<std::string>& more = {});
 
 /// The same of the folder of a file that is to be written; a folder in the file's place is a fault too.
 [[nodiscard]] Errors try_output_file(const std::filesystem::path& file);

@@ -24,9 +24,11 @@ struct CommonOptions {
 };
 
 /// A subcommand: adds itself to the program's options; `run` is called once the command line has been read, and returns the exit code.
+/// `refused`, if there is one, says which of the common options were given that it does not take, before any file is touched.
 struct Command {
     CommandLine line;
     std::function<int(Console&)> run;
+    std::function<Errors()> refused = {};
 };
 
 Command add_clearance(CommandLine& program, const CommonOptions& common);

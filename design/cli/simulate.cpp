@@ -175,7 +175,7 @@ Result<Simulation> read_earlier(const SimulateArguments& options, const core::mo
 }
 
 Errors try_outputs(const SimulateArguments& options) {
-    Errors errors = options.out.empty() ? Errors{} : try_run_folder(options.out);
+    Errors errors = options.out.empty() ? Errors{} : try_run_folder(options.out, {running_file});
     if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
     return errors;
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/optimisers/nlopt_optimiser.hpp"
 #include "fettle/design/optimisers/sequential_optimiser.hpp"
 
@@ -210,8 +212,7 @@ private:
         report_.budget_spent = stopped_ == StopReason::budget;
         report_.best = report_.start;  // no other design was evaluated as written
         report_.feasible = report_.best.usable && report_.best.violation <= 0;
-        if (stopped_ == StopReason::interrupted)
-            report_.message = "stopped as asked after " + std::to_string(report_.evaluations) + " evaluations, of smoother models";
+        if (stopped_ == StopReason::interrupted) report_.message = "stopped as asked after " + evaluations_text() + ", of smoother models";
     }
 
     // @param spare  Evaluations that the native optimiser has not been given: they are the verdict's.
@@ -268,12 +269,19 @@ private:
                          : report_.optimality.is_optimal() ? OptimiserStatus::optimal
                                                            : OptimiserStatus::feasible;
         report_.message = optimiser_.name() + ": " + native;
-        if (report_.budget_spent)
-            report_.message = "stopped after " + std::to_string(options_.max_evaluations) +
-                              " evaluations, the most that the design allows (`max_evaluations`)";
+        if (report_.budget_spent) report_.message = budget_text();
         if (stopped_ != StopReason::interrupted) return;
         report_.status = OptimiserStatus::interrupted;
-        report_.message = "stopped as asked after " + std::to_string(report_.evaluations) + " evaluations";
+        report_.message = "stopped as asked after " + evaluations_text();
+    }
+
+    std::string evaluations_text() const { return core::base::counted(static_cast<std::size_t>(report_.evaluations), "evaluation"); }
+
+    std::string budget_text() const {
+        const std::string text = "stopped after " + evaluations_text();
+        if (report_.evaluations >= options_.max_evaluations) return text + ", the most that the design allows (`max_evaluations`)";
+        return text + "; of the " + std::to_string(options_.max_evaluations) +
+               " that the design allows (`max_evaluations`) the others are kept to judge a design that meets every requirement";
     }
 
     const Problem& problem_;

@@ -47,7 +47,7 @@ std::vector<std::string> texts_of(const std::vector<Path>& paths) {
 double quantity_from(py::handle given, core::base::Dimension dimension, const std::string& where) {
     if (py::isinstance<py::str>(given)) return value_or_raise(core::base::parse_quantity(given.cast<std::string>(), dimension, where));
     py::detail::make_caster<double> number;
-    if (given.is_none() || !number.load(given, true))
+    if (given.is_none() || py::isinstance<py::bool_>(given) || !number.load(given, true))
         refuse(ErrorCode::wrong_type, where,
                shown(given) + ": a number in " + std::string(core::base::si_unit(dimension)) + ", or a text with a unit, is wanted");
     return py::detail::cast_op<double>(number);
@@ -84,9 +84,11 @@ void check_above(const std::string& where, double value, double least) {
     check_number(where, value, value > least, "more than " + shown_number(least));
 }
 
-void check_steps(int steps) {
-    if (steps >= -1) return;
-    refuse(ErrorCode::out_of_range, "steps", std::to_string(steps) + " is not allowed: 0 or more is, or -1, until the model's end_time");
+int steps_from(const std::optional<int>& steps) {
+    if (steps && *steps < 0)
+        refuse(ErrorCode::out_of_range, "steps",
+               std::to_string(*steps) + " is not allowed: 0 or more is, or None, until the model's end_time");
+    return steps.value_or(-1);
 }
 
 std::uint64_t seed_from(std::int64_t seed) {

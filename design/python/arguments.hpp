@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,8 @@ int body_from(const std::vector<std::string>& names, pybind11::handle given, con
 /// Finite, and `least` or more; or more than `least`.
 void check_at_least(const std::string& where, double value, double least);
 void check_above(const std::string& where, double value, double least);
-/// -1: until the model's end_time.
-void check_steps(int steps);
+/// Not negative; -1 of None: until the model's end_time.
+int steps_from(const std::optional<int>& steps);
 /// Those that are not negative.
 std::uint64_t seed_from(std::int64_t seed);
 /// Of a trajectory and the model that it is said to be of.

@@ -43,6 +43,7 @@ int index_of(const std::vector<std::string>& names, const std::string& name, con
 struct ExportArguments {
     std::string folder, format, stem, arrangement;
     int every = 1;
+    bool in_place = false;
 };
 
 std::vector<std::string> export_files(const Model& model, const Trajectory* trajectory, const ExportArguments& arguments) {
@@ -51,6 +52,9 @@ std::vector<std::string> export_files(const Model& model, const Trajectory* traj
     exports::ExportOptions options;
     options.arrangement = static_cast<exports::Arrangement>(index_of(exports::arrangement_names(), arguments.arrangement, "arrangement"));
     options.every = arguments.every;
+    options.in_place = arguments.in_place;
+    if (options.in_place && options.arrangement != exports::Arrangement::parts)
+        refuse(ErrorCode::inconsistent, "in_place", "it is of the arrangement `parts`: a file for each part");
     const exports::Assembly assembly = assembly_of(model, trajectory);
     std::vector<std::string> files;
     const exports::FileSink sink = [&](const std::string& name, const std::string& bytes) {
@@ -107,8 +111,8 @@ std::string view_page(const Model& model, const Trajectory* trajectory, const st
     source.kind = report::ReportKind::clearance;  // of which nothing was judged: no distance is certified for a look
     source.name = title;
     source.gravity = model.gravity;
-    source.result = {{"status", "undecided"},
-                     {"message", "Parts and their motion as they were given; certify_clearance proves distances."},
+    source.result = {{"status", "shown"},
+                     {"message", "As they were given; no distance was judged here: certify_clearance proves distances."},
                      {"motion", !path.steps.empty()},
                      {"pairs", nlohmann::ordered_json::array()}};
     source.motion = report::Motion{model, path};
@@ -121,14 +125,15 @@ void bind_exports(py::module_& module) {
     module.def(
         "export_files",
         [](const Path& folder, const std::string& format, const Model& model, const Trajectory* trajectory, const std::string& stem,
-           const std::string& arrangement, int every) {
+           const std::string& arrangement, int every, bool in_place) {
             const py::gil_scoped_release unlocked;
-            return export_files(model, trajectory, {folder.string(), format, stem, arrangement, every});
+            return export_files(model, trajectory, {folder.string(), format, stem, arrangement, every, in_place});
         },
         py::arg("folder"), py::arg("format"), py::arg("model"), py::arg("trajectory") = py::none(), py::arg("stem") = "parts",
-        py::arg("arrangement") = "assembled", py::arg("every") = 1,
+        py::arg("arrangement") = "assembled", py::arg("every") = 1, py::arg("in_place") = false,
         "Parts for other programs, and with glb and vtu their motion: the paths of the files. format: glb, 3mf, stl, obj, vtu. arrangement "
-        "(3mf, stl, obj): assembled; plate, for a printer's bed; parts, a file for each. every: of vtu, a frame for so many steps.");
+        "(3mf, stl, obj): assembled; plate, for a printer's bed; parts, a file for each, with in_place where it stands at the start. "
+        "every: of vtu, a frame for so many steps.");
     module.def(
         "draw_picture",
         [](const Model& model, const Trajectory* trajectory, int t, const std::string& view, std::pair<int, int> size,

@@ -27,9 +27,10 @@ py::object paths_as_text(py::object given) {
     return std::move(texts);
 }
 
-void refuse_type(const char* record, const char* member, py::handle found) {
+void refuse_type(const char* record, const char* member, py::handle found, const std::string& wanted) {
     const std::string type = py::str(py::type::of(found).attr("__name__"));
-    throw py::type_error(std::string(record) + "." + member + ": a value of type " + type + " is not what belongs there");
+    throw py::type_error(std::string(record) + "." + member + ": a value of type " + type + " is not what belongs there" +
+                         (wanted.empty() ? "" : ": " + wanted + (wanted.starts_with("three") ? " are wanted" : " is wanted")));
 }
 
 void refuse_word(const std::string& word, std::span<const std::string_view> known) {

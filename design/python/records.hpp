@@ -69,7 +69,8 @@ pybind11::object prepared(pybind11::handle record);
 /// os.PathLike as text, in lists too; all else as it is.
 pybind11::object paths_as_text(pybind11::object given);
 
-[[noreturn]] void refuse_type(const char* record, const char* member, pybind11::handle found);
+/// @param wanted  empty: it is not said what
+[[noreturn]] void refuse_type(const char* record, const char* member, pybind11::handle found, const std::string& wanted);
 [[noreturn]] void refuse_word(const std::string& word, std::span<const std::string_view> known);
 [[noreturn]] void refuse_nan();
 /// Throws the errors on, their place told from this record: "body `cube`/type", "parameter `height`/moves/scale".
@@ -93,13 +94,47 @@ bool has_nan(const T& x) {
     }
 }
 
+/// What a member takes, for messages; empty where that is many things.
+template <class T>
+std::string wanted_text() {
+    if constexpr (IsRecord<T>) {
+        return std::string("a fettle.") + Record<T>::python_name;
+    } else if constexpr (std::is_same_v<T, bool>) {
+        return "True or False";
+    } else if constexpr (std::is_arithmetic_v<T>) {
+        return std::is_integral_v<T> ? "a whole number" : "a number";
+    } else if constexpr (std::is_same_v<T, std::string> || IsWord<T>) {
+        return "a text";
+    } else if constexpr (std::is_same_v<T, Vector3>) {
+        return "three numbers";
+    } else if constexpr (std::is_same_v<T, Matrix3>) {
+        return "three rows of three numbers";
+    } else if constexpr (pybind11::detail::is_instantiation<std::optional, T>::value) {
+        const std::string value = wanted_text<typename T::value_type>();
+        return value.empty() ? value : value + ", or None,";
+    } else {
+        return {};
+    }
+}
+
+/// True and False are numbers to Python, and hardly meant as such.
+template <class T>
+constexpr bool is_number() {
+    if constexpr (pybind11::detail::is_instantiation<std::optional, T>::value) {
+        return is_number<typename T::value_type>();
+    } else {
+        return std::is_arithmetic_v<T> && !std::is_same_v<T, bool>;
+    }
+}
+
 /// A member of a Python object, as the library has it.
 template <class Member>
 Member member_of(pybind11::handle source, const char* record_name, const char* name, bool is_path = false) {
     const pybind11::object given = source.attr(name), found = is_path ? paths_as_text(given) : given;
     pybind11::detail::make_caster<Member> caster;
     try {
-        if (!caster.load(found, true)) refuse_type(record_name, name, found);
+        if ((is_number<Member>() && pybind11::isinstance<pybind11::bool_>(found)) || !caster.load(found, true))
+            refuse_type(record_name, name, found, wanted_text<Member>());
         Member value = pybind11::detail::cast_op<Member&&>(std::move(caster));
         if (has_nan(value)) refuse_nan();
         return value;

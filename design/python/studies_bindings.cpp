@@ -90,7 +90,7 @@ Errors add_results(const DesignProblem& problem, const OptimiseOutcome& outcome,
 }
 
 OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments, const py::object& progress) {
-    raise_if_any(answers::others_files(arguments.directory));
+    raise_if_any(answers::others_files(arguments.directory, {"design.final.json"}));
     if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
     const auto run = [&](const studies::OptimiseOptions& all) {
         const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));

@@ -18,14 +18,15 @@ using core::stepper::Trajectory;
 
 namespace {
 
-core::stepper::Simulation simulate(const Model& model, int steps, bool for_gradient, bool outputs, const py::object& progress) {
-    check_steps(steps);
+core::stepper::Simulation simulate(const Model& model, const std::optional<int>& steps, bool for_gradient, bool outputs,
+                                   const py::object& progress) {
+    const int count = steps_from(steps);
     Watch watch(progress);
     core::stepper::Simulation simulation;
     {
         const py::gil_scoped_release unlocked;
         core::stepper::SimulationOptions options;
-        options.steps = steps;
+        options.steps = count;
         options.for_gradient = for_gradient;
         options.outputs = outputs;
         options.on_step = watch.on_step();
@@ -196,17 +197,17 @@ void bind_trajectory(py::module_& module) {
             "_repr_html_", [](const py::object& self) { return py::module_::import("fettle._shown").attr("trajectory_html")(self); },
             "How a notebook shows it.")
         .def(py::pickle(&packed, &unpacked));
-    module.def("simulate", &simulate, py::arg("model"), py::arg("steps") = -1, py::arg("for_gradient") = false, py::arg("outputs") = false,
-               py::arg("progress") = py::none(),
-               "Runs a model through time; the same bits for any number of threads. steps: -1 runs until the model's end_time (1000 steps "
-               "where it has none). progress(done, steps) is called after each step.");
+    module.def(
+        "simulate", &simulate, py::arg("model"), py::arg("steps") = py::none(), py::arg("for_gradient") = false, py::arg("outputs") = false,
+        py::arg("progress") = py::none(),
+        "Runs a model through time; the same bits for any number of threads. steps: None runs until the model's end_time (1000 steps "
+        "where it has none). progress(done, steps) is called after each step.");
     module.def(
         "follow_scripts",
-        [](const Model& model, int steps) {
-            check_steps(steps);
-            return std::make_shared<Trajectory>(core::stepper::follow_scripts(model, steps));
+        [](const Model& model, const std::optional<int>& steps) {
+            return std::make_shared<Trajectory>(core::stepper::follow_scripts(model, steps_from(steps)));
         },
-        py::arg("model"), py::arg("steps") = -1, py::call_guard<py::gil_scoped_release>(),
+        py::arg("model"), py::arg("steps") = py::none(), py::call_guard<py::gil_scoped_release>(),
         "Motion without dynamics and contact: prescribed coordinates follow their scripts, all else stays.");
     module.def("read_trajectory", &read_trajectory, py::arg("path"), "(Trajectory, Model) of a *.trajectory.json.");
     module.def("write_trajectory", &write_trajectory, py::arg("path"), py::arg("trajectory"), py::arg("model"), py::arg("scene_path") = "",

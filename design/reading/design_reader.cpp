@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
@@ -63,7 +65,18 @@ private:
     bool read_scene_file(const JsonNode& node) {
         const auto name = node.string();
         if (!name) return false;
+        const std::string wanted = "; `scene` is the path of a scene file from the design's folder";
+        if (name->empty()) {
+            node.fail(ErrorCode::out_of_range, "it is empty" + wanted);
+            return false;
+        }
         file_.scene_path = (fs::path(file_.path).parent_path() / *name).string();
+        std::error_code ignored;
+        if (core::mesh_files::has_mesh_extension(*name) || fs::is_directory(file_.scene_path, ignored)) {
+            const char* found = core::mesh_files::has_mesh_extension(*name) ? " is a mesh, which a scene names" : " is a folder";
+            node.fail(ErrorCode::unsupported, file_.scene_path + found + wanted);
+            return false;
+        }
         Result<core::scene::Scene> scene =
             core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs));
         if (!scene) {
@@ -155,7 +168,13 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
     Result<JsonDocument> document = JsonDocument::parse(text, path);
     if (!document) return document.errors();
     if (!is_design(*document)) {
-        return Error{ErrorCode::missing_key, document->root().where(), "not a design: `fettle_design` (its version, 1) is not there"};
+        const JsonNode root = document->root();
+        const bool scene = root.is_object() && (root["fettle_scene"].exists() || root["rigid_body_problem"].exists());
+        return Error{scene ? ErrorCode::inconsistent : ErrorCode::missing_key, root.where(),
+                     scene
+                         ? "this is a scene, not a design: a design names it as its `scene`, and says what may change and what is wanted; "
+                           "`fettle new` writes one to start from"
+                         : "not a design: `fettle_design` (its version, 1) is not there"};
     }
     Result<DesignFile> file = DesignReader(*document, options).read();
     if (file) file->text = text;

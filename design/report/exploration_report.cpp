@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/exploration_data.hpp"
@@ -75,12 +76,14 @@ void take_design(const std::string& file, const ReportOptions& options, Explorat
 }  // namespace
 
 Result<std::string> write_exploration_report(const std::string& file, const ReportOptions& options) {
+    const std::string out = options.out.empty() ? fs::path(file).replace_extension(".report.html").string() : options.out;
+    if (options.out.empty())
+        if (Errors errors = answers::others_file(out); !errors.empty()) return errors;
     ExplorationSource source;
     if (Errors errors = read_lines(file, source); !errors.empty()) return errors;
     source.folder = file;
     source.name = fs::path(file).stem().string();
     take_design(file, options, source);
-    const std::string out = options.out.empty() ? fs::path(file).replace_extension(".report.html").string() : options.out;
     const std::string page = page_of(exploration_data(source, options.should_stop));
     if (Errors errors = core::files::write_file_atomically(out, page); !errors.empty()) return errors;
     return out;

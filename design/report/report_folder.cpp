@@ -10,6 +10,7 @@
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -263,6 +264,8 @@ Result<std::string> write_report(const std::string& folder, ReportOptions option
     source.folder = folder;
     source.result = *std::move(result);
     const std::string file = options.out.empty() ? (path / "report.html").string() : options.out;
+    if (options.out.empty())
+        if (Errors errors = answers::others_file(file); !errors.empty()) return errors;
     try {
         core::files::FilesTogether files;
         if (Errors errors = FolderReader(path, options, source, files).read(); !errors.empty()) return errors;

@@ -27,7 +27,8 @@ struct ReportOptions {
     std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
 };
 
-/// @return the path of the report. Errors: no result.json, one of another kind, or files that cannot be read or written.
+/// @return the path of the report. Errors: no result.json, one of another kind, files that cannot be read or written, or a report.html of
+/// another program in the folder (one that `out` names is replaced).
 Result<std::string> write_report(const std::string& folder, ReportOptions options = {});
 
 }  // namespace fettle::design::report

@@ -10,7 +10,7 @@ import math
 import os
 import signal
 import sys
-from typing import Any, Dict, List, NoReturn, Optional, Sequence, Union
+from typing import Any, Callable, Dict, List, NoReturn, Optional, Sequence, Union
 
 from . import _fettle
 from .errors import Error, Fault
@@ -28,6 +28,15 @@ class Parser(argparse.ArgumentParser):
         raise Error([Fault("unsupported", "command line", f"{message}; see fettle explore --help")])
 
 
+def number_of(word: str, text: str, kind: Callable[[str], Any], where: str) -> Any:
+    """What stands for this word of FORMS."""
+    try:
+        return kind(text)
+    except ValueError:
+        wanted = "a whole number" if kind is int else "a number, in the parameter's own unit and without it"
+        raise Error([Fault("parse", where, f"{FORMS}; {word} is {wanted}, found {text!r}")]) from None
+
+
 def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
     """Of NAME=COUNT, or NAME=LOW:HIGH:COUNT in the parameter's own unit: {name: count, or values in SI}."""
     name, _, values = text.rpartition("=")
@@ -35,10 +44,8 @@ def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
     parts = values.split(":")
     if not name or len(parts) not in (1, 3):
         raise Error([Fault("parse", where, FORMS)])
-    try:
-        count, ends = int(parts[-1]), [float(end) for end in parts[:-1]]
-    except ValueError as fault:
-        raise Error([Fault("parse", where, f"{FORMS}, with numbers: {fault}")]) from fault
+    count = number_of("COUNT", parts[-1], int, where)
+    ends = [number_of(end, text, float, where) for end, text in zip(("LOW", "HIGH"), parts[:-1])]
     if count < 1:
         raise Error([Fault("out_of_range", where, f"{count} values are not allowed: 1 or more are")])
     if not all(map(math.isfinite, ends)):

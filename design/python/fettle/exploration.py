@@ -426,6 +426,14 @@ def _jobs(
     return list({job.key: job for job in jobs}.values())
 
 
+def _make_folder_of(path: str) -> None:
+    folder = os.path.dirname(path) or "."
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as fault:
+        raise _fail("file_unwritable", folder, f"the folder cannot be made: {fault.strerror}") from fault
+
+
 @contextlib.contextmanager
 def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Result]]]:
     """The file, locked, at its end; and what it has already. A new file goes again where it gets no result, for something was raised."""
@@ -539,6 +547,7 @@ def explore(
     del problem
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(_dask_client(dask)) if dask is not None else None
+        _make_folder_of(out)
         file, known = stack.enter_context(_results_file(out, header))
         done = {result["key"] for result in known if result["status"] != "lost"}
         wanted = [job for job in jobs if job.key not in done]

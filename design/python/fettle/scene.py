@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Literal, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._record import Number, Record, faults_of, number
+from ._record import Number, Record, faults_of, number, short
 from .errors import Error, Fault
 
 Vector = Union[Sequence[Any], NDArray[np.float64]]
@@ -268,8 +268,10 @@ class Scene(Record):
         return names.index(name)
 
     def _prepared(self) -> "Scene":
-        """Raises Error where a number was given in a unit of another dimension than its joint, motor or coordinate has."""
-        faults = list(_faults_of_units(self))
+        """Raises Error where something is not of its class, a body has no name, or a number was given in a unit of another dimension than
+        its joint, motor or coordinate has."""
+        faults = _faults_of_classes(self)
+        faults = faults or _faults_of_names(self) + _faults_of_units(self)
         if faults:
             raise Error(faults)
         return self
@@ -281,6 +283,48 @@ _OF_COORDINATE = {
 }
 _COORDINATES = {"revolute": "angle", "screw": "angle", "prismatic": "length", "cylindrical": "length"}
 _EFFORTS = {"length": "force", "angle": "torque"}
+
+
+def _unless(found: Any, wanted: type, where: str) -> List[Fault]:
+    if isinstance(found, wanted):
+        return []
+    return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a fettle.{wanted.__name__} is wanted")]
+
+
+def _unless_all(found: Any, wanted: type, where: str) -> List[Fault]:
+    if not isinstance(found, (list, tuple)):
+        return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a list of fettle.{wanted.__name__} is wanted")]
+    return [fault for k, each in enumerate(found) for fault in _unless(each, wanted, f"{where}/{k}")]
+
+
+def _faults_of_classes(scene: Scene) -> List[Fault]:
+    faults = _unless_all(scene.bodies, Body, "scene/bodies") + _unless(scene.mechanism, Mechanism, "scene/mechanism")
+    if faults:
+        return faults
+    mechanism = scene.mechanism
+    for member, kind in (("joints", Joint), ("springs", Spring), ("motors", Motor), ("loads", PointLoad)):
+        faults += _unless_all(getattr(mechanism, member), kind, f"mechanism/{member}")
+    if faults:
+        return faults
+    for body in scene.bodies:
+        curves: Any = body.prescribed
+        for k, curve in enumerate(curves if isinstance(curves, (list, tuple)) else [curves]):
+            faults += _unless(curve, MotionCurve, f"body `{body.name}`/prescribed/{k}") if curve is not None else []
+    for joint in mechanism.joints:
+        faults += _unless(joint.forces, CoordinateForces, f"joint `{joint.name}`/forces")
+    for spring in mechanism.springs:
+        faults += _unless(spring.forces, CoordinateForces, f"spring `{spring.name}`/forces")
+    for motor in mechanism.motors:
+        faults += _unless(motor.curve, Curve, f"motor `{motor.name}`/curve")
+    return faults
+
+
+def _faults_of_names(scene: Scene) -> List[Fault]:
+    return [
+        Fault("out_of_range", f"scene/bodies/{k}/name", "a body needs a name: pairs, joints and files find it by that")
+        for k, body in enumerate(scene.bodies)
+        if body.name == ""
+    ]
 
 
 def _faults_of_units(scene: Scene) -> List[Fault]:

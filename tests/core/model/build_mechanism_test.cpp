@@ -38,6 +38,25 @@ std::string warnings_of(const Model& model) {
 
 }  // namespace
 
+TEST_CASE("errors of a mechanism made in memory have the part's name as their place", "[mechanism]") {
+    const auto place = [](const scene::Scene& scene) {
+        const auto model = build_model(scene);
+        REQUIRE(model.errors().size() == 1);
+        return model.errors()[0].where;
+    };
+    scene::Scene scene = hinged_bar();
+    scene.mechanism.joints[0].where.clear();
+    scene::Scene nobody = scene;
+    nobody.mechanism.joints[0].b.body = "rod";
+    CHECK(place(nobody) == "joint `hinge`");
+    scene.mechanism.motors.resize(1);
+    scene.mechanism.motors[0].name = "drive";
+    scene.mechanism.motors[0].joint = "hing";
+    CHECK(place(scene) == "motor `drive`");
+    scene.mechanism.motors[0].where = "a.scene.json#/motors/0";
+    CHECK(place(scene) == "a.scene.json#/motors/0");
+}
+
 TEST_CASE("bodies that fit their joints are not moved", "[mechanism]") {
     const Model model = built(hinged_bar());
     CHECK(model.mechanism.rows.size() == 5);

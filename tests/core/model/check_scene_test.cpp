@@ -68,11 +68,21 @@ TEST_CASE("A size or a density that is hardly meant is a warning, with its place
     scene::Body still = box("block", 94, 0);
     still.type = BodyType::static_body;
     CHECK(told({still}, "body `block`: its size is 94 m"));
+    CHECK(told({box("rod", 10, 0)}, "body `rod`: its size is 10 m"));
+    CHECK(told({box("rod", 0.058e-3, 0)}, "body `rod`: its size is 58 um"));
+    scene::Scene heavy = scene_of({box("rod", 0.058, 0)});
+    heavy.gravity = Vector3(0, 0, -9810);
+    CHECK(build_model(heavy)->warnings == std::vector<std::string>{"a.scene.json#/gravity: gravity is 9810 m/s^2, which is hardly meant; "
+                                                                   "is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths "
+                                                                   "(9.81 on the Earth)"});
     // What is meant: parts of all usual sizes, and a large ground under small ones.
     CHECK(warnings({box("pin", 5e-3, -1), box("crank", 0.3, -2), box("frame", 1, 0)}).empty());
     scene::Body ground = box("ground", 9, 0);
     ground.type = BodyType::static_body;
     CHECK(warnings({ground, box("marble", 0.01, -1)}).empty());
+    scene::Scene small = scene_of({box("gear", 50e-6, 0)});
+    small.length_unit = 1e-6;
+    CHECK(build_model(small)->warnings.empty());
     scene::Body light = box("light", 0.1, 0);
     light.density = 1.24;
     CHECK(told({light}, "a density of 1.24 kg/m^3 is hardly meant"));

@@ -106,6 +106,17 @@ TEST_CASE("simulate: a killed run leaves its steps, and goes on with the same bi
     CHECK(steps_in(folder.path / "cut/trajectory.json") == std::stoi(goal) + 5);
 }
 
+TEST_CASE("simulate: a killed run that goes on does not take over the tables of another run in its folder") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder), out = folder.file("out");
+    REQUIRE(run("simulate " + in + " --steps 20 --out " + out).code == 0);
+    const std::filesystem::path running = folder.path / "out/trajectory.running.json";
+    REQUIRE(killed_after(40, {"simulate", in, "--steps", "100000", "--out", out, "--quiet", "--json"}, running));
+    REQUIRE(run("simulate " + in + " --steps " + std::to_string(steps_in(running) + 5) + " --out " + out + " --continue " + out).code == 0);
+    const std::string steps = contents(folder.path / "out/steps.csv");
+    CHECK(std::stod(steps.substr(steps.find('\n') + 1)) > 0.03);  // seconds: from the checkpoint on, without the other run's first steps
+}
+
 TEST_CASE("simulate: --log has the narration, --quiet or not; elsewhere than on a terminal there is no bar") {
     const TemporaryFolder folder;
     const std::string in = scene(folder), log = folder.file("logs/a.txt");

@@ -53,6 +53,18 @@ TEST_CASE("messages: options and words that are not taken name what was probably
     CHECK(unknown.says("there is no command \"frobnicate\"; there are new, "));
 }
 
+TEST_CASE("messages: explore refuses the common options that it does not take, before any file is touched") {
+    const DesignFolder folder;
+    const std::string theirs = folder.write("j.xml", "<mine/>"), out = folder.file("x.jsonl");
+    const std::string explore = "explore " + folder.design() + " --samples 1 --quiet --out " + out;
+    for (const std::string& option : {"--junit " + theirs, "--sarif " + theirs, "--markdown " + theirs, "--log " + theirs,
+                                      std::string("--annotations"), std::string("--strict"), "--mesh-dir " + folder.path.string()})
+        refused(explore + " " + option, {"explore does not take " + option.substr(0, option.find(' '))});
+    refused(explore + " --threads 2", {"explore does not take --threads; --workers says"});
+    CHECK(std::filesystem::file_size(theirs) == 7);
+    CHECK_FALSE(std::filesystem::exists(out));
+}
+
 TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
     for (const std::string option : {"--minimum", "--pairs", "--process", "--out", "--certificate"})
         refused("clearance " + crank + " " + option + " ''", {option + ": a value is wanted, found an empty text"});
@@ -177,6 +189,29 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
 }
 
+TEST_CASE("what a requirement costs is said of the limit that holds") {
+    const problem::DesignProblem problem = problem_of(DesignFolder());
+    description::Design design = problem.design();
+    studies::OptimiseOutcome outcome;
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.report.feasible = true;
+    outcome.report.best.objective = 1;
+    optimisers::Optimality& optimality = outcome.report.optimality;
+    optimality.step = VectorX::Zero(outcome.start.size());
+    optimality.multipliers = VectorX::Zero(static_cast<Eigen::Index>(design.constraints.size()));
+    const Eigen::Index clearance = 0, stroke = 3;
+    REQUIRE(design.constraints[stroke].name.find("stroke") == 0);
+    optimality.multipliers[clearance] = 2e3;
+    optimality.multipliers[stroke] = -1e3;
+    const std::string told = outcome_text(design, outcome, Console({}), {"out"});
+    CAPTURE(told);
+    CHECK(told.find(": with a lower limit that is 0.01 mm lower, the objective could be lower by 0.02") != std::string::npos);
+    CHECK(told.find(": with an upper limit that is 0.01 mm higher, the objective could be lower by 0.01") != std::string::npos);
+    description::Bounds& exact = design.constraints[stroke].bounds;
+    exact.lower = exact.upper;
+    CHECK(outcome_text(design, outcome, Console({}), {"out"}).find("with 0.01 mm more required") != std::string::npos);
+}
+
 TEST_CASE("a folder in which another program's report lies is left alone") {
     const DesignFolder folder;
     const std::string scene = folder.file("small.scene.json"), theirs = "<html>my own page</html>";
@@ -190,6 +225,29 @@ TEST_CASE("a folder in which another program's report lies is left alone") {
     std::filesystem::remove(folder.file("out/report.html"));
     CHECK(run("simulate " + scene + " --steps 1 --out " + folder.file("out")).code == 0);
     CHECK(run("simulate " + scene + " --steps 1 --out " + folder.file("out")).code == 0);  // its own it replaces
+    for (const char* name : {"trajectory.json", "trajectory.start.json", "trajectory.running.json", "steps.csv", "contacts.csv",
+                             "drives.csv", "joints.csv", "motion.glb"}) {
+        const TemporaryFolder other;
+        const std::string file = other.write(name, "time,mine\n1,2\n");
+        refused("simulate " + scene + " --steps 1 --out " + other.path.string(), {file + ": is there and was not written by fettle"});
+        CHECK(std::filesystem::file_size(file) == 14);
+    }
+    folder.write("tuned/design.final.json", R"({"my": "design"})");
+    refused("optimise " + folder.design() + " --out " + folder.file("tuned"),
+            {"design.final.json: is there and was not written by fettle"});
+    folder.write("c.trajectory.json", "{}");
+    refused("clearance " + scene + " --certificate " + folder.file("c.certificate.json"),
+            {"c.trajectory.json: is there and was not written"});
+    CHECK_FALSE(std::filesystem::exists(folder.file("c.certificate.json")));
+    folder.write("out/report.html", theirs);
+    refused("report " + folder.file("out"), {"report.html: is there and was not written by fettle"});
+    CHECK(run("report " + folder.file("out") + " --out " + folder.file("out/report.html")).code == 0);  // it was named
+    const std::string sweep = folder.write("sweep.jsonl", R"({"fettle_explore": 1})"
+                                                          "\n");
+    CHECK(run("report " + sweep).code == 0);
+    CHECK(run("report " + sweep).code == 0);
+    folder.write("sweep.report.html", theirs);
+    refused("report " + sweep, {"sweep.report.html: is there and was not written by fettle"});
     folder.write("out/result.json", R"({"my": "numbers"})");
     refused("clearance " + scene + " --out " + folder.file("out"), {"result.json: is there and was not written by fettle"});
 }

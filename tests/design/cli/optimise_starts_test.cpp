@@ -64,6 +64,12 @@ TEST_CASE("a start's line tells what holds a design that meets its requirements,
     CHECK(good.find("held by mass; width (upper bound)") != std::string::npos);
     CHECK(bad.find("held by") == std::string::npos);
     CHECK(bad.find("largest violation 0.25") != std::string::npos);
+    StartResult stopped = ended(0, 0);
+    stopped.result = {{"constraint_violation", nullptr}, {"objective", nullptr}, {"evaluations", 0}};
+    stopped.message = "stopped as asked after 0 evaluations";
+    const std::string none = starts_text({stopped});
+    CHECK(none.find("nan") == std::string::npos);
+    CHECK(none.find("stopped as asked after 0 evaluations") != std::string::npos);
 }
 
 TEST_CASE("--starts: seeds that are too large are refused") {
@@ -114,6 +120,13 @@ TEST_CASE("--starts: a link where a log goes is not followed, and runs that leav
     CHECK(run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --out " + out).code <= 2);
     CHECK(contents(kept) == "mine");
     CHECK_FALSE(std::filesystem::is_symlink(out + "/start-0/log.txt"));
+
+    const std::string theirs = folder.write("theirs/start-0/result.json", R"({"my": "numbers"})");
+    const Answer left =
+        run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --json --out " + folder.file("theirs"));
+    CHECK(left.code == 3);
+    CHECK(left.json().at("message").get<std::string>().find("was not written by fettle") != std::string::npos);
+    CHECK(contents(theirs) == R"({"my": "numbers"})");
 
     const std::string none = folder.file("none");
     folder.write("none/start-0", "a file where a folder is wanted");

@@ -178,6 +178,26 @@ TEST_CASE("budget, interruption and exceptions end a run, with the best design k
     }
 }
 
+TEST_CASE("a budget that is spent is told with as many evaluations as were made") {
+    struct Spendthrift : Optimiser {
+        std::string name() const override { return "spendthrift"; }
+        NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions&) const override {
+            for (int k = 1;; ++k) evaluator.at(VectorX::Constant(2, 0.5 + 1e-3 * k));  // until it throws
+        }
+    };
+    Problem p = disc_with_cliff(infinity);
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.violation = 1;
+        return e;
+    };
+    const OptimiserReport kept = optimise(p, Spendthrift(), tight(40)), whole = optimise(p, Spendthrift(), tight(10));
+    CHECK(kept.evaluations == 28);
+    CHECK(kept.message.find("stopped after 28 evaluations; of the 40 that the design allows") == 0);
+    CHECK(whole.evaluations == 10);
+    CHECK(whole.message.find("stopped after 10 evaluations, the most that the design allows") == 0);
+}
+
 TEST_CASE("each point is evaluated once, and a run repeated has the same bits") {
     for (const std::string& name : optimiser_names()) {
         const auto sequence = [&] {

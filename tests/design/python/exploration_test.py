@@ -247,7 +247,9 @@ def told(capsys, *words):
 def test_the_commands_errors_have_code_and_place(tmp_path, capsys):
     design, out = short_file(tmp_path), tmp_path / "out.jsonl"
     sweeps = [
-        ("crank_radius=abc", "parse", "NAME=COUNT or NAME=LOW:HIGH:COUNT"),
+        ("crank_radius=abc", "parse", "NAME=COUNT or NAME=LOW:HIGH:COUNT is wanted; COUNT is a whole number, found 'abc'"),
+        ("crank_radius=2.5", "parse", "COUNT is a whole number, found '2.5'"),
+        ("crank_radius=1mm:2mm:3", "parse", "LOW is a number, in the parameter's own unit and without it, found '1mm'"),
         ("crank_radius=1:2", "parse", "NAME=LOW:HIGH:COUNT"),
         ("=3", "parse", "NAME=COUNT"),
         ("crank_radius", "parse", "NAME=COUNT"),
@@ -277,8 +279,11 @@ def test_the_commands_errors_have_code_and_place(tmp_path, capsys):
         assert (ended, found, place) == (3, code, where), message
     assert not out.exists()
     assert told(capsys, tmp_path / "none.json", "--out", out, "--samples", 1)[1][0][:2] == ("file_not_found", str(tmp_path / "none.json"))
-    nowhere = tmp_path / "none" / "out.jsonl"
-    assert told(capsys, design, "--out", nowhere, "--samples", 1)[1][0][:2] == ("file_not_found", str(nowhere))
+    (tmp_path / "file").write_text("")
+    nowhere = tmp_path / "file" / "sub" / "out.jsonl"
+    assert told(capsys, design, "--out", nowhere, "--samples", 1)[1][0][:2] == ("file_unwritable", str(nowhere.parent))
+    made = tmp_path / "new" / "sub" / "out.jsonl"
+    assert told(capsys, design, "--out", made, "--samples", 1, "--workers", 1)[1] == [] and made.exists()
     # As text: a line each, as the other commands have it.
     assert main(["explore", str(design), "--out", str(out), "--sweep", "crank_radius=0"]) == 3
     assert capsys.readouterr().err == "error: --sweep crank_radius=0: 0 values are not allowed: 1 or more are [out_of_range]\n"

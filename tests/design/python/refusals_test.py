@@ -43,10 +43,12 @@ def test_numbers_of_other_calls(tmp_path):
     problem = fettle.DesignProblem(tilted_plate())
     for call in (fettle.simulate, fettle.follow_scripts):
         refused(lambda: call(model, steps=-5), "out_of_range", "steps", "end_time")
-    assert len(fettle.follow_scripts(model, steps=-1)) == 10
+        refused(lambda: call(model, steps=-1), "out_of_range", "steps", "None")
+    assert len(fettle.follow_scripts(model)) == len(fettle.follow_scripts(model, steps=None)) == 10
     scene = fettle.Scene(bodies=[fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))])
     refused(lambda: fettle.build_model(scene, kappa=NAN), "not_finite", "kappa")
     refused(lambda: fettle.build_model(scene, kappa=0.0), "out_of_range", "kappa")
+    refused(lambda: fettle.build_model(scene, kappa=True), "wrong_type", "kappa", "a number in N/m")
     scene.max_newton_iterations = 0
     refused(lambda: fettle.build_model(scene), "out_of_range", "scene/max_newton_iterations")
     refused(lambda: fettle.read_mesh("none.stl", unit=0.0), "out_of_range", "unit")
@@ -58,6 +60,7 @@ def test_numbers_of_other_calls(tmp_path):
     refused(lambda: fettle.start_of_seed(problem, -1), "out_of_range", "seed")
     refused(lambda: fettle.optimise_file("none", str(tmp_path), max_evaluations=0), "out_of_range", "max_evaluations")
     refused(lambda: fettle.export_files(str(tmp_path), "vtu", model, every=0), "out_of_range", "every")
+    refused(lambda: fettle.export_files(str(tmp_path), "stl", model, in_place=True), "inconsistent", "in_place", "parts")
     refused(lambda: fettle.draw_picture(model, size=(-3, 100)), "out_of_range", "size", "16 to 16384")
     refused(lambda: fettle.to_si(1, "mmm"), "out_of_range", "unit", "mm")
 
@@ -116,6 +119,28 @@ def test_places_in_scenes():
     refused(lambda: fettle.DesignProblem(design), "out_of_range", "parameter `height`/unit", '"mn" is no unit')
 
 
+def test_what_is_of_no_class_that_is_wanted():
+    def scene(**members):
+        return lambda: fettle.build_model(fettle.Scene(**{"bodies": [fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))], **members}))
+
+    refused(scene(bodies=["a"]), "wrong_type", "scene/bodies/0", "'a', of type str: a fettle.Body is wanted")
+    refused(scene(bodies=None), "wrong_type", "scene/bodies", "a list of fettle.Body is wanted")
+    refused(scene(mechanism=fettle.Mechanism(joints=["pin"])), "wrong_type", "mechanism/joints/0", "a fettle.Joint is wanted")
+    refused(scene(mechanism=None), "wrong_type", "scene/mechanism", "a fettle.Mechanism is wanted")
+    joint = fettle.Joint("pin", b=fettle.Attachment("cube"), forces=3)
+    refused(scene(mechanism=fettle.Mechanism(joints=[joint])), "wrong_type", "joint `pin`/forces", "a fettle.CoordinateForces is wanted")
+    joint = fettle.Joint("pin", b=fettle.Attachment("cub"))
+    refused(scene(mechanism=fettle.Mechanism(joints=[joint])), "inconsistent", "joint `pin`", "no body is called `cub`")
+    for members, words in (
+        ({"gravity": [0, -9.81]}, "Scene.gravity: .* three numbers are wanted"),
+        ({"timestep": True}, "Scene.timestep: a value of type bool .* a number is wanted"),
+        ({"end_time": True}, "Scene.end_time: .* a number, or None, is wanted"),
+        ({"max_newton_iterations": True}, "a whole number is wanted"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            scene(**members)()
+
+
 def test_misspelt_members():
     body = fettle.Body("cube")
     with pytest.raises(AttributeError, match="Body has no member 'densty'; did you mean 'density'"):
@@ -146,8 +171,8 @@ def test_two_of_one_name():
     scene = fettle.Scene(bodies=twins)
     refused(lambda: fettle.build_model(scene), "inconsistent", "body `cube`", "another body is called `cube` already")
     refused(lambda: fettle.DesignProblem(fettle.Design(scene=scene)), "inconsistent", "body `cube`", "names are unique")
-    twins[1].name = twins[0].name = ""
-    refused(lambda: fettle.build_model(scene), "inconsistent", "body ``")
+    twins[1].name = ""
+    refused(lambda: fettle.build_model(scene), "out_of_range", "scene/bodies/1/name", "a body needs a name")
     twins[0].name, twins[1].name = "a", "b"
     joint = fettle.Joint("pin", b=fettle.Attachment("a"))
     scene.mechanism = fettle.Mechanism(joints=[joint])

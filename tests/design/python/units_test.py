@@ -15,6 +15,13 @@ def scene_with_rod(length):
 def test_millimetres_taken_for_metres_are_warned_of():
     with pytest.warns(UserWarning, match="body `rod`: its size is 58 m .* hardly meant"):
         fettle.build_model(scene_with_rod(58.0))
+    for length, size in ((10.0, "10 m"), (0.058e-3, "58 um")):
+        with pytest.warns(UserWarning, match=f"body `rod`: its size is {size} .* hardly meant"):
+            fettle.build_model(scene_with_rod(length))
+    scene = scene_with_rod(0.058)
+    scene.gravity = [0, 0, -9810]
+    with pytest.warns(UserWarning, match="scene/gravity: gravity is 9810 m/s.2, which is hardly meant"):
+        fettle.build_model(scene)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fettle.build_model(scene_with_rod(0.058))

@@ -94,6 +94,9 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
         {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
         {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "#/scene", "smal.scene.json"},
+        {"\"scene\": \"small.scene.json\"", "\"scene\": \"part.STL\"", ErrorCode::unsupported, "#/scene", "is a mesh"},
+        {"\"scene\": \"small.scene.json\"", "\"scene\": \"\"", ErrorCode::out_of_range, "#/scene", "the path of a scene file"},
+        {"\"scene\": \"small.scene.json\"", "\"scene\": \".\"", ErrorCode::unsupported, "#/scene", "is a folder"},
         {"\"units\": \"mm\"", "\"units\": \"furlong\"", ErrorCode::out_of_range, "#/units", "mm"},
         {"\"value\": 10,", "\"value\": NaN,", ErrorCode::not_finite, "", ""},
         {"\"fettle_design\": 1", "\"fettle_design\": 2", ErrorCode::out_of_range, "#/fettle_design", ""},
@@ -105,6 +108,18 @@ TEST_CASE("every fault of a design is named, with its place") {
         REQUIRE_FALSE(design);
         CHECK(has(design.errors(), fault));
     }
+}
+
+TEST_CASE("a scene in a design's place is called one; what is no object is said once") {
+    const DesignFolder folder(replaced(small_design, "{ \"name\": \"mma\", \"max_evaluations\": 8 }", "\"ipopt\""));
+    const Result<DesignFile> scene = read_design(folder.file("small.scene.json"));
+    REQUIRE_FALSE(scene);
+    CHECK(has(scene.errors(), {"", "", ErrorCode::inconsistent, "small.scene.json", "this is a scene, not a design"}));
+    const Result<DesignFile> word = read_design(folder.design());
+    INFO(all(word.errors()));
+    REQUIRE_FALSE(word);
+    CHECK(word.errors().size() == 1);
+    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is wanted, found \"ipopt\""}));
 }
 
 TEST_CASE("all faults are told at once") {

@@ -21,7 +21,7 @@ function fillVerdict(data) {
   byId("reached").append(element("strong", { class: `verdict-${tone}` }, head), ` ${rest}`);
   byId("facts").append(...words.facts(data).map(([term, value, small, tone]) => element("div", { class: tone }, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null))));
   byId("notices").append(...data.notices.map((text) => element("li", {}, text)));
-  if (data.message && data.status !== "optimal" && data.status !== "ok") byId("notices").prepend(element("li", { class: "warn" }, data.message));
+  if (data.message && !["optimal", "ok", "shown"].includes(data.status)) byId("notices").prepend(element("li", { class: "warn" }, data.message));
 }
 
 function section(title, intro, ...children) {

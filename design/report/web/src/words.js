@@ -28,6 +28,7 @@ export function asked(data) {
   if (data.kind === "optimise")
     return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} ${data.requirements.length === 1 ? "is" : "are"} met and the objective is least.`;
   if (data.ranges) return "Certified clearances over all positions of the joints within their limits, in every combination.";
+  if (data.status === "shown") return "A look at the parts.";
   if (data.kind === "clearance") return data.motion ? "Certified clearances over the motion." : "Certified clearances as assembled.";
   return "A simulation of the mechanism.";
 }
@@ -102,6 +103,8 @@ function cleared(data) {
   const others = (touching ? ` ${plural(touching, "pair touches", "pairs touch")}, as is allowed.` : "")
     + (pushing ? ` The bodies of ${plural(pushing, "pair")} push each other: ${pushing === 1 ? "it is" : "they are"} not judged.` : "");
   switch (data.status) {
+    case "shown":
+      return { tone: "open", head: data.motion ? "Parts and their motion." : "Parts as assembled.", rest: data.message };
     case "clear":
       return required.length
         ? { tone: "good", head: "Clear, and proven.", rest: `${plural(judged, "pair keeps", "pairs keep")} the required clearance ${where}.${others}` }
@@ -154,7 +157,7 @@ export function facts(data) {
   if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : shared.length ? "of the other pairs, proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
-  if (data.kind === "clearance") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints\u2019 ranges" : data.motion ? "over the motion" : "as assembled"]);
+  if (data.kind === "clearance" && data.status !== "shown") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints\u2019 ranges" : data.motion ? "over the motion" : "as assembled"]);
   const bodies = data.views[0]?.bodies ?? [], free = bodies.filter((body) => body.type !== "static").length;
   if (data.kind !== "optimise") rows.push(["Parts", String(bodies.length), free ? `${free} of them not fixed` : data.motion ? "all fixed" : "as they lie"]);
   return rows;
@@ -171,6 +174,7 @@ export const fileWords = {
 // What is proven, and what is not.
 export function provenWords(data) {
   if (data.kind === "explore") return "Proven: that a design meets its requirements is judged by certified bounds. Values in the curves are what was measured; the parts are shown at the start of their motion.";
+  if (data.status === "shown") return "Nothing is proven here. Lengths in mm.";
   const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
   return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm.`;
 }
