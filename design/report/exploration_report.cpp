@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_text.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/exploration_data.hpp"
@@ -17,20 +18,25 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// Discarded if it is no JSON.
+Json parsed_json(const std::string& text) {
+    return core::files::is_safe_json_text(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
+}
+
 Errors read_lines(const std::string& file, ExplorationSource& source) {
     const Result<std::string> text = core::files::read_file(file);
     if (!text) return text.errors();
     std::istringstream lines(text->substr(0, text->rfind('\n') + 1));  // what follows the last line feed was cut off
     std::string line;
     std::getline(lines, line);
-    source.header = Json::parse(line, nullptr, false);
+    source.header = parsed_json(line);
     if (member(source.header, "fettle_explore") != 1)
         return {
             {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
     int damaged = 0;
     while (std::getline(lines, line)) {
         if (line.empty()) continue;
-        Json result = Json::parse(line, nullptr, false);
+        Json result = parsed_json(line);
         if (result.is_object() && member(result, "status").is_string()) {
             source.results.push_back(std::move(result));
         } else {
@@ -38,6 +44,9 @@ Errors read_lines(const std::string& file, ExplorationSource& source) {
         }
     }
     if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
+    if (source.results.empty())
+        return {{ErrorCode::missing_key, file,
+                 "an exploration without a result: there is nothing to report yet; `fettle explore` with the same --out goes on with it"}};
     return {};
 }
 
@@ -66,8 +75,7 @@ void take_design(const std::string& file, const ReportOptions& options, Explorat
         source.notices.push_back(whole + " has other parameters than the design that was explored" + without);
         return;
     }
-    const Json text = Json::parse(read->text, nullptr, false);
-    if (const Json description = member(text, "description"); description.is_string()) source.description = description.get<std::string>();
+    if (const Json words = member(parsed_json(read->text), "description"); words.is_string()) source.description = words.get<std::string>();
     source.design_path = whole;
     source.design = std::move(read->design);
 }

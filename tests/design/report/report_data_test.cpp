@@ -486,6 +486,25 @@ TEST_CASE("report: an exploration's has every design's numbers in the design's u
     CHECK(alone["notices"].dump().find("SI units") != std::string::npos);
     folder.write("other.jsonl", "{\"fettle_history\": 1}\n");
     CHECK(run("report " + folder.file("other.jsonl") + " --json").json().at("errors")[0].at("code") == "missing_key");
+
+    // A file that anyone may have written.
+    const auto refused = [&](const std::string& text) {
+        folder.write("hostile.jsonl", text);
+        const auto answer = run("report " + folder.file("hostile.jsonl") + " --json");
+        CHECK(answer.code == 3);
+        return answer.json().at("errors")[0].at("code").get<std::string>();
+    };
+    const std::string deep(100'000, '[');
+    CHECK(refused(deep + "\n") == "missing_key");
+    CHECK(refused(head + "}\n") == "missing_key");  // no result yet
+    CHECK(refused(head + "}\n" + deep + "\n") == "missing_key");
+    folder.write("odd.jsonl", head + ", \"program\": 5}\n" + deep + "\n" +
+                                  R"({"status": "failed", "kind": [], "seed": {}, "reason": {"f64": "AAAA"}, "parameters": 1})" + "\n");
+    REQUIRE(run("report " + folder.file("odd.jsonl") + " --out " + folder.file("odd.html")).code == 0);
+    const Json odd = data_of(contents(folder.file("odd.html")));
+    CHECK(odd["program"].is_string());
+    for (const char* key : {"kind", "seed", "reason"}) CHECK(odd["designs"][0][key].is_null());
+    CHECK(odd["notices"].dump().find("left out: 1") != std::string::npos);
 }
 
 TEST_CASE("report: an optimisation's has the design before and after, and the forces") {
