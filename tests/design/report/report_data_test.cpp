@@ -7,10 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
-#include <sstream>
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
@@ -27,6 +25,7 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::report::report_data_test {
 
@@ -34,6 +33,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using fettle::tests::design_support::DesignFolder;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 // The reverse of packed(), written for itself.
@@ -80,12 +80,6 @@ Motion parting_cubes(int steps) {
 }
 
 const auto go_on = [] { return false; };
-
-std::string contents(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 // What stands in a page between its script element's ends.
 Json data_of(const std::string& page) {
