@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_text.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/exploration_data.hpp"
@@ -17,11 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// Discarded if it is no JSON.
-Json parsed_json(const std::string& text) {
-    return core::files::is_safe_json_text(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
-}
 
 Errors read_lines(const std::string& file, ExplorationSource& source) {
     const Result<std::string> text = core::files::read_file(file);
@@ -75,7 +69,7 @@ void take_design(const std::string& file, const ReportOptions& options, Explorat
         source.notices.push_back(whole + " has other parameters than the design that was explored" + without);
         return;
     }
-    if (const Json words = member(parsed_json(read->text), "description"); words.is_string()) source.description = words.get<std::string>();
+    source.description = description_of(read->text);
     source.design_path = whole;
     source.design = std::move(read->design);
 }

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fettle/core/files/json_text.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
 
@@ -32,7 +31,7 @@ Json search_curves(const std::string& text, const description::Design& design) {
     std::string line;
     std::getline(lines, line);  // the header
     while (std::getline(lines, line)) {
-        const Json entry = core::files::is_safe_json_text(line) ? Json::parse(line, nullptr, false) : Json();
+        const Json entry = parsed_json(line);
         if (!entry.is_object() || !entry.contains("parameters")) continue;
         curves["objective"].push_back(at_key(entry, "objective"));
         curves["violation"].push_back(at_key(entry, "violation"));
