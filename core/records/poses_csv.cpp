@@ -66,7 +66,9 @@ public:
     }
 
     base::Result<PosesTable> read() {
-        if (!next_row()) return base::Error{ErrorCode::parse, name_, "the file is empty; a header row is wanted, see poses_file.hpp"};
+        if (!next_row())
+            return base::Error{ErrorCode::parse, name_,
+                               "the file is empty; a header row is wanted, such as time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz"};
         read_header();
         if (!errors_.empty()) return errors_;
         while (next_row() && errors_.size() < max_errors) read_row();

@@ -47,6 +47,12 @@ Json column_json(const Column& column, const std::vector<Json>& results) {
             {"values", packed(values)}};
 }
 
+// Null where it is no text: the page takes what it is given for what it is to be.
+Json text_of(const Json& result, const char* key) {
+    const Json value = member(result, key);
+    return value.is_string() ? value : Json();
+}
+
 int better_side(const description::Bounds& bounds) {
     if (std::isfinite(bounds.lower) == std::isfinite(bounds.upper)) return 0;
     return std::isfinite(bounds.lower) ? 1 : -1;
@@ -112,6 +118,7 @@ std::vector<std::size_t> best_first(const std::vector<Json>& results) {
     return order;
 }
 
+// Nothing if they are not all there, or far outside the bounds, where parts can be too large to be made.
 std::optional<VectorX> values_of(const description::Design& design, const Json& result) {
     VectorX p(static_cast<Eigen::Index>(design.parameters.size()));
     for (std::size_t k = 0; k < design.parameters.size(); ++k) {
@@ -119,6 +126,7 @@ std::optional<VectorX> values_of(const description::Design& design, const Json& 
         if (!value.is_number()) return std::nullopt;
         p[static_cast<Eigen::Index>(k)] = value.get<double>();
     }
+    if (!description::check_values(design.parameters, p).empty()) return std::nullopt;
     return p;
 }
 
@@ -180,7 +188,8 @@ void add_parts(Json& data, const ExplorationSource& source, const std::function<
 
 Json exploration_data(const ExplorationSource& source, const std::function<bool()>& should_stop) {
     const std::string own = core::base::version();
-    Json data{{"format", 1}, {"program", source.header.value("program", own)}};
+    const Json program = text_of(source.header, "program");
+    Json data{{"format", 1}, {"program", program.is_null() ? Json(own) : program}};
     if (data["program"] != own) data["made_by_other"] = own;
     data["kind"] = "explore";
     data["name"] = source.name;
@@ -195,10 +204,10 @@ Json exploration_data(const ExplorationSource& source, const std::function<bool(
         data["columns"].push_back(column_json(column, source.results));
     for (const Json& result : source.results)
         data["designs"].push_back({{"status", member(result, "status")},
-                                   {"kind", member(result, "kind")},
-                                   {"seed", member(result, "seed")},
+                                   {"kind", text_of(result, "kind")},
+                                   {"seed", member(result, "seed").is_number() ? member(result, "seed") : Json()},
                                    {"met", meets_all(result)},
-                                   {"reason", member(result, "reason")},
+                                   {"reason", text_of(result, "reason")},
                                    {"view", Json()}});
     if (source.design) add_parts(data, source, should_stop);
     return data;

@@ -24,14 +24,14 @@ Errors read_lines(const std::string& file, ExplorationSource& source) {
     std::istringstream lines(text->substr(0, text->rfind('\n') + 1));  // what follows the last line feed was cut off
     std::string line;
     std::getline(lines, line);
-    source.header = Json::parse(line, nullptr, false);
+    source.header = parsed_json(line);
     if (member(source.header, "fettle_explore") != 1)
         return {
             {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
     int damaged = 0;
     while (std::getline(lines, line)) {
         if (line.empty()) continue;
-        Json result = Json::parse(line, nullptr, false);
+        Json result = parsed_json(line);
         if (result.is_object() && member(result, "status").is_string()) {
             source.results.push_back(std::move(result));
         } else {
@@ -39,6 +39,9 @@ Errors read_lines(const std::string& file, ExplorationSource& source) {
         }
     }
     if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
+    if (source.results.empty())
+        return {{ErrorCode::missing_key, file,
+                 "an exploration without a result: there is nothing to report yet; `fettle explore` with the same --out goes on with it"}};
     return {};
 }
 
@@ -67,8 +70,7 @@ void take_design(const std::string& file, const ReportOptions& options, Explorat
         source.notices.push_back(whole + " has other parameters than the design that was explored" + without);
         return;
     }
-    const Json text = Json::parse(read->text, nullptr, false);
-    if (const Json description = member(text, "description"); description.is_string()) source.description = description.get<std::string>();
+    source.description = description_of(read->text);
     source.design_path = whole;
     source.design = std::move(read->design);
 }

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_text.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -14,6 +13,7 @@
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/report_page.hpp"
 
 namespace fettle::design::report {
@@ -28,11 +28,6 @@ using core::stepper::Simulation;
 std::string text_or_empty(const fs::path& file) {
     const Result<std::string> text = core::files::read_file(file);
     return text ? *text : std::string();
-}
-
-/// Discarded if it is no JSON.
-Json parsed_json(const std::string& text) {
-    return core::files::is_safe_json_text(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
 }
 
 Result<Json> read_result(const fs::path& folder) {
@@ -53,13 +48,6 @@ std::string name_of(const std::string& scene, const fs::path& folder) {
     if (!file.empty()) return file.substr(0, file.find('.'));
     const fs::path whole = fs::absolute(folder).lexically_normal();
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
-// What a scene or design file says in words.
-std::string description_of(const std::string& text) {
-    const Json json = parsed_json(text);
-    return json.is_object() && json.contains("description") && json["description"].is_string() ? json["description"].get<std::string>()
-                                                                                               : std::string();
 }
 
 Vector3 gravity_in(const std::string& text) {

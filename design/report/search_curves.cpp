@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fettle/core/files/json_text.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
 
@@ -32,21 +31,23 @@ Json search_curves(const std::string& text, const description::Design& design) {
     std::string line;
     std::getline(lines, line);  // the header
     while (std::getline(lines, line)) {
-        const Json entry = core::files::is_safe_json_text(line) ? Json::parse(line, nullptr, false) : Json();
+        const Json entry = parsed_json(line);
         if (!entry.is_object() || !entry.contains("parameters")) continue;
         curves["objective"].push_back(at_key(entry, "objective"));
         curves["violation"].push_back(at_key(entry, "violation"));
         curves["own"].push_back(!entry.contains("model"));
-        curves["model"].push_back(entry.value("model", "as written"));
+        const Json model = member(entry, "model");
+        curves["model"].push_back(model.is_string() ? model : Json("as written"));
         for (std::size_t k = 0; k < shares.size(); ++k) {
             const description::Parameter& p = design.parameters[k];
             const Json value = at_key(entry["parameters"], p.name.c_str());
             shares[k].push_back(value.is_null() ? Json() : finite((value.get<double>() - p.lower) / (p.upper - p.lower)));
         }
-        const Json values = entry.value("constraints", Json::array());
+        const Json values = member(entry, "constraints");
         for (std::size_t i = 0; i < spares.size(); ++i)
-            spares[i].push_back(i < values.size() && values[i].is_number() ? finite(spare(design.constraints[i], values[i].get<double>()))
-                                                                           : Json());
+            spares[i].push_back(values.is_array() && i < values.size() && values[i].is_number()
+                                    ? finite(spare(design.constraints[i], values[i].get<double>()))
+                                    : Json());
     }
     curves["parameters"] = shares;
     curves["constraints"] = Json::array();

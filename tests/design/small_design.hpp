@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::tests::design_support {
 
@@ -58,11 +59,6 @@ struct DesignFolder : support::TemporaryFolder {
     std::string design() const { return file("small.design.json"); }
 };
 
-/// `text` with the first `from` replaced; empty if it is not there, so that a test that replaces nothing fails.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const size_t at = text.find(from);
-    if (at == std::string::npos) return {};
-    return text.replace(at, from.size(), to);
-}
+using support::replaced;
 
 }  // namespace fettle::tests::design_support

@@ -6,9 +6,9 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string_view>
+
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::tests::fuzz {
 namespace {
@@ -33,10 +33,7 @@ std::vector<std::string> samples(const std::string& name) {
         files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::vector<std::string> out;
-    for (const auto& file : files) {
-        std::ifstream stream(file, std::ios::binary);
-        out.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-    }
+    for (const auto& file : files) out.push_back(support::contents(file));
     return out;
 }
 

@@ -29,7 +29,10 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/expression.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
+#include "fettle/design/report/search_curves.hpp"
+#include "fettle/design/studies/history.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -188,6 +191,20 @@ void read_result(std::string_view bytes) {
     (void)design::report::write_report(scratch().file("run"));
 }
 
+void read_exploration(std::string_view bytes) { (void)design::report::write_exploration_report(scratch().write("a.jsonl", bytes)); }
+
+/// For a run that goes on, and for the report.
+void read_history(std::string_view bytes) {
+    static const design::description::Design slider = design::reading::read_design(scratch().file("slider.json")).value().design;
+    design::studies::HistoryHeader header;
+    header.design_hash = "x";
+    for (const auto& parameter : slider.parameters) header.parameters.push_back(parameter.name);
+    for (const auto& constraint : slider.constraints) header.constraints.push_back(constraint.name);
+    (void)design::report::search_curves(std::string(bytes), slider);
+    scratch().write("run/history.jsonl", bytes);
+    (void)design::studies::History::open(scratch().file("run"), header, design::studies::HistoryMode::resume);
+}
+
 }  // namespace
 
 const std::vector<Reader>& readers() {
@@ -209,6 +226,8 @@ const std::vector<Reader>& readers() {
         {"expression", read_expression},
         {"ccd", read_ccd},
         {"result", read_result},
+        {"exploration", read_exploration},
+        {"history", read_history},
         {"dae", [](std::string_view bytes) { read_mesh_as("a.dae", bytes); }, true},
         {"gltf", [](std::string_view bytes) { read_mesh_as("a.gltf", bytes); }, true},
         {"3ds", [](std::string_view bytes) { read_mesh_as("a.3ds", bytes); }, true},

@@ -16,7 +16,7 @@ from . import _fettle
 from .errors import Error, Fault
 from .exploration import Exploration, Unwritten, explore, read_exploration, swept_faults
 
-EXIT_DONE, EXIT_VIOLATED, EXIT_BAD_INPUT = 0, 1, 3
+EXIT_DONE, EXIT_VIOLATED, EXIT_BAD_INPUT, EXIT_INTERNAL = 0, 1, 3, 4
 EXIT_SIGNAL = 128  # and the number of the signal that asked for the end
 FORMS = "NAME=COUNT or NAME=LOW:HIGH:COUNT is wanted"
 
@@ -150,10 +150,13 @@ def answer(found: Exploration, options: argparse.Namespace, unwritten: Sequence[
     return EXIT_DONE if best else EXIT_VIOLATED
 
 
-def error_line(where: str, fault: Fault) -> str:
+def shown(text: str) -> str:
     """Control characters, which paths and names can hold, are shown."""
-    line = f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]"
-    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in line)
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+
+
+def error_line(where: str, fault: Fault) -> str:
+    return shown(f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]")
 
 
 def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
@@ -161,12 +164,25 @@ def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
     options = ("sweep", "samples", "starts", "seed", "workers", "dask")
     places = [("--" if fault.where.split("/")[0] in options else "") + fault.where for fault in faults]
     if as_json:
-        errors = [{"code": fault.code, "where": where, "message": fault.message} for where, fault in zip(places, faults)]
-        put(json.dumps({"status": "error", "errors": errors}))
+        put_errors([dataclasses.replace(fault, where=where) for where, fault in zip(places, faults)])
     else:
         for where, fault in zip(places, faults):
             print(error_line(where, fault), file=sys.stderr)
     return EXIT_BAD_INPUT
+
+
+def internal_error(fault: Exception, as_json: bool) -> int:
+    """A fault of this program, as the other commands tell theirs."""
+    message = f"{type(fault).__name__}: {fault}"
+    if as_json:
+        put_errors([Fault("internal", "", message)])
+    else:
+        print(shown(f"fettle: internal error, please report it: {message}"), file=sys.stderr)
+    return EXIT_INTERNAL
+
+
+def put_errors(faults: Sequence[Fault]) -> None:
+    put(json.dumps({"status": "error", "errors": [dataclasses.asdict(fault) for fault in faults]}))
 
 
 class _AnswerLost(Exception):
@@ -240,11 +256,18 @@ def run_told(words: Optional[Sequence[str]]) -> int:
         return run(options)
     except Stopped as stopped:
         return interrupted(options, stopped.number)
+    except _AnswerLost:
+        raise
     except Error as fault:
         return input_errors(fault.errors, as_json)
+    except MemoryError:
+        message = "what was asked for takes more memory than there is; ask for fewer designs at a time, or give the program more"
+        return input_errors([Fault("out_of_memory", "memory", message)], as_json)
     except OSError as fault:
         code = "file_not_found" if isinstance(fault, FileNotFoundError) else "file_unreadable"
         return input_errors([Fault(code, str(fault.filename or ""), fault.strerror or str(fault))], as_json)
+    except Exception as fault:  # of ours, or of what we use: no verdict
+        return internal_error(fault, as_json)
 
 
 if __name__ == "__main__":

@@ -39,6 +39,7 @@ from .scene import PathLike
 
 VERSION = 1
 FIRST_KEY = '{"fettle_explore"'
+DEEPEST = 100  # lists and objects in one another, as everywhere (core/files/json_text.hpp)
 MOST_DESIGNS = 1_000_000  # of one exploration
 DASK_SECONDS = 10  # for a scheduler to answer
 Result = Dict[str, Any]
@@ -329,6 +330,25 @@ def _refused(name: str) -> float:
     raise ValueError(f"{name} is no number of JSON")
 
 
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:40]} is too large a number")
+    return value
+
+
+def _whole(text: str) -> int:
+    _finite(text)
+    return int(text)
+
+
+def _is_shallow(value: Any, levels: int = DEEPEST) -> bool:
+    """Are no more than so many lists and objects in one another?"""
+    if not isinstance(value, (dict, list)):
+        return True
+    return levels > 0 and all(_is_shallow(each, levels - 1) for each in (value.values() if isinstance(value, dict) else value))
+
+
 def _is_result(record: Any) -> bool:
     """Has a line what is told of a result, each of its type?"""
 
@@ -342,15 +362,17 @@ def _is_result(record: Any) -> bool:
     return numbers(single) and all(map(numbers, groups))
 
 
-def _record(path: str, number: int, line: str) -> Result:
+def _record(where: str, line: str, is_header: bool) -> Result:
     """A line of the file, checked."""
     try:
-        record: Result = json.loads(line, parse_constant=_refused)
+        record: Result = json.loads(line, parse_constant=_refused, parse_float=_finite, parse_int=_whole)
+        if not _is_shallow(record):
+            raise ValueError(f"more than {DEEPEST} lists and objects in one another are refused")
     except (ValueError, RecursionError) as fault:
-        raise _fail("parse", f"{path}:{number}", f"the line is damaged: {fault}; take it out, or name another file") from fault
-    if number > 1 and not _is_result(record):
+        raise _fail("parse", where, f"the line is damaged: {fault}; take it out, or name another file") from fault
+    if not is_header and not _is_result(record):
         message = "the line is damaged: it is no result of an exploration; take it out, or name another file"
-        raise _fail("wrong_type", f"{path}:{number}", message)
+        raise _fail("wrong_type", where, message)
     return record
 
 
@@ -362,8 +384,8 @@ def read_exploration(path: PathLike) -> Exploration:
             lines = file.read().split("\n")
     except UnicodeDecodeError as fault:
         raise _fail("parse", str(path), f"it is no text: {fault}") from fault
-    whole = [line for line in lines[:-1] if line]  # what follows the last line feed was cut off
-    records = [_record(str(path), number, line) for number, line in enumerate(whole, 1)]
+    whole = [(number, line) for number, line in enumerate(lines[:-1], 1) if line]  # what follows the last line feed was cut off
+    records = [_record(f"{path}:{number}", line, is_header=k == 0) for k, (number, line) in enumerate(whole)]
     if not records or not isinstance(records[0], dict) or records[0].get("fettle_explore") != VERSION:
         raise _fail("missing_key", str(path), f"no exploration: its first line has no `fettle_explore` {VERSION}")
     return Exploration(records[0], records[1:])
@@ -439,7 +461,11 @@ def _results_file(path: str, header: Result) -> Iterator[Tuple[TextIO, List[Resu
     """The file, locked, at its end; and what it has already. A new file goes again where it gets no result, for something was raised."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise _fail("file_unwritable", path, "results are added to it and read again: it has to be a regular file")
-    with open(path, "a+", encoding="utf-8") as file:
+    try:
+        file = open(path, "a+", encoding="utf-8")
+    except OSError as fault:
+        raise _fail("file_unwritable", path, f"the file cannot be opened for writing: {fault.strerror}") from fault
+    with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as fault:

@@ -12,6 +12,7 @@ from . import _fettle
 from ._record import COLUMNS, MOST_LINES, MOST_ROWS, Number, Record, Records, columns, did_you_mean, number
 
 Array = NDArray[np.float64]
+Solids = Literal["unproven", "disjoint", "overlap", "not closed", "not verified"]  #: of the two bodies of a pair
 
 
 def _zero() -> Array:
@@ -185,7 +186,7 @@ class PairClearance(Record):
     witness: Witness = dataclasses.field(default_factory=Witness)
     complete: bool = True
     intersecting: bool = False
-    solids: Literal["unproven", "disjoint", "overlap", "not closed", "not verified"] = "unproven"
+    solids: Solids = "unproven"
     overlap: Optional[Overlap] = None
     touch: Optional[Touch] = None
     clash_not_before: float = 0.0
@@ -233,7 +234,7 @@ class RangeClearance(Record):
     at: List[float] = dataclasses.field(default_factory=list)  #: their values at the witness
     complete: bool = True
     intersecting: bool = False
-    solids: Literal["unproven", "disjoint", "overlap", "not closed"] = "unproven"
+    solids: Solids = "unproven"
     reason: str = ""
     bounds: int = 0  #: computed
 

@@ -5,8 +5,6 @@
 #include <assimp/scene.h>
 #include <sys/wait.h>
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <iterator>
 
 #include <thread>
 
@@ -23,6 +21,8 @@
 namespace fettle::core::mesh_files::assimp_reader_test {
 
 using tests::support::contains;
+using tests::support::contents;
+using tests::support::replaced;
 using tests::support::TemporaryFolder;
 
 namespace {
@@ -36,16 +36,6 @@ std::string exported(const TemporaryFolder& folder, const char* format, const st
     REQUIRE(aiExportScene(scene, format, folder.file(name).c_str(), 0) == aiReturn_SUCCESS);
     aiReleaseImport(scene);
     return folder.file(name);
-}
-
-std::string text_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-    REQUIRE(contains(text, what));
-    return text.replace(text.find(what), what.size(), by);
 }
 
 void check_box(const std::string& path, const Vector3& size, double unit = 1) {
@@ -81,7 +71,7 @@ TEST_CASE("COLLADA, glTF, 3DS and AMF: each in its own unit, with the axes of th
     check_box(exported(folder, "gltf2", "a.gltf"), size, 17);
     check_box(exported(folder, "glb2", "a.GLB"), size, 17);
     check_box(exported(folder, "3ds", "a.3ds"), 0.5 * size, 0.5);
-    const std::string collada = text_of(exported(folder, "collada", "a.dae"));
+    const std::string collada = contents(exported(folder, "collada", "a.dae"));
     check_box(folder.file("a.dae"), size, 17);
     const std::string inches = replaced(collada, "<unit name=\"meter\" meter=\"1\" />", "<unit name=\"inch\" meter=\"0.0254\" />");
     check_box(folder.write("inches.dae", inches), 0.0254 * size);
@@ -97,7 +87,7 @@ TEST_CASE("COLLADA, glTF, 3DS and AMF: each in its own unit, with the axes of th
 
 TEST_CASE("A mirrored node of glTF stays a solid, where it is placed, with its name") {
     const TemporaryFolder folder;
-    std::string text = text_of(exported(folder, "gltf2", "a.gltf"));
+    std::string text = contents(exported(folder, "gltf2", "a.gltf"));
     const auto node = text.find("\"mesh\"");
     REQUIRE(node != std::string::npos);
     text.insert(node, "\"scale\": [-1, 1, 1], \"translation\": [10, 0, 0], ");

@@ -119,14 +119,12 @@ TEST_CASE("A free body keeps its energy and its angular momentum") {
 
 TEST_CASE("A pendulum swings with the integrator's order") {
     const double length = 0.2, time = 0.5, amplitude = pi / 3;
-    const Rates rates = [&](const State& y) { return State{y[1], -1.5 * mechanisms::gravity / length * std::sin(y[0])}; };
     // A bar of square section 2 half: its inertia about the hinge is m (L^2 + half^2) / 3.
     const double half = 0.01;
-    const Rates thick = [&](const State& y) {
+    const Rates rates = [&](const State& y) {
         return State{y[1], -0.5 * mechanisms::gravity * length / ((length * length + half * half) / 3) * std::sin(y[0])};
     };
-    const double expected = integrated({amplitude, 0}, thick, time)[0];
-    REQUIRE(std::abs(expected - integrated({amplitude, 0}, rates, time)[0]) < 0.2);
+    const double expected = integrated({amplitude, 0}, rates, time)[0];
     check_order(with_joints, 4e-3, [&](Integrator integrator, double h) {
         scene::Scene scene = default_scene({bar("bar", length, Vector3::Zero(), Vector3(0, pi / 2 - amplitude, 0))}, integrator, h);
         scene.gravity = Vector3(0, 0, -mechanisms::gravity);

@@ -4,15 +4,14 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::check_files_test {
 
@@ -22,14 +21,9 @@ using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
 using fettle::tests::support::box_mesh;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
-
-std::string contents(const std::string& path) {
-    std::stringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 // Every tag is closed by its own, attributes are quoted, and no character stands that XML has not.
 bool is_well_formed(const std::string& xml) {

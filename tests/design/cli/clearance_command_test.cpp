@@ -2,12 +2,12 @@
 // fettle clearance from outside: sources of motion, pairs, presets, reports.
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::clearance_command_test {
 
@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 // Cubes of 10 mm in a row, 0.5 mm, 0.2 mm and 3 mm apart; `slide` moves along the row, `spin` turns about its own axis.
@@ -37,12 +38,6 @@ struct RowFolder : DesignFolder {
     RowFolder() : DesignFolder(small_design, row_scene) {}
     std::string scene() const { return file("small.scene.json"); }
 };
-
-std::string contents(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 }  // namespace
 

@@ -5,12 +5,12 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::clearance_honesty_test {
 
@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 std::string box_body(const std::string& name, const std::string& type, const std::string& size, const std::string& position) {
@@ -41,12 +42,6 @@ struct OverlapFolder : DesignFolder {
 };
 
 const std::string head = "time,body,px[mm],py[mm],pz[mm],rx,ry,rz\n";
-
-std::string contents(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 }  // namespace
 

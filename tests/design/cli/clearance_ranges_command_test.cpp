@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // fettle clearance SCENE --ranges from outside: reports, refusals, certificates.
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::clearance_ranges_command_test {
 
@@ -15,17 +15,12 @@ namespace {
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 const char* two_arms = "examples/two_arm/two_arm.scene.json";
 // From the shoulder to the hand's farthest corner, in the scene's millimetres.
 const double reach = 60 + std::hypot(40.0, 6.0);
-
-std::string text_of(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 Json coordinate(const Json& pair, const std::string& joint) {
     for (const Json& c : pair.at("coordinates"))
@@ -86,11 +81,11 @@ TEST_CASE("ranges: findings against an earlier report, a table with the joints' 
     const std::string command = std::string("clearance ") + two_arms + " --ranges --json --pairs 'post:*_hand' ";
     const Answer strict = run(command + "--minimum 10mm --out " + folder.file("out"));
     REQUIRE(strict.code == 1);
-    const Json kept = Json::parse(text_of(folder.file("out/result.json")));
+    const Json kept = Json::parse(contents(folder.file("out/result.json")));
     CHECK(kept["pairs"] == strict.json()["pairs"]);
     CHECK(kept["command"].get<std::string>().find("--ranges") != std::string::npos);
-    CHECK(text_of(folder.file("out/trajectory.json")).find("fettle_trajectory") != std::string::npos);
-    const std::string page = text_of(folder.file("out/report.html"));
+    CHECK(contents(folder.file("out/trajectory.json")).find("fettle_trajectory") != std::string::npos);
+    const std::string page = contents(folder.file("out/report.html"));
     const size_t data = page.find("id=\"fettle-report\">");
     REQUIRE(data != std::string::npos);
     const size_t note = page.find("worst at left_shoulder -90", data);
@@ -111,7 +106,7 @@ TEST_CASE("ranges: findings against an earlier report, a table with the joints' 
 
     const std::string csv = folder.file("worst.csv");
     REQUIRE(run(command + "--minimum 5mm --tolerance 0.001mm --csv " + csv).code == 0);
-    std::istringstream lines(text_of(csv));
+    std::istringstream lines(contents(csv));
     std::string head, row;
     std::getline(lines, head);
     CHECK(head == "a,b,required[mm],lower[mm],upper[mm],finding,left_shoulder[deg],right_shoulder[deg],left_elbow[deg],right_elbow[deg]");
@@ -134,7 +129,7 @@ TEST_CASE("ranges: findings against an earlier report, a table with the joints' 
 }
 
 TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or meshes have changed") {
-    const DesignFolder folder(small_design, text_of(two_arms));
+    const DesignFolder folder(small_design, contents(two_arms));
     const std::string scene = folder.file("small.scene.json"), proof = folder.file("fit.certificate.json");
     const std::string command = "clearance " + scene + " --ranges --minimum 5mm --pairs 'post:*_hand' --certificate " + proof;
     REQUIRE(run(command).code == 0);
@@ -143,7 +138,7 @@ TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or m
     CHECK(sound.json()["status"] == "accepted");
     CHECK(sound.json()["judgement"] == "clear");
     CHECK(sound.json()["leaves"].get<long>() > 10);
-    const std::string text = text_of(two_arms);
+    const std::string text = contents(two_arms);
     for (const auto& [from, to] : {std::pair<const char*, const char*>{"[-100, 30]", "[-100, 35]"},
                                    {"\"point\": [-120, 60, 0]", "\"point\": [-120, 59, 0]"},
                                    {"\"size_x\": 12", "\"size_x\": 11"}}) {
@@ -153,7 +148,7 @@ TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or m
         CHECK(stale.json()["status"] == "stale");
     }
     folder.write("small.scene.json", text);
-    Json damaged = Json::parse(text_of(proof));
+    Json damaged = Json::parse(contents(proof));
     damaged["pairs"][0]["lower"] = damaged["pairs"][0]["upper"];
     folder.write("fit.certificate.json", damaged.dump());
     const Answer rejected = run("validate " + proof + " --json");
@@ -162,7 +157,7 @@ TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or m
 }
 
 TEST_CASE("ranges: a joint without limits is named, or turns wholly") {
-    const std::string text = text_of(two_arms);
+    const std::string text = contents(two_arms);
     const DesignFolder free(small_design, replaced(text, "\"limits\": [-120, 5]", "\"collide\": false"));
     const Answer whole = run("clearance " + free.file("small.scene.json") + " --ranges --json --minimum 5mm --pairs post:left_hand");
     CHECK(whole.code == 0);  // the same farthest corner
@@ -196,7 +191,7 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
     CHECK(open.code == 3);
     CHECK(open.says("left_arm, left_hand, right_arm, right_hand some freedom"));
     // The elbows follow the shoulders: everything is driven.
-    Json scene = Json::parse(text_of(two_arms));
+    Json scene = Json::parse(contents(two_arms));
     for (const char* side : {"left", "right"}) {
         const std::string name = side;
         scene["joints"].push_back(
@@ -226,13 +221,13 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
     CHECK(claim["lower"].get<double>() > 0);
     CHECK(claim["upper"].get<double>() - claim["lower"].get<double>() > 2 * pair["joint_charge"].get<double>());
     CHECK(run("validate " + proof).says("over the motion, of joints met at all times"));
-    Json doctored = Json::parse(text_of(proof));
+    Json doctored = Json::parse(contents(proof));
     for (Json& deviation : doctored["joints"]["deviations"]) deviation = 0;
     const Answer rejected =
         run("validate " + folder.write("less.certificate.json", doctored.dump()) + " --trajectory " + folder.file("fit.trajectory.json"));
     CHECK(rejected.code == 1);
     CHECK(rejected.says("joints may have the body farther from the path than is claimed"));
-    doctored = Json::parse(text_of(proof));
+    doctored = Json::parse(contents(proof));
     doctored.erase("joints");
     for (const bool with_source : {true, false}) {  // then nothing says what its bounds are worth
         if (!with_source) doctored.erase("source");
@@ -254,7 +249,7 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
 
 TEST_CASE("kinematic: where joints are not proven to have bodies there is no bound, and no certificate of them") {
     // One arm alone is driven; its hand has a prescribed coordinate beside its joints, of which nothing can be proven.
-    Json scene = Json::parse(text_of(two_arms));
+    Json scene = Json::parse(contents(two_arms));
     scene.erase("springs");
     scene["motors"] = {{{"name", "drive"}, {"joint", "left_shoulder"}, {"angle", {{"rate", -20}}}}};
     scene["joints"].push_back({{"name", "gear"}, {"type", "gear"}, {"of", {"left_shoulder", "left_elbow"}}, {"ratio", 0.5}});

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // `export` and `draw` as a user runs them, and certificates that name exported files.
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::export_command_test {
 
 namespace {
 
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 
@@ -23,11 +23,6 @@ std::string scene(const TemporaryFolder& folder, const std::string& gravity = "[
         "bodies": [
             {"name": "low/er", "type": "static", "shape": {"generator": "box"}, "position": [0, 0, -10]},
             {"name": "upper", "density": 1000, "shape": {"generator": "pin"}, "position": [1, 2, 11]}]})");
-}
-
-std::string contents(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::vector<std::string> names(const std::filesystem::path& folder) {

@@ -7,26 +7,21 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::growing_trajectory_test {
 
 namespace {
 
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
-
-std::string contents(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Whole ones: a run that is killed may leave a part of a line.
 int steps_in(const std::filesystem::path& path) {

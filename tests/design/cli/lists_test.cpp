@@ -2,8 +2,6 @@
 // Finding one's way: lists from the readers' own tables, starters that work, completion and manual pages.
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/scene/joint_kind.hpp"
@@ -13,20 +11,17 @@
 #include "fettle/design/shapes/shape_generator.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::lists_test {
 
 namespace {
 
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 using nlohmann::json;
-
-std::string contents(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the program says to people: each line must be understood by one who has read nothing else, with place, finding and remedy.
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
@@ -13,6 +11,7 @@
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::messages_test {
 
@@ -21,6 +20,7 @@ namespace {
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
 using fettle::tests::support::box_mesh;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 
@@ -218,9 +218,7 @@ TEST_CASE("a folder in which another program's report lies is left alone") {
     for (const std::string& command : {"simulate " + scene + " --steps 1", "clearance " + scene, "optimise " + folder.design()}) {
         folder.write("out/report.html", theirs);
         refused(command + " --out " + folder.file("out"), {"report.html: is there and was not written by fettle"});
-        std::stringstream kept;
-        kept << std::ifstream(folder.file("out/report.html")).rdbuf();
-        CHECK(kept.str() == theirs);
+        CHECK(contents(folder.file("out/report.html")) == theirs);
     }
     std::filesystem::remove(folder.file("out/report.html"));
     CHECK(run("simulate " + scene + " --steps 1 --out " + folder.file("out")).code == 0);

@@ -7,13 +7,12 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::optimise_starts_test {
 
@@ -22,19 +21,13 @@ namespace {
 using Json = nlohmann::json;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 StartResult ended(double violation, double objective) {
     StartResult start;
     start.result = {{"constraint_violation", violation}, {"objective", objective}};
     return start;
-}
-
-std::string contents(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 }  // namespace

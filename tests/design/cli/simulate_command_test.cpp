@@ -2,13 +2,13 @@
 // What `simulate` says and leaves behind: "ok" for a proven path only, steps that are never lost, and refusals before the work.
 #include <catch2/catch.hpp>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/cli/path_proof.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/test_models.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::simulate_command_test {
 
@@ -32,10 +32,7 @@ struct SceneFolder : fettle::tests::support::TemporaryFolder {
             {"name": "below", "type": "static", "mesh": "cube.obj", "position": [5, 0, -50]})" +
                                more + "]}");
     }
-    std::string contents(const std::string& name) const {
-        std::ifstream stream(path / name);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
+    std::string contents(const std::string& name) const { return fettle::tests::support::contents(path / name); }
     int steps(const std::string& name) const {
         std::ifstream stream(path / name);
         int count = 0;

@@ -2,13 +2,13 @@
 // What validate shows and doubts, and what the program says to files and options that it cannot take.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::validate_command_test {
 
@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 using fettle::Vector3;
 using fettle::core::geometry::Mesh;
 using fettle::tests::support::Answer;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using Folder = fettle::tests::support::TemporaryFolder;
 
@@ -139,8 +140,7 @@ TEST_CASE("a body without density has no mass to sum") {
 }
 
 TEST_CASE("the README of scenes shows keys that are read") {
-    std::ifstream file("core/scene/README.md");
-    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    const std::string text = contents("core/scene/README.md");
     const std::size_t begin = text.find("```json\n") + 8, end = text.find("```", begin);
     REQUIRE(end != std::string::npos);
     const Folder folder;

@@ -8,17 +8,13 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::examples::resumed_example_test {
 
 namespace {
 
-std::string contents(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
+using fettle::tests::support::contents;
 
 std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;

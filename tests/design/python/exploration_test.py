@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
@@ -392,6 +393,9 @@ def test_on_a_dask_cluster_one_of_whose_workers_is_killed(tmp_path, cluster):
         '{"key": "k", "status": "feasible", "objective": NaN, "violation": 0}',
         '{"key": "k", "status": "feasible", "objective": 1, "violation": 0, "parameters": []}',
         '{"key": "k", "status": "feasible", "parameters": {"height": "x"}}',
+        '{"key": "k", "status": "feasible", "objective": 1e999, "violation": 0}',
+        '{"key": "k", "status": "feasible", "objective": 1%s, "violation": 0}' % ("0" * 400),
+        '{"key": "k", "status": "feasible", "note": %s1%s}' % ("[" * 200, "]" * 200),
         "[" * 100000,
         "{broken",
     ],
@@ -406,9 +410,26 @@ def test_a_damaged_line_is_bad_input_and_no_verdict(tmp_path, capsys, line):
     header = json.loads(out.read_text().split("\n")[0])
     name = exploration._design_name(fettle.read_design(str(design)).design)
     names = fettle.DesignProblem(fettle.read_design(str(design)).design).parameter_names
-    out.write_text(json.dumps({**header, "design": name, "parameters": names}) + "\n" + line + "\n")
+    out.write_text(json.dumps({**header, "design": name, "parameters": names}) + "\n\n" + line + "\n")
     assert main(["explore", str(design), "--out", str(out), "--samples", "1", "--json"]) == 3
-    assert json.loads(capsys.readouterr().out)["errors"][0]["where"] == f"{out}:2"
+    assert json.loads(capsys.readouterr().out)["errors"][0]["where"] == f"{out}:3"
+
+
+def test_a_fault_of_the_program_is_no_verdict(tmp_path, capsys, monkeypatch):
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    for raised, ended, code, words in (
+        (MemoryError(), 3, "out_of_memory", "more memory than there is"),
+        (ZeroDivisionError("by nothing"), 4, "internal", "ZeroDivisionError: by nothing"),
+    ):
+
+        def explore(*_, raised=raised, **__):
+            raise raised
+
+        monkeypatch.setattr("fettle.__main__.explore", explore)
+        assert [told(capsys, design, "--out", out, "--samples", 1)] == [(ended, [(code, "memory" if ended == 3 else "", ANY)])]
+        assert main(["explore", str(design), "--out", str(out), "--samples", "1"]) == ended
+        answer = capsys.readouterr()
+        assert words in answer.err and not answer.out and "Traceback" not in answer.err
 
 
 def test_more_than_can_be_planned_is_refused_at_once(tmp_path):

@@ -7,10 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
-#include <sstream>
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
@@ -27,6 +25,7 @@
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/program.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::report::report_data_test {
 
@@ -34,6 +33,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using fettle::tests::design_support::DesignFolder;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 // The reverse of packed(), written for itself.
@@ -80,12 +80,6 @@ Motion parting_cubes(int steps) {
 }
 
 const auto go_on = [] { return false; };
-
-std::string contents(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 // What stands in a page between its script element's ends.
 Json data_of(const std::string& page) {
@@ -486,6 +480,25 @@ TEST_CASE("report: an exploration's has every design's numbers in the design's u
     CHECK(alone["notices"].dump().find("SI units") != std::string::npos);
     folder.write("other.jsonl", "{\"fettle_history\": 1}\n");
     CHECK(run("report " + folder.file("other.jsonl") + " --json").json().at("errors")[0].at("code") == "missing_key");
+
+    // A file that anyone may have written.
+    const auto refused = [&](const std::string& text) {
+        folder.write("hostile.jsonl", text);
+        const auto answer = run("report " + folder.file("hostile.jsonl") + " --json");
+        CHECK(answer.code == 3);
+        return answer.json().at("errors")[0].at("code").get<std::string>();
+    };
+    const std::string deep(100'000, '[');
+    CHECK(refused(deep + "\n") == "missing_key");
+    CHECK(refused(head + "}\n") == "missing_key");  // no result yet
+    CHECK(refused(head + "}\n" + deep + "\n") == "missing_key");
+    folder.write("odd.jsonl", head + ", \"program\": 5}\n" + deep + "\n" +
+                                  R"({"status": "failed", "kind": [], "seed": {}, "reason": {"f64": "AAAA"}, "parameters": 1})" + "\n");
+    REQUIRE(run("report " + folder.file("odd.jsonl") + " --out " + folder.file("odd.html")).code == 0);
+    const Json odd = data_of(contents(folder.file("odd.html")));
+    CHECK(odd["program"].is_string());
+    for (const char* key : {"kind", "seed", "reason"}) CHECK(odd["designs"][0][key].is_null());
+    CHECK(odd["notices"].dump().find("left out: 1") != std::string::npos);
 }
 
 TEST_CASE("report: an optimisation's has the design before and after, and the forces") {

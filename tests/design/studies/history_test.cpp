@@ -9,27 +9,21 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::studies::history_test {
 
 namespace {
 
 namespace optimisers = fettle::design::optimisers;
+using fettle::tests::support::contents;
 
 struct Folder : tests::support::TemporaryFolder {
     std::string file() const { return TemporaryFolder::file("history.jsonl"); }
 };
-
-std::string contents(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 void overwrite(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 

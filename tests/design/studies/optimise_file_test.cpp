@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "fettle/tests/design/small_problem.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::studies::optimise_file_test {
 
@@ -14,13 +14,7 @@ namespace {
 
 using namespace fettle::tests::design_support;
 using fettle::design::description::values_of;
-
-std::string contents(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
+using fettle::tests::support::contents;
 
 }  // namespace
 

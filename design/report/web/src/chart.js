@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What charts on a canvas of their own need: one that follows its place's size and the colours, ticks, shades of a value.
+import { numberInSteps } from "./numbers.js";
+
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 const charts = [];
@@ -29,13 +31,24 @@ export function canvasChart(parent, height, draw) {
   return { canvas, repaint };
 }
 
-// About `count` round numbers from low to high.
+const mostTicks = 50;
+
+// About `count` round numbers from low to high, each {value, text}: with as many digits as tell one from the next.
 export function ticks(low, high, count) {
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= rough) ?? rough, found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) found.push(k * step);
+  const first = Math.ceil(low / step - 1e-9), more = Math.floor(high / step + 1e-9) - first;
+  for (let n = 0; n <= Math.min(more, mostTicks - 1); ++n) {  // counted by n: past 2^53, first + 1 may be first
+    const value = (first + n) * step;
+    found.push({ value, text: numberInSteps(value, step) });
+  }
   return found;
 }
+
+// The two ends of an axis, as texts.
+export const endTexts = ([low, high]) => [low, high].map((v) => numberInSteps(v, (high - low) / 100));
+
+const leastSpan = 1e-9;  // of the numbers themselves: what differs by less is one number
 
 // Of numbers, with some room; of one alone round it.
 export function span(values, room = 0.04) {
@@ -46,7 +59,8 @@ export function span(values, room = 0.04) {
     high = Math.max(high, v);
   }
   if (!(low <= high)) return [0, 1];
-  const more = high > low ? room * (high - low) : Math.abs(low) * 0.05 || 1;
+  const apart = high - low > leastSpan * Math.max(Math.abs(low), Math.abs(high));
+  const more = apart ? room * (high - low) : Math.abs(low) * 0.05 || 1;
   return [low - more, high + more];
 }
 

@@ -4,6 +4,7 @@
 export class Designs {
   constructor(data) {
     this.columns = data.columns;
+    this.names = this.columns.map((column) => this.nameOf(column));
     this.list = data.designs;
     this.ranges = new Map();  // of a column: [low, high] that is wanted
     this.onlyMet = this.list.some((design) => design.met);
@@ -15,6 +16,12 @@ export class Designs {
     this.chosen = this.bestFirst()[0] ?? 0;
   }
 
+  // As axes and tables tell it: with its kind where another one has its name, as the mass that counts and the mass that is bounded.
+  nameOf(column) {
+    const kind = { objective: "objective", term: "in the objective", constraint: "requirement", parameter: "parameter", violation: "violation" }[column.group];
+    return this.columns.some((other) => other !== column && other.name === column.name) ? `${column.name} (${kind})` : column.name;
+  }
+
   of(group) {
     return this.columns.map((column, k) => ({ column, k })).filter(({ column }) => column.group === group);
   }
@@ -24,12 +31,13 @@ export class Designs {
     return known.length > 0 && known.some((v) => Math.abs(v - known[0]) > 1e-9 * Math.abs(known[0]));
   }
 
-  // Two things that are wanted at once: terms of the objective, else the objective and what some requirement leaves, else a parameter.
+  // Two things that are wanted at once: terms of the objective, else the objective and what some requirement leaves, else a parameter; without
+  // any, the objective alone.
   firstAxes() {
     const terms = this.of("term").filter(({ k }) => this.varies(k)), [objective] = this.of("objective");
     if (terms.length > 1) return [(terms.find(({ column }) => column.unit !== terms[0].column.unit) ?? terms[1]).k, terms[0].k];
     const judged = this.of("constraint").filter(({ column, k }) => column.better && this.varies(k)), free = this.of("parameter").filter(({ k }) => this.varies(k));
-    return [(judged[0] ?? free[0] ?? this.of("parameter")[0]).k, objective.k];
+    return [(judged[0] ?? free[0] ?? this.of("parameter")[0] ?? objective).k, objective.k];
   }
 
   value(k, i) {

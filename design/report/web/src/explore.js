@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The page of an exploration: two chosen numbers of each design against each other, all of them side by side, and the design that is chosen.
-import { canvasChart, css, shadeOf, span, ticks } from "./chart.js";
+import { canvasChart, css, endTexts, shadeOf, span, ticks } from "./chart.js";
 import { Designs } from "./designs.js";
 import { announce, byId, element } from "./dom.js";
 import { number, plural, withUnit } from "./numbers.js";
 import { cell, rangeDrawing, requiredWords, status, tableOf } from "./tables.js";
 
 const unitOf = (column) => column.unit.replace("^2", "\u00b2").replace("^3", "\u00b3");
-const named = (column) => (column.unit ? `${column.name} [${unitOf(column)}]` : column.name);
+const named = (designs, k) => (designs.columns[k].unit ? `${designs.names[k]} [${unitOf(designs.columns[k])}]` : designs.names[k]);
 const told = (column, v) => withUnit(number(v), unitOf(column));
 const violates = (column, v) => column.group === "constraint" && ((column.lower !== null && v < column.lower) || (column.upper !== null && v > column.upper));
 
@@ -16,7 +16,7 @@ function chooser(label, designs, chosen, none, onChange) {
   const groups = [["objective", "Objective"], ["term", "Terms of the objective"], ["constraint", "Requirements"], ["parameter", "Parameters"], ["violation", "Largest violation"]];
   const select = element("select", { onchange: () => onChange(select.value === "" ? null : Number(select.value)) }, none ? element("option", { value: "" }, none) : null,
     ...groups.map(([group, name]) => {
-      const options = designs.of(group).map(({ column, k }) => element("option", { value: k, selected: k === chosen }, named(column)));
+      const options = designs.of(group).map(({ k }) => element("option", { value: k, selected: k === chosen }, named(designs, k)));
       return options.length ? element("optgroup", { label: name }, ...options) : null;
     }));
   return element("label", { class: "field" }, label, select);
@@ -44,38 +44,39 @@ function scatter(parent, designs) {
   const all = designs.list.map((_, i) => i);
   const chart = canvasChart(parent, 400, (c, width, height) => {
     const cx = designs.columns[designs.x], cy = designs.columns[designs.y], [x0, x1] = span(cx.values), [y0, y1] = span(cy.values);
-    const w = width - room.left - room.right, h = height - room.top - room.bottom;
-    place = { x: (v) => room.left + (w * (v - x0)) / (x1 - x0), y: (v) => room.top + h * (1 - (v - y0) / (y1 - y0)) };
+    const up = ticks(y0, y1, 6), left = Math.max(room.left, ...up.map(({ text }) => 14 + c.measureText(text).width));
+    const w = width - left - room.right, h = height - room.top - room.bottom, across = ticks(x0, x1, Math.max(2, w / 90));
+    place = { x: (v) => left + (w * (v - x0)) / (x1 - x0), y: (v) => room.top + h * (1 - (v - y0) / (y1 - y0)) };
     c.strokeStyle = css("--line");
     c.fillStyle = css("--muted");
     c.textAlign = "center";
-    for (const v of ticks(x0, x1, Math.max(2, w / 90))) {
-      c.fillText(number(v, 6), place.x(v), height - 24);
+    for (const { value, text } of across) {
+      c.fillText(text, place.x(value), height - 24);
       c.beginPath();
-      c.moveTo(place.x(v), room.top);
-      c.lineTo(place.x(v), room.top + h);
+      c.moveTo(place.x(value), room.top);
+      c.lineTo(place.x(value), room.top + h);
       c.stroke();
     }
     c.textAlign = "right";
-    for (const v of ticks(y0, y1, 6)) {
-      c.fillText(number(v, 6), room.left - 8, place.y(v) + 4);
+    for (const { value, text } of up) {
+      c.fillText(text, left - 8, place.y(value) + 4);
       c.beginPath();
-      c.moveTo(room.left, place.y(v));
-      c.lineTo(room.left + w, place.y(v));
+      c.moveTo(left, place.y(value));
+      c.lineTo(left + w, place.y(value));
       c.stroke();
     }
     const arrow = (column) => (column.better < 0 ? " \u2193" : column.better > 0 ? " \u2191" : "");
     c.textAlign = "right";
-    c.fillText(named(cx) + (cx.better < 0 ? "  \u2190 better" : cx.better > 0 ? "  better \u2192" : ""), room.left + w, height - 6);
+    c.fillText(named(designs, designs.x) + (cx.better < 0 ? "  \u2190 better" : cx.better > 0 ? "  better \u2192" : ""), left + w, height - 6);
     c.textAlign = "left";
-    c.fillText(named(cy) + (arrow(cy) ? `  better${arrow(cy)}` : ""), room.left + 6, room.top + 4);
+    c.fillText(named(designs, designs.y) + (arrow(cy) ? `  better${arrow(cy)}` : ""), left + 6, room.top + 4);
     c.strokeStyle = css("--bad");
     c.setLineDash([6, 4]);
-    for (const [column, line] of [[cx, (v) => [[place.x(v), room.top], [place.x(v), room.top + h]]], [cy, (v) => [[room.left, place.y(v)], [room.left + w, place.y(v)]]]]) {
+    for (const [column, line] of [[cx, (v) => [[place.x(v), room.top], [place.x(v), room.top + h]]], [cy, (v) => [[left, place.y(v)], [left + w, place.y(v)]]]]) {
       if (column.group !== "constraint") continue;
       for (const v of [column.lower, column.upper].filter((each) => each !== null)) {
         const [from, to] = line(v);
-        if (from[0] < room.left || from[0] > room.left + w || from[1] < room.top || from[1] > room.top + h) continue;
+        if (from[0] < left || from[0] > left + w || from[1] < room.top || from[1] > room.top + h) continue;
         c.beginPath();
         c.moveTo(...from);
         c.lineTo(...to);
@@ -136,7 +137,7 @@ function scatter(parent, designs) {
   chart.canvas.addEventListener("pointermove", (event) => {
     const i = at(event);
     chart.canvas.style.cursor = i >= 0 ? "pointer" : "default";
-    chart.canvas.title = i < 0 ? "" : `design ${i + 1}: ${[designs.x, designs.y].map((k) => `${designs.columns[k].name} ${told(designs.columns[k], designs.value(k, i))}`).join(", ")}`;
+    chart.canvas.title = i < 0 ? "" : `design ${i + 1}: ${[designs.x, designs.y].map((k) => `${designs.names[k]} ${told(designs.columns[k], designs.value(k, i))}`).join(", ")}`;
   });
   designs.listeners.push(chart.repaint);
   return { front: () => front };
@@ -207,10 +208,11 @@ function parallel(parent, designs) {
       }
       c.textAlign = "center";
       c.fillStyle = css("--muted");
-      c.fillText(number(axis.span[1], 4), x, room.top - 6);
-      c.fillText(number(axis.span[0], 4), x, height - room.bottom + 16);
+      const [low, high] = endTexts(axis.span);
+      c.fillText(high, x, room.top - 6);
+      c.fillText(low, x, height - room.bottom + 16);
       c.fillStyle = css("--ink");
-      const wide = (width - 120) / (axes.length - 1), name = named(column);
+      const wide = (width - 120) / (axes.length - 1), name = named(designs, axis.k);
       const lines = c.measureText(name).width > wide ? name.match(/\S+(?:\s|$)/g).reduce((rows, word) => (c.measureText(rows[rows.length - 1] + word).width < wide || !rows[rows.length - 1] ? [...rows.slice(0, -1), rows[rows.length - 1] + word] : [...rows, word]), [""]) : [name];
       lines.slice(-2).forEach((row, r, list) => c.fillText(row.trim(), x, room.top - 22 - 14 * (list.length - 1 - r), Math.max(40, wide - 4)));
     });
@@ -255,8 +257,8 @@ function chosenTables(designs) {
   const left = tableOf("Parameters of the design chosen", [["Parameter"], ["Value", "num"], ["Between its bounds"]], parameters.map(({ column }) => element("tr", {},
     element("td", {}, column.name), cell("Value", "num", told(column, column.values[i])),
     cell("Between its bounds", "", bounded(column) ? rangeDrawing({ start: column.values[i], end: column.values[i], lower: column.lower, upper: column.upper }) : "\u2013"))));
-  const right = tableOf("What it reaches", [["Reached"], ["Value", "num"], ["Required", "num"]], results.map(({ column }) => element("tr", {},
-    element("td", {}, column.name), cell("Value", violates(column, column.values[i]) ? "num bad" : "num", told(column, column.values[i])),
+  const right = tableOf("What it reaches", [["Reached"], ["Value", "num"], ["Required", "num"]], results.map(({ column, k }) => element("tr", {},
+    element("td", {}, designs.names[k]), cell("Value", violates(column, column.values[i]) ? "num bad" : "num", told(column, column.values[i])),
     cell("Required", "num", column.group === "constraint" && (column.lower !== null || column.upper !== null) ? requiredWords({ required_lower: column.lower, required_upper: column.upper, unit: unitOf(column) }) : "\u2013"))));
   return [element("div", {}, left), element("div", {}, right)];
 }
@@ -271,8 +273,12 @@ function bestTable(designs) {
   return tableOf("The best designs", [["Design"], ["Objective", "num"], ...free.map(({ column }) => [column.name, "num"]), ["Verdict"]], rows);
 }
 
-// motion: of the parts, or null.
+// motion: of the parts, or null. Answers null where there are no designs.
 export function showExploration(data, section, motion) {
+  if (!data.designs.length) {
+    section("Designs", "There are no designs in this file.");
+    return null;
+  }
   const designs = new Designs(data), plot = element("div", { class: "chart", role: "img" }), all = element("div", { class: "chart", role: "img" });
   const frontWords = element("p", { class: "section-intro", "aria-live": "polite" }), chosen = element("div", { class: "figures" }), chosenWords = element("p", { class: "section-intro" });
   const only = element("input", { type: "checkbox", checked: designs.onlyMet, onchange: () => designs.set({ onlyMet: only.checked }) });
@@ -295,7 +301,7 @@ export function showExploration(data, section, motion) {
     chosenWords.textContent = `Design ${i + 1} of ${designs.list.length}, ${Number.isFinite(objective.values[i]) ? `objective ${number(objective.values[i])}` : design.status}. ${verdict}${motion && design.view === null ? " Its parts are not in this page, which has those of the best designs." : ""}`;
     chosen.replaceChildren(...chosenTables(designs));
     for (const row of document.querySelectorAll("tr[data-design]")) row.classList.toggle("chosen", Number(row.dataset.design) === i);
-    plot.setAttribute("aria-label", `${designs.columns[designs.y].name} against ${designs.columns[designs.x].name} of ${plural(designs.list.length, "design")}`);
+    plot.setAttribute("aria-label", `${designs.names[designs.y]} against ${designs.names[designs.x]} of ${plural(designs.list.length, "design")}`);
     const front = designs.front();
     frontWords.textContent = front === null ? "No front: one of the two axes has no better side. Objectives, their terms and one-sided requirements have." : `On the line: ${plural(front.length, "design")} that no other one beats in both.`;
     clear.hidden = designs.ranges.size === 0;

@@ -4,12 +4,13 @@
 const none = "\u2013";
 const minus = (text) => text.replace("-", "\u2212").replace("e-", "e\u2212");
 const isNumber = (x) => typeof x === "number" && Number.isFinite(x);
+const isPlain = (exponent) => exponent >= -4 && exponent <= 6;  // is it told without one?
 
 // `digits` significant ones, by `round`; the exponent is told where the number is very small or large.
 function rounded(x, digits, round) {
   if (x === 0) return "0";
   const exponent = Math.floor(Math.log10(Math.abs(x)));
-  if (exponent < -4 || exponent > 6) {
+  if (!isPlain(exponent)) {
     const mantissa = round((x / 10 ** exponent) * 10 ** (Math.min(digits, 3) - 1)) / 10 ** (Math.min(digits, 3) - 1);
     return `${mantissa}e${exponent}`;
   }
@@ -22,6 +23,17 @@ const trimmed = (text) => (text.includes(".") && !text.includes("e") ? text.repl
 export const number = (x, digits = 5) => (isNumber(x) ? minus(trimmed(rounded(x, digits, Math.round))) : none);
 export const lowerBound = (x, digits = 5) => (isNumber(x) ? minus(rounded(x, digits, Math.floor)) : none);
 export const upperBound = (x, digits = 5) => (isNumber(x) ? minus(rounded(x, digits, Math.ceil)) : none);
+
+// As many digits as tell it from what is `step` away.
+export function numberInSteps(x, step) {
+  if (!isNumber(x)) return none;
+  if (Math.abs(x) < step / 2) return "0";
+  const order = (v) => Math.floor(Math.log10(Math.abs(v)) + 1e-9);
+  const exponent = order(x), digits = Math.max(0, Math.min(17, exponent - order(step)));  // after the first
+  if (isPlain(exponent)) return minus(trimmed(x.toFixed(Math.max(0, digits - exponent))));
+  const [mantissa, power] = x.toExponential(digits).split("e");
+  return minus(`${trimmed(mantissa)}e${Number(power)}`);
+}
 
 export const withUnit = (text, unit) => (unit && text !== none ? `${text}\u00a0${unit}` : text);
 

@@ -129,9 +129,12 @@ function explored(data) {
 }
 
 function exploredFacts(data) {
-  const designs = new Designs(data), [best] = designs.bestFirst(), objective = designs.of("objective")[0].column;
   const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "by proven bounds"]];
-  if (best !== undefined) rows.push(["Least objective", number(objective.values[best]), data.designs[best].met ? "of those that meet everything" : "of the one that is nearest to it"]);
+  if (!data.designs.length) return rows;
+  const designs = new Designs(data), [best] = designs.bestFirst(), of = (group) => designs.of(group)[0].column.values[best];
+  if (best === undefined) return rows;
+  if (data.designs[best].met) rows.push(["Least objective", number(of("objective")), "of those that meet everything"]);
+  else rows.push(["Least violation", number(of("violation")), `of design ${best + 1}, whose objective is ${number(of("objective"))}`]);
   return rows;
 }
 
