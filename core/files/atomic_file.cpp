@@ -6,12 +6,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <set>
 #include <system_error>
 #include <utility>
+
+#include "fettle/core/base/mixed_bits.hpp"
 
 namespace fettle::core::files {
 
@@ -52,10 +57,26 @@ int open_unnamed(const fs::path& path) {
     return -1;
 }
 
-// A file of a name that nothing has, beside `path`: its handle, -1 if there can be none.
+// Six letters that no other process is likely to choose, nor another thread of this one.
+std::string random_ending() {
+    static std::atomic<std::uint64_t> calls{0};
+    const auto now = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+    std::uint64_t bits = base::mixed_bits(base::mixed_bits(now ^ ++calls) ^ static_cast<std::uint64_t>(::getpid()));
+    std::string letters = ".";
+    for (int i = 0; i < 6; ++i, bits /= 26) letters += static_cast<char>('a' + bits % 26);
+    return letters;
+}
+
+// A file of a name that nothing has, beside `path`: its handle, -1 if there can be none. Its permissions are those of any new file, which
+// mkstemp would not give it.
 int open_beside(const fs::path& path, std::string& name) {
-    name = path.string() + ".XXXXXX";
-    const int file = ::mkstemp(name.data());
+    constexpr int tries = 100;
+    int file = -1;
+    for (int i = 0; i < tries && file < 0; ++i) {
+        name = path.string() + random_ending();
+        file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno != EEXIST && errno != EINTR) break;
+    }
     if (file < 0) name.clear();
     return file;
 }
@@ -70,6 +91,25 @@ void flush_folder(const fs::path& folder) {
 
 }  // namespace
 
+int write_all(int file, std::string_view& left) {
+    while (!left.empty()) {
+        const ssize_t written = ::write(file, left.data(), left.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return written < 0 ? errno : EIO;
+        left.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return 0;
+}
+
+fs::path free_name(const fs::path& path) {
+    for (int n = 1;; ++n) {
+        fs::path name = path;
+        name.replace_extension(std::to_string(n) + path.extension().string());
+        std::error_code ignored;
+        if (!fs::exists(fs::symlink_status(name, ignored))) return name;
+    }
+}
+
 NewFile::NewFile(fs::path path) : path_(std::move(path)) {
     std::error_code code;
     fs::create_directories(folder_of(path_), code);
@@ -83,13 +123,7 @@ NewFile::NewFile(fs::path path) : path_(std::move(path)) {
         if (file_ < 0) fail(unwritten, errno);
     } else if (file_ = open_unnamed(path_); file_ < 0) {
         file_ = open_beside(path_, temporary_);
-        if (file_ < 0) {
-            fail(unwritten, errno);
-            return;
-        }
-        const mode_t mask = ::umask(0);
-        ::umask(mask);
-        ::fchmod(file_, 0666 & ~mask);  // mkstemp's 0600 would keep a report from its readers
+        if (file_ < 0) fail(unwritten, errno);
     }
 }
 
@@ -119,12 +153,8 @@ void NewFile::close() {
 }
 
 void NewFile::write(std::string_view contents) {
-    while (errors_.empty() && !contents.empty()) {
-        const ssize_t written = ::write(file_, contents.data(), contents.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return fail(unwritten, errno);
-        contents.remove_prefix(static_cast<std::size_t>(written));
-    }
+    if (!errors_.empty()) return;
+    if (const int code = write_all(file_, contents); code != 0) fail(unwritten, code);
 }
 
 Errors NewFile::finish() {

@@ -49,6 +49,12 @@ private:
     base::Errors errors_;
 };
 
+/// Writes to a descriptor until nothing is left; what has been written is taken off the front. @return 0, or errno of what failed
+int write_all(int file, std::string_view& left);
+
+/// The first of NAME.1.EXT, NAME.2.EXT, ... beside NAME.EXT that nothing has, not even a link that leads nowhere.
+std::filesystem::path free_name(const std::filesystem::path& path);
+
 /// What is put together in memory of a file that may be long before it is written.
 inline constexpr std::size_t write_size = std::size_t{1} << 20;
 

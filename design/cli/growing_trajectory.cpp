@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -33,16 +34,6 @@ GrowingTrajectory::~GrowingTrajectory() {
     if (handle_ >= 0) ::close(handle_);
 }
 
-bool GrowingTrajectory::put(const std::string& text) {
-    for (std::string_view left = text; !left.empty();) {
-        const ssize_t written = ::write(handle_, left.data(), left.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        left.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-}
-
 // What was there stays until all of it, as far as it is gone on with, is in the new file.
 Errors GrowingTrajectory::begin(const std::string& text) {
     core::files::FilesTogether files;
@@ -68,10 +59,11 @@ void GrowingTrajectory::write(const core::stepper::Simulation& so_far, Console& 
     if (first) {
         const Errors errors = begin(text);
         if (!errors.empty()) fault = errors.front().message;
-    } else if (!put(text)) {
-        fault = std::generic_category().message(errno);
-    } else if (passed) {
-        ::fdatasync(handle_);
+    } else {
+        std::string_view left = text;
+        const int code = core::files::write_all(handle_, left);
+        if (code != 0) fault = std::generic_category().message(code);
+        if (code == 0 && passed) ::fdatasync(handle_);
     }
     steps_ = so_far.trajectory.steps.size();
     failed_ = !fault.empty();

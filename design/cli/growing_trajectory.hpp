@@ -36,8 +36,6 @@ public:
     void remove();
 
 private:
-    bool put(const std::string& text);
-
     Errors begin(const std::string& text);
 
     std::filesystem::path file_;

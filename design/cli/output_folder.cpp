@@ -49,12 +49,7 @@ Errors try_output_file(const fs::path& file) {
 
 std::string name_for_longer_run(const fs::path& file, std::size_t steps) {
     if (!core::records::is_trajectory_file(file) || stored_steps(file) <= steps) return {};
-    for (int n = 1;; ++n) {
-        fs::path kept = file;
-        kept.replace_extension(std::to_string(n) + file.extension().string());
-        std::error_code ignored;
-        if (!fs::exists(fs::symlink_status(kept, ignored))) return kept.string();
-    }
+    return core::files::free_name(file).string();
 }
 
 }  // namespace fettle::design::cli

@@ -15,6 +15,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 #include "fettle/core/base/version.hpp"
@@ -189,16 +190,13 @@ std::string bits_of(const VectorX& x) {
     return key;
 }
 
-// history.jsonl -> the first of history.1.jsonl, history.2.jsonl, ... that is free
+// @return its new name
 Result<std::string> rename_away(const fs::path& path) {
-    for (int k = 1;; ++k) {
-        const fs::path target = path.parent_path() / ("history." + std::to_string(k) + ".jsonl");
-        if (fs::exists(target)) continue;
-        std::error_code failure;
-        fs::rename(path, target, failure);
-        if (failure) return Error{ErrorCode::file_unwritable, path.string(), "cannot be renamed: " + failure.message()};
-        return target.string();
-    }
+    const fs::path target = core::files::free_name(path);
+    std::error_code failure;
+    fs::rename(path, target, failure);
+    if (failure) return Error{ErrorCode::file_unwritable, path.string(), "cannot be renamed: " + failure.message()};
+    return target.string();
 }
 
 // A run that was killed may take a moment to let go of its file.
@@ -276,12 +274,9 @@ Errors History::read_existing(const std::string& path) {
 
 // A part of a line may have got there; the rest of it comes first the next time.
 void History::write_waiting() {
-    write_error_ = 0;
-    while (!waiting_.empty() && write_error_ == 0) {
-        const ssize_t written = ::write(file_, waiting_.data(), waiting_.size());
-        if (written > 0) waiting_.erase(0, static_cast<size_t>(written));
-        if (written < 0 && errno != EINTR) write_error_ = errno;
-    }
+    std::string_view left = waiting_;
+    write_error_ = core::files::write_all(file_, left);
+    waiting_.erase(0, waiting_.size() - left.size());
     if (write_error_ == 0 && ::fsync(file_) != 0 && errno != EINVAL) write_error_ = errno;
 }
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/files/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <thread>
 
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -136,6 +141,34 @@ TEST_CASE("a pipe is written to, not replaced", "[base]") {
     CHECK(errors.empty());
     CHECK(got == "through");
     CHECK(fs::is_fifo(pipe));
+}
+
+TEST_CASE("all of a text is written, or what is left of it is known", "[base]") {
+    const TemporaryFolder folder;
+    const std::string text(100'000, 'x');
+    std::string_view left = text;
+    const int file = ::open(folder.file("a").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    REQUIRE(file >= 0);
+    CHECK(write_all(file, left) == 0);
+    CHECK(left.empty());
+    ::close(file);
+    CHECK(read_file(folder.path / "a").value() == text);
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) == 0);
+    left = text;  // more than a pipe holds
+    CHECK(write_all(ends[1], left) == EAGAIN);
+    CHECK(left.size() == text.size() - static_cast<std::size_t>(::fcntl(ends[1], F_GETPIPE_SZ)));
+    ::close(ends[0]);
+    ::close(ends[1]);
+}
+
+TEST_CASE("a free name is one that not even a link has", "[base]") {
+    const TemporaryFolder folder;
+    CHECK(free_name(folder.path / "a.b.json") == folder.path / "a.b.1.json");
+    folder.write("a.b.1.json", "");
+    fs::create_symlink("nowhere", folder.path / "a.b.2.json");
+    CHECK(free_name(folder.path / "a.b.json") == folder.path / "a.b.3.json");
+    CHECK(free_name(folder.path / "none") == folder.path / "none.1");
 }
 
 TEST_CASE("files that are not there, and folders, are not read", "[base]") {

@@ -156,10 +156,13 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     CHECK(refused.errors()[0].code == ErrorCode::inconsistent);
     CHECK(contents(folder.file()) == first);
 
+    const std::filesystem::path link = folder.path / "history.1.jsonl";
+    std::filesystem::create_symlink("nowhere", link);  // somebody's: not replaced
     {
         const Result<History> fresh = History::open(folder.path.string(), other, HistoryMode::fresh);
         REQUIRE(fresh);
         CHECK(contents(fresh->kept_as()) == first);
+        CHECK(std::filesystem::is_symlink(link));
         const Result<History> second = History::open(folder.path.string(), other, HistoryMode::resume);
         REQUIRE_FALSE(second);  // locked
         CHECK(second.errors()[0].message.find("another process") != std::string::npos);
