@@ -4,29 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/files/embedded_file.hpp"
 
-// The page as a file, put in by the assembler between two labels.
-asm(".pushsection .rodata\n"
-    ".global fettle_report_template_begin\n"
-    ".hidden fettle_report_template_begin\n"
-    ".global fettle_report_template_end\n"
-    ".hidden fettle_report_template_end\n"
-    "fettle_report_template_begin:\n"
-    ".incbin \"" FETTLE_REPORT_TEMPLATE
-    "\"\n"
-    "fettle_report_template_end:\n"
-    ".popsection\n");
-
-extern "C" {
-extern const char fettle_report_template_begin[] __attribute__((visibility("hidden")));
-extern const char fettle_report_template_end[] __attribute__((visibility("hidden")));
-}
+FETTLE_EMBEDDED_FILE(fettle_report_template, FETTLE_REPORT_TEMPLATE)
 
 namespace fettle::design::report {
 
-std::string_view page_template() {
-    return {fettle_report_template_begin, static_cast<std::size_t>(fettle_report_template_end - fettle_report_template_begin)};
-}
+std::string_view page_template() { return fettle_report_template(); }
 
 std::string page_of(const nlohmann::ordered_json& data) {
     constexpr std::string_view marker = "@FETTLE_REPORT_DATA@";
