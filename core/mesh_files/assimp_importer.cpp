@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "fettle/core/mesh_files/import_format.hpp"
+#include "fettle/core/mesh_files/most_placed.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {
@@ -53,30 +54,36 @@ struct Flat {
     std::vector<double> coordinates;
     std::vector<std::int32_t> corners, polygon_ends, polygon_names, edges;
     std::vector<std::string> names;
+    std::uint64_t placed = 0;  // see most_placed
 };
 
 struct TooMuch {};
 
+void count(std::uint64_t more, Flat& to) {
+    to.placed += more;
+    if (to.placed > most_placed) throw TooMuch();
+}
+
 void append_mesh(const aiMesh& from, const Placement& placement, Flat& to) {
     const std::size_t first = to.coordinates.size() / 3;
+    count(of_a_placing + from.mNumVertices, to);
     for (unsigned i = 0; i < from.mNumVertices; ++i) {
         const aiVector3D& x = from.mVertices[i];
         for (int k = 0; k < 3; ++k)
             to.coordinates.push_back(placement.linear[k][0] * x.x + placement.linear[k][1] * x.y + placement.linear[k][2] * x.z +
                                      placement.shift[k]);
     }
-    if (to.coordinates.size() / 3 > INT32_MAX) throw TooMuch();
     const auto index = [&](unsigned corner) { return static_cast<std::int32_t>(first + corner); };
     const bool mirrored = placement.mirrors();  // then it stays a solid with its polygons turned
     for (unsigned f = 0; f < from.mNumFaces; ++f) {
         const aiFace& face = from.mFaces[f];
+        count(face.mNumIndices > 3 ? face.mNumIndices - 2 : 1, to);
         // A vertex beyond the mesh's own would be another mesh's: the parent is to see it as beyond all.
         for (unsigned k = 0; k < face.mNumIndices; ++k)
             if (face.mIndices[k] >= from.mNumVertices) throw std::string("a face names a vertex that is not there");
         if (face.mNumIndices == 2) to.edges.insert(to.edges.end(), {index(face.mIndices[0]), index(face.mIndices[1])});
         if (face.mNumIndices < 3) continue;
         for (unsigned k = 0; k < face.mNumIndices; ++k) to.corners.push_back(index(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]));
-        if (to.corners.size() > INT32_MAX) throw TooMuch();
         to.polygon_ends.push_back(static_cast<std::int32_t>(to.corners.size()));
         to.polygon_names.push_back(static_cast<std::int32_t>(to.names.size()) - 1);
     }
@@ -172,7 +179,7 @@ int import(const char* path) {
     } catch (const std::string& fault) {
         return write_failure(fault, import_failed);
     } catch (const TooMuch&) {
-        return write_failure("it has more than 2147483647 vertices or corners", import_failed);
+        return write_failure("", import_too_large);
     } catch (const std::bad_alloc&) {
         return write_failure("", import_out_of_memory);
     }

@@ -20,14 +20,15 @@ namespace fettle::core::mesh_files {
 namespace {
 
 constexpr std::uint64_t megabyte = 1 << 20;
-constexpr int could_not_load = 127;  // the loader's own exit code
+constexpr int could_not_load = 127;                       // the loader's own exit code
+constexpr std::uint64_t largest_answer = 512 * megabyte;  // twice what most_placed vertices take; beyond that it is names
 
 /// Several times what assimp takes for files that are as they should be: buffers that a file only names are not counted in its size.
 ImportLimits limits_for(const std::string& path) {
     std::error_code code;
     const std::uint64_t size = std::filesystem::file_size(path, code), megabytes = code ? 0 : size / megabyte;
     return {static_cast<unsigned>(3 + std::min<std::uint64_t>(megabytes, 1000)), 1024 * megabyte + 100 * megabytes * megabyte,
-            4096 * megabyte};
+            largest_answer};
 }
 
 /// Takes values from the front; nullopt for more than there is.
@@ -72,7 +73,6 @@ std::optional<RawMesh> mesh_of(std::string_view written) {
     Bytes bytes(written);
     const auto header = bytes.one<ImportHeader>();
     RawMesh mesh;
-    std::vector<geometry::Edge> edges;
     if (!header || header->mark != import_is_mesh || !bytes.list(header->vertices, mesh.vertices) ||
         !bytes.list(header->corners, mesh.corners) || !bytes.list(header->polygons, mesh.polygon_ends) ||
         !bytes.list(header->polygons, mesh.polygon_group) || !bytes.list(header->edges, mesh.edges))
@@ -119,7 +119,10 @@ Error failure(const ImportOutcome& outcome, const ImportLimits& limits, const st
         case End::killed:
             return {ErrorCode::parse, path, library + "crashed over it (signal " + std::to_string(outcome.code) + ")" + instead};
         case End::too_large:
-            return {ErrorCode::out_of_range, path, "is too large: what it places takes more than 4 GiB" + instead};
+            return {ErrorCode::out_of_range, path,
+                    "is too large: what it places takes more than " + std::to_string(limits.largest / megabyte) + " MiB" + instead};
+        case End::stopped:
+            return {ErrorCode::file_unreadable, path, "was not read to its end: stopped on request"};
         case End::not_started:
             return {
                 ErrorCode::unsupported, path,
@@ -131,6 +134,8 @@ Error failure(const ImportOutcome& outcome, const ImportLimits& limits, const st
         return {ErrorCode::unsupported, path, library + "cannot be loaded; install it, or export the mesh " + other};
     if (outcome.code == import_out_of_memory)
         return {ErrorCode::out_of_range, path, library + "wants more than " + memory + " of memory for it" + instead};
+    if (outcome.code == import_too_large)
+        return {ErrorCode::out_of_range, path, "is too large: it places more than 10 million vertices and triangles" + instead};
     const std::string reason = reason_of(outcome.written);
     return {ErrorCode::parse, path, "cannot be read as a mesh: " + (reason.empty() ? "assimp gives no reason" : reason) + instead};
 }
@@ -152,11 +157,11 @@ Result<double> metres_per_unit(const std::string& path, std::string_view extensi
 
 }  // namespace
 
-Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension) {
+Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension, const std::function<bool()>& should_stop) {
     const auto unit = metres_per_unit(path, extension);
     if (!unit) return unit.errors();
     const ImportLimits limits = limits_for(path);
-    const ImportOutcome outcome = run_importer(path, limits);
+    const ImportOutcome outcome = run_importer(path, limits, should_stop);
     std::optional<RawMesh> mesh = mesh_of(outcome.written);
     if (!mesh) return failure(outcome, limits, path);
     mesh->metres_per_unit = *unit;

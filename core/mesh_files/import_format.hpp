@@ -21,6 +21,6 @@ inline constexpr std::uint64_t import_is_mesh = 0x6873656d656c7466, import_is_fa
 inline constexpr std::uint64_t import_end = 0x646e65656c7466;
 
 /// Exit codes of the importer.
-inline constexpr int import_written = 0, import_failed = 1, import_out_of_memory = 2, import_misused = 3;
+inline constexpr int import_written = 0, import_failed = 1, import_out_of_memory = 2, import_misused = 3, import_too_large = 4;
 
 }  // namespace fettle::core::mesh_files

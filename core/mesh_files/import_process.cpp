@@ -13,25 +13,15 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-// The importer as a file, put in by the assembler between two labels.
-asm(".pushsection .rodata\n"
-    ".global fettle_mesh_importer_begin\n"
-    ".hidden fettle_mesh_importer_begin\n"
-    ".global fettle_mesh_importer_end\n"
-    ".hidden fettle_mesh_importer_end\n"
-    "fettle_mesh_importer_begin:\n"
-    ".incbin \"" FETTLE_MESH_IMPORTER
-    "\"\n"
-    "fettle_mesh_importer_end:\n"
-    ".popsection\n");
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/embedded_file.hpp"
 
-extern "C" {
-extern const char fettle_mesh_importer_begin[] __attribute__((visibility("hidden")));
-extern const char fettle_mesh_importer_end[] __attribute__((visibility("hidden")));
-}
+FETTLE_EMBEDDED_FILE(fettle_mesh_importer, FETTLE_MESH_IMPORTER)
 
 namespace fettle::core::mesh_files {
 namespace {
@@ -53,6 +43,32 @@ private:
     int number_;
 };
 
+/// A process that is waited for; if that does not come about it is killed, and leaves no zombie.
+class Child {
+public:
+    explicit Child(pid_t process) : process_(process) {}
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() { kill(); }
+    void kill() {
+        if (process_ < 0) return;
+        ::kill(process_, SIGKILL);
+        wait();
+    }
+    /// @return its status; nullopt if somebody else has collected it
+    std::optional<int> wait() {
+        int status = 0;
+        pid_t reaped = -1;
+        do reaped = ::waitpid(process_, &status, 0);
+        while (reaped < 0 && errno == EINTR);
+        const bool is_ours = reaped == std::exchange(process_, -1);
+        return is_ours ? std::optional<int>(status) : std::nullopt;
+    }
+
+private:
+    pid_t process_;
+};
+
 /// A file without a name that has the importer in it; -1 and errno where the system makes none.
 int importer_file() {
 #ifdef MFD_EXEC
@@ -61,19 +77,12 @@ int importer_file() {
 #else
     const int file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC);
 #endif
-    const char* at = fettle_mesh_importer_begin;
-    while (file >= 0 && at < fettle_mesh_importer_end) {
-        const ssize_t written = ::write(file, at, static_cast<std::size_t>(fettle_mesh_importer_end - at));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) {
-            const int code = errno;
-            ::close(file);
-            errno = code;
-            return -1;
-        }
-        at += written;
-    }
-    return file;
+    std::string_view left = fettle_mesh_importer();
+    const int code = file < 0 ? errno : files::write_all(file, left);
+    if (code == 0) return file;
+    if (file >= 0) ::close(file);
+    errno = code;
+    return -1;
 }
 
 /// Starts it with `out` as stdout and nothing else of ours. @return 0, or errno
@@ -104,14 +113,16 @@ int spawn(int program, std::vector<std::string> words, int out, pid_t& process) 
 
 using End = ImportOutcome::End;
 
-/// All that comes, up to its end, a size and an hour. @return exited if it ended by itself
-End collect(int from, std::uint64_t largest, Clock::time_point latest, std::string& to) {
+/// All that comes, up to its end, a size and an hour, or until somebody wants it to stop. @return exited if it ended by itself
+End collect(int from, std::uint64_t largest, Clock::time_point latest, const std::function<bool()>& should_stop, std::string& to) {
+    constexpr long long between_looks = 100;  // [ms]
     std::vector<char> block(1 << 16);
     while (true) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(latest - Clock::now()).count();
         if (left <= 0) return End::out_of_time;
+        if (should_stop && should_stop()) return End::stopped;
         pollfd wanted{from, POLLIN, 0};
-        const int ready = ::poll(&wanted, 1, static_cast<int>(std::min<long long>(left, 60'000)));
+        const int ready = ::poll(&wanted, 1, static_cast<int>(std::min<long long>(left, between_looks)));
         if (ready <= 0) continue;
         const ssize_t count = ::read(from, block.data(), block.size());
         if (count < 0 && errno == EINTR) continue;
@@ -123,7 +134,7 @@ End collect(int from, std::uint64_t largest, Clock::time_point latest, std::stri
 
 }  // namespace
 
-ImportOutcome run_importer(const std::string& path, const ImportLimits& limits) {
+ImportOutcome run_importer(const std::string& path, const ImportLimits& limits, const std::function<bool()>& should_stop) {
     ImportOutcome outcome;
     const Descriptor program(importer_file());
     std::array<int, 2> ends{-1, -1};
@@ -139,15 +150,13 @@ ImportOutcome run_importer(const std::string& path, const ImportLimits& limits) 
         *to, process);
     to.close();
     if (outcome.code != 0) return outcome;
-    outcome.end = collect(*from, limits.largest, Clock::now() + 10 * std::chrono::seconds(limits.seconds), outcome.written);
-    if (outcome.end != End::exited) ::kill(process, SIGKILL);
-    int status = 0;
-    pid_t reaped = -1;
-    do reaped = ::waitpid(process, &status, 0);
-    while (reaped < 0 && errno == EINTR);
-    if (outcome.end == End::exited && reaped == process) {  // else somebody else has collected it: what it wrote tells enough
-        if (WIFSIGNALED(status)) outcome.end = WTERMSIG(status) == SIGXCPU ? End::out_of_time : End::killed;
-        outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+    Child child(process);
+    outcome.end = collect(*from, limits.largest, Clock::now() + 10 * std::chrono::seconds(limits.seconds), should_stop, outcome.written);
+    if (outcome.end != End::exited) {
+        child.kill();
+    } else if (const std::optional<int> status = child.wait()) {  // else what it wrote tells enough
+        if (WIFSIGNALED(*status)) outcome.end = WTERMSIG(*status) == SIGXCPU ? End::out_of_time : End::killed;
+        outcome.code = WIFSIGNALED(*status) ? WTERMSIG(*status) : WEXITSTATUS(*status);
     }
     if (outcome.end != End::exited) outcome.written.clear();
     return outcome;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace fettle::core::mesh_files {
@@ -18,12 +19,13 @@ struct ImportLimits {
 
 /// How an import ended, and what came of it.
 struct ImportOutcome {
-    enum class End { exited, killed, out_of_time, too_large, not_started } end = End::not_started;
+    enum class End { exited, killed, out_of_time, too_large, stopped, not_started } end = End::not_started;
     int code = 0;         ///< the exit code; the signal that killed it; errno of what could not be started
     std::string written;  ///< as import_format.hpp says; exited alone
 };
 
-/// Safe from any thread. Does not throw but for want of memory.
-ImportOutcome run_importer(const std::string& path, const ImportLimits& limits);
+/// Safe from any thread. Throws for want of memory, and what should_stop throws; the process ends with this call in any case.
+/// @param should_stop  asked ten times a second at least; true ends the import.
+ImportOutcome run_importer(const std::string& path, const ImportLimits& limits, const std::function<bool()>& should_stop = {});
 
 }  // namespace fettle::core::mesh_files

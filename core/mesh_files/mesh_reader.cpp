@@ -25,7 +25,8 @@ using geometry::Mesh;
 using geometry::Triangle;
 
 constexpr std::size_t max_listed = 5;
-constexpr int most_corners = 10'000;  // of a polygon: cutting it takes a tenth of a second
+constexpr int most_corners = 10'000;              // of a polygon: cutting it takes half a second
+constexpr std::int64_t most_tests = 800'000'000;  // of all polygons of a file together: six times what the worst of them takes
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 31;  // so that every count of what is in it is an int
 
@@ -75,13 +76,13 @@ Errors checked_file(const std::string& path) {
     return {};
 }
 
-Result<RawMesh> read_raw(const std::string& path) {
+Result<RawMesh> read_raw(const std::string& path, const MeshReadOptions& options) {
     const Format* format = format_of(path);
     if (format == nullptr)
         return Error{ErrorCode::unsupported, path,
                      "extension `" + lower_case_extension(path) + "` is not a mesh format; allowed: " + mesh_extensions()};
     if (Errors errors = checked_file(path); !errors.empty()) return errors;
-    if (format->parse == nullptr) return read_by_assimp(path, format->extension);
+    if (format->parse == nullptr) return read_by_assimp(path, format->extension, options.should_stop);
     const auto text = files::read_file(path);
     if (!text) return text.errors();
     return format->parse(*text, path);
@@ -120,6 +121,7 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
         result.group.push_back(group);
     };
     int first = 0;
+    std::int64_t tests = most_tests;
     for (std::size_t p = 0; p < raw.polygon_ends.size(); ++p) {
         const int* corners = raw.corners.data() + first;
         const int count = raw.polygon_ends[p] - first;
@@ -133,7 +135,11 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
                          "face " + std::to_string(p) + " (counted from 0) is a polygon of " + std::to_string(count) +
                              " vertices; at most " + std::to_string(most_corners) +
                              " are cut into triangles; export the mesh as triangles"};
-        const std::vector<Triangle> pieces = triangulated(raw.vertices, corners, count);
+        const std::vector<Triangle> pieces = triangulated(raw.vertices, corners, count, tests);
+        if (tests < 0)
+            return Error{ErrorCode::out_of_range, path,
+                         "has too many polygons of many vertices that are not convex (up to face " + std::to_string(p) +
+                             ", counted from 0) to be cut into triangles; export the mesh as triangles"};
         if (pieces.empty()) {
             std::ostringstream text;
             text << "face " << p << " (counted from 0), a polygon of " << count << " vertices near ("
@@ -230,14 +236,14 @@ bool states_its_unit(const std::string& path) {
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
     FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
-    Result<RawMesh> raw = read_raw(path);
+    Result<RawMesh> raw = read_raw(path, options);
     if (!raw) return raw.errors();
     return mesh_of(*raw, std::filesystem::path(path).filename().string(), path, options);
 }
 
 Result<std::vector<Mesh>> read_mesh_parts(const std::string& path, const MeshReadOptions& options) {
     FETTLE_ASSERT(options.unit > 0, "the unit of a mesh file is a positive length");
-    Result<RawMesh> raw = read_raw(path);
+    Result<RawMesh> raw = read_raw(path, options);
     if (!raw) return raw.errors();
     std::vector<Mesh> parts;
     Errors errors;

@@ -8,7 +8,7 @@
 ///
 /// Files may come from anywhere. Every count and every index is checked before it is used; assimp runs in a process of its own, with limits
 /// of time (3 s of processor time and 1 s for each MiB of the file) and memory (1 GiB and 100 times the file), so that what it makes of a
-/// damaged file is an error here. Files beyond 2 GiB are refused.
+/// damaged file is an error here. Files beyond 2 GiB are refused, and so is what places more than 10 million vertices and triangles.
 ///
 /// Axes are those of the file: what is up in a glTF file is y.
 ///
@@ -21,6 +21,7 @@
 /// Validity as a solid is geometry/mesh_validity.hpp; which part of a scene the mesh is for, scene_reader.hpp.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct MeshReadOptions {
     /// Merge vertices with exactly equal coordinates, and drop the triangles that become degenerate by it (geometry::weld_exactly). STL
     /// needs it.
     bool weld = true;
+    /// Optional, asked on any thread while assimp reads: true ends it, with an error that says so.
+    std::function<bool()> should_stop = {};
 };
 
 /// The extensions of what is read, as messages list them: ".stl .obj .off ...".

@@ -200,7 +200,15 @@ private:
         if (words.size() != 3 || words[2] != "1.0") fail(ErrorCode::unsupported, "the version of the format must be 1.0", line);
     }
 
+    /// Every name is compared with those before it.
+    void count_declaration(int line) {
+        constexpr int most = 1000;
+        if (++declarations_ > most)
+            fail(ErrorCode::out_of_range, "its header has more than " + std::to_string(most) + " elements and properties", line);
+    }
+
     void read_element(const std::vector<std::string_view>& words, int line) {
+        count_declaration(line);
         const auto count = words.size() == 3 ? files::parsed_integer(words[2]) : std::nullopt;
         if (!count || *count < 0)
             return fail(ErrorCode::parse, "an element is `element NAME COUNT`, with a count from 0 to 2147483647", line);
@@ -214,6 +222,7 @@ private:
             fail(ErrorCode::parse, "`" + std::string(name.substr(0, 20)) + "` is not a type of PLY (char, uchar, short, ... double)", line);
             return Type::int8;
         };
+        count_declaration(line);
         if (elements_.empty()) return fail(ErrorCode::parse, "a property stands before any element", line);
         const bool list = words.size() > 1 && words[1] == "list";
         if (words.size() != (list ? 5u : 3u))
@@ -372,7 +381,7 @@ private:
 
     std::string_view bytes_, body_;
     std::string where_;
-    int header_lines_ = 0;
+    int header_lines_ = 0, declarations_ = 0;
     Numbers::Order order_ = Numbers::Order::text;
     std::vector<Element> elements_;
     RawMesh mesh_;

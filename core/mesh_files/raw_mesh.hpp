@@ -2,6 +2,8 @@
 /// What a mesh file says, before mesh_reader.cpp makes a geometry::Mesh of it, and the readers of single formats.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,12 +41,15 @@ Result<RawMesh> parse_stl(std::string_view bytes, const std::string& where);
 Result<RawMesh> parse_ply(std::string_view bytes, const std::string& where);
 
 /// What assimp makes of a file, in a process of its own with limits of time and memory (import_process.hpp).
-/// @param extension  in lower case, with its dot: one of those that mesh_reader.hpp lists for assimp.
-Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension);
+/// @param extension    in lower case, with its dot: one of those that mesh_reader.hpp lists for assimp.
+/// @param should_stop  optional: true ends it.
+Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension, const std::function<bool()>& should_stop);
 
 /// Cuts a simple polygon into triangles with the same orientation (ear clipping, exact decisions in the projection along the largest
-/// component of its normal). A convex polygon becomes the fan round its first corner. Empty if the outline crosses itself in that
-/// projection. Time: of the second order in the number of corners, at most.
-std::vector<geometry::Triangle> triangulated(const std::vector<Vector3>& vertices, const int* corners, int count);
+/// component of its normal). A convex polygon becomes the fan round its first corner, in time of the first order. Empty if the outline
+/// crosses itself in that projection, or if the tests run out.
+/// @param tests  How many corners may still be looked at; those that have been are taken off. Below 0: they have run out. A polygon that is
+///               not convex takes of the second order in its number of corners, at most.
+std::vector<geometry::Triangle> triangulated(const std::vector<Vector3>& vertices, const int* corners, int count, std::int64_t& tests);
 
 }  // namespace fettle::core::mesh_files

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -127,13 +128,20 @@ private:
     int group_ = -1;
 };
 
-/// `solid`, and `facet` or `endsolid` soon after: headers of binary files may begin with the first alone.
+/// `solid`, and `facet` or `endsolid` soon after: headers of binary files may begin with the first alone. A file that ends before the
+/// second is text if its first line is one: it ends, and has none of the bytes that only binary files have.
 bool is_text(std::string_view bytes) {
-    files::TextWords words(bytes.substr(0, 1 << 16));
-    if (in_lower_case(words.next()) != "solid") return false;
+    const std::string_view start = bytes.substr(0, 1 << 16);
+    files::TextWords words(start);
+    const std::string_view first = words.next();
+    if (in_lower_case(first) != "solid") return false;
     words.rest_of_line();
     const std::string second = in_lower_case(words.next());
-    return second.empty() || second == "facet" || second == "endsolid";
+    if (!second.empty()) return second == "facet" || second == "endsolid";
+    const std::string_view line = start.substr(static_cast<std::size_t>(first.data() - start.data()));
+    const std::size_t end = line.find('\n');
+    return end != std::string_view::npos &&
+           std::none_of(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(end), [](unsigned char c) { return c < '\t'; });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/text_lines.hpp"
+#include "fettle/core/mesh_files/most_placed.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 #include "fettle/core/mesh_files/xml_reader.hpp"
 #include "fettle/core/mesh_files/zip_archive.hpp"
@@ -18,8 +19,6 @@ namespace fettle::core::mesh_files {
 namespace {
 
 // What real files stay far below: components can place components a hundred times each, and packed text can be a thousand times as long.
-constexpr std::size_t most_placed = 10'000'000;  // vertices and triangles, and each placing of an object as many as it takes the time of
-constexpr std::size_t of_a_placing = 10;
 constexpr std::size_t most_items = 10'000;
 constexpr int most_levels = 32;
 constexpr std::uint64_t unpacked_always = std::uint64_t{64} << 20, unpacked_at_most = std::uint64_t{1} << 30, unpacked_per_byte = 100;

@@ -167,6 +167,7 @@ FixtureBodies::MeshFile FixtureBodies::read_mesh_file(const std::string& name, c
     mesh_files::MeshReadOptions options;
     options.unit = 1;
     options.weld = true;
+    options.should_stop = options_.should_stop;
     auto found = mesh_files::read_mesh(*file, options);
     if (!found) {
         out.errors = found.errors();

@@ -147,6 +147,7 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     mesh_files::MeshReadOptions options;
     options.unit = unit_;
     options.weld = true;
+    options.should_stop = options_.should_stop;
     if (const auto name = node["mesh_unit"].choice({"um", "mm", "cm", "m", "in", "ft"}))
         options.unit = base::metres_per_unit(*name).value();
     const auto name = mesh.string();

@@ -83,6 +83,7 @@ Result<LoadedModel> load_design(const std::string& path, const CommonOptions& co
 Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& common, bool check_start) {
     core::scene::ReadOptions read_options = reading::scene_read_options(common.mesh_dirs, programs_of(common));
     read_options.strict_meshes = common.strict;
+    read_options.should_stop = interrupted;
     Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
     if (!scene) return scene.errors();
     LoadedModel loaded;

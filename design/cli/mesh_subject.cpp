@@ -132,7 +132,7 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
             errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
             continue;
         }
-        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true});
+        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, interrupted});
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
         for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, common, names, subject.warnings));

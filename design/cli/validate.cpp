@@ -43,7 +43,7 @@ std::string without_metres(std::string text) {
 
 Verdict validate_mesh_file(const std::string& path, bool strict) {
     Verdict verdict;
-    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path);
+    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path, {1, true, interrupted});
     if (!mesh) {
         verdict.errors = mesh.errors();
         return verdict;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <catch2/catch.hpp>
 
+#include <new>
 #include <thread>
 
 #include "fettle/core/geometry/mass_moments.hpp"
@@ -120,6 +121,39 @@ TEST_CASE("What a file makes of assimp is an error: a wrong index, no end, no me
     const ImportOutcome poor = run_importer(folder.write("large.obj", vertices), {4, std::uint64_t{64} << 20, 1 << 30});
     CHECK(poor.end == ImportOutcome::End::exited);
     CHECK(poor.code == import_out_of_memory);
+}
+
+TEST_CASE("An import ends when it is told to, or when what is asked throws, and leaves no process behind") {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.gltf", endless);
+    int asked = 0;
+    const ImportOutcome stopped = run_importer(path, {30, 1 << 30, 1 << 30}, [&] { return ++asked == 2; });
+    CHECK(stopped.end == ImportOutcome::End::stopped);
+    CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);
+    const auto throws = [&] { run_importer(path, {30, 1 << 30, 1 << 30}, []() -> bool { throw std::bad_alloc(); }); };
+    CHECK_THROWS_AS(throws(), std::bad_alloc);
+    CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);
+    const auto mesh = read_mesh(path, {1, true, [] { return true; }});
+    REQUIRE_FALSE(mesh);
+    CHECK(contains(mesh.errors().front().message, "stopped on request"));
+}
+
+TEST_CASE("What places more than ten million vertices and triangles is refused where it is read") {
+    const TemporaryFolder folder;
+    std::string roots, nodes;  // a thousand times 9999 vertices and 3333 triangles, from 130 kB
+    for (int i = 0; i < 1000; ++i) {
+        roots += (i > 0 ? "," : "") + std::to_string(i);
+        nodes += i > 0 ? R"(,{"mesh":0})" : R"({"mesh":0})";
+    }
+    folder.write("a.bin", std::string(12 * 9999, '\0'));
+    const std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
+                             R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,)" +
+                             R"("componentType":5126,"count":9999,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}],)" +
+                             R"("bufferViews":[{"buffer":0,"byteLength":119988}],"buffers":[{"byteLength":119988,"uri":"a.bin"}]})";
+    const auto mesh = read_mesh(folder.write("a.gltf", text));
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.errors().front().code == base::ErrorCode::out_of_range);
+    CHECK(contains(mesh.errors().front().message, "places more than 10 million vertices and triangles"));
 }
 
 TEST_CASE("Files are imported from several threads at once, and no process is left behind") {

@@ -4,11 +4,14 @@
 #include <minizip/zip.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/mesh_files/raw_mesh.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
@@ -258,9 +261,43 @@ TEST_CASE("Polygons are cut in time of the second order, the same way as ever; t
     const double last = 3999 % 2 ? 10 + 3999 % 7 : 0;
     outline += 5.0 * 4001 + 0.5 * (last + -5) + 0.5 * (0 + -5);  // down to y = -5, and the two slopes at the ends
     CHECK(area == Approx(outline));
+    std::vector<Vector3> notched = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 0.25, 0}, {0, 1, 0}};
+    const std::vector<int> corners = {0, 1, 2, 3, 4};
+    std::int64_t tests = 1000;
+    CHECK(triangulated(notched, corners.data(), 5, tests).size() == 3);
+    CHECK(tests > 0);
+    tests = 1000 - tests - 1;  // one less than it takes
+    CHECK(triangulated(notched, corners.data(), 5, tests).empty());
+    CHECK(tests < 0);
     const Error many = only_error(folder.write("many.obj", comb(10'001)));
     CHECK(many.code == ErrorCode::out_of_range);
     CHECK(contains(many.message, "a polygon of 10003 vertices; at most 10000"));
+}
+
+TEST_CASE("A convex polygon is a fan without a test; a star that turns left everywhere is not taken for one") {
+    constexpr int n = 10'000;
+    std::vector<Vector3> circle, star;
+    std::vector<int> corners;
+    for (int i = 0; i < n; ++i) {
+        const double angle = 2 * std::acos(-1.0) * i / n;
+        circle.emplace_back(0, 100 * std::cos(angle), 100 * std::sin(angle));
+        corners.push_back(i);
+    }
+    for (int i = 0; i < 5; ++i) star.push_back(circle[static_cast<std::size_t>(2 * i % 5 * (n / 5))]);
+    std::int64_t tests = 0;
+    for (const bool turned : {false, true}) {
+        if (turned) std::reverse(corners.begin(), corners.end());
+        const std::vector<Triangle> fan = triangulated(circle, corners.data(), n, tests);
+        CHECK(tests == 0);
+        REQUIRE(fan.size() == n - 2);
+        bool as_ever = true;
+        for (std::size_t i = 0; i < fan.size(); ++i) as_ever = as_ever && fan[i] == Triangle{corners[0], corners[i + 1], corners[i + 2]};
+        CHECK(as_ever);
+    }
+    tests = 1000;
+    const std::vector<int> order = {0, 1, 2, 3, 4};
+    triangulated(star, order.data(), 5, tests);
+    CHECK(tests < 1000);
 }
 
 TEST_CASE("Ten thousand groups of OBJ are read in time of the first order") {

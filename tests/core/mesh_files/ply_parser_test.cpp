@@ -142,6 +142,13 @@ TEST_CASE("PLY: what a file says is checked before it is used") {
         read.fault(ply("ascii", vertex_xyz + "element tristrips 1\nproperty list int int vertex_indices\n") + corners + "3 0 1 2\n"),
         "triangle strips, which are not read"));
     CHECK(contains(read.fault(ply("ascii", vertex_xyz + face_element(1, "float int")) + corners + "3 0 1 2\n"), "must be of a whole type"));
+    const auto many = [](int count) {
+        std::string text = vertex_xyz;
+        for (int i = 0; i < count; ++i) text += "property char p" + std::to_string(i) + "\n";
+        return ply("ascii", text);
+    };
+    CHECK(contains(read.fault(many(997)), "a.ply:1005: its header has more than 1000 elements and properties"));
+    CHECK(contains(read.fault(many(996)), "has no room for the 4 elements `vertex`"));
     // A binary file cut anywhere is told as such, never read as another shape.
     Bytes body;
     for (int i = 0; i < 12; ++i) body.add(static_cast<float>(i * i % 7));

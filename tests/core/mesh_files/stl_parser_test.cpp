@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // STL: which of its two forms a file is, and what is said of a damaged one.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 
@@ -66,8 +67,15 @@ TEST_CASE("STL: what is cut short, damaged or something else is told as that") {
     CHECK(contains(read.fault("junk"), "its 4 bytes are fewer than the 84"));
     CHECK(contains(read.fault("solid of another kind of file\n"), "ends without `endsolid`"));
     CHECK(contains(read.fault("solid a\nendsolid a\n"), "has no vertices"));
+    CHECK(contains(read.fault("solid of another kind of file"), "is no STL file, or a damaged one"));
     const geometry::Mesh box = tests::support::box_mesh(Vector3::Zero(), {0.01, 0.02, 0.03});
     const std::string bytes = stl_bytes({{"box", &box}});
+    // A header that begins like a text, before numbers: without a line end, and with one that happens to be the last byte.
+    std::string like_text = bytes;
+    like_text.replace(0, 5, "solid");
+    std::replace(like_text.begin(), like_text.end(), '\n', '\v');
+    CHECK(contains(read.fault(like_text.substr(0, 600)), "12 triangles in 684 bytes, this has 600 and may be cut short"));
+    CHECK(contains(read.fault(like_text.substr(0, 599) + "\n"), "12 triangles in 684 bytes, this has 600 and may be cut short"));
     CHECK(contains(read.fault(bytes.substr(0, bytes.size() - 1)), "12 triangles in 684 bytes, this has 683 and may be cut short"));
     CHECK(contains(read.fault(bytes + "x"), "12 triangles in 684 bytes, this has 685"));
     std::string huge = bytes;
