@@ -6,11 +6,13 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::energy {
 namespace {
 
+using kinematics::angular_velocity;
 using kinematics::pose_matrix;
 using scene::Integrator;
 
@@ -21,8 +23,6 @@ bool is_prescribed(const model::Body& body) {
         if (is_free(body, k)) return false;
     return true;
 }
-
-Vector3 axial(const Matrix3& m) { return 0.5 * Vector3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)); }
 
 // Generalised force (force, torque about q) that the accelerations Pddot of a body's points take.
 Vector6 force_of(const Matrix34& pddot, const Matrix4& moments, const Matrix3& R) {
@@ -65,10 +65,10 @@ RigidRates newmark_rates(const model::Body& body, double h, const Matrix34& befo
     const Matrix34 numeric = (pose_matrix(end) - before - h * V) / (0.25 * h * h) - A;
     const Vector6 force = force_of(numeric, body.moments, end.rotation);
     const Matrix3 R0 = before.leftCols<3>();
-    const Vector3 omega0 = axial(V.leftCols<3>() * R0.transpose());
+    const Vector3 omega0 = angular_velocity(R0, V);
     Vector6 a0, held;
-    a0 << A.col(3), axial(A.leftCols<3>() * R0.transpose());
-    held << numeric.col(3), axial(numeric.leftCols<3>() * end.rotation.transpose());
+    a0 << A.col(3), angular_velocity(R0, A);
+    held << numeric.col(3), angular_velocity(end.rotation, numeric);
     Vector6 a = a0;
     Vector3 omega = omega0 + h * a0.tail<3>();
     constexpr int sweeps = 4;  // each gains a factor of h |omega|
@@ -85,7 +85,7 @@ RigidRates newmark_rates(const model::Body& body, double h, const Matrix34& befo
 // The chart's torque is J_l(theta)^-T of what is handed over, which turns it by half of the step's rotation: an error of first order. A
 // second-order integrator gets the torque turned back by the predicted rotation.
 Vector3 chart_torque(const model::Body& body, const Matrix3& R, const Matrix34& pose_hat) {
-    return kinematics::left_jacobian(axial(pose_hat.leftCols<3>() * R.transpose())).transpose() * body.torque;
+    return kinematics::left_jacobian(angular_velocity(R, pose_hat)).transpose() * body.torque;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ Matrix34 start_acceleration(const model::Body& body, const Vector3& gravity, con
     weight.col(3) = gravity;
     Vector6 force = force_of(weight, body.moments, R) + loads;
     if (is_damped(body)) force -= force_of(body.velocity_start, damping_moments(body), R);
-    const Vector3 omega = axial(body.velocity_start.leftCols<3>() * R.transpose());
+    const Vector3 omega = angular_velocity(R, body.velocity_start);
     return pose_acceleration(R, omega, rigid_acceleration(body, R, omega, force, Vector6::Zero()));
 }
 

@@ -29,7 +29,8 @@ inline Vector3 point_velocity(const Pose& pose, const Matrix34& velocity, const 
     return velocity.leftCols<3>() * (pose.rotation.transpose() * (x - pose.position)) + velocity.col(3);
 }
 
-/// omega of Rdot = [omega] R.
+/// omega of Rdot = [omega] R; of any other Rdot, that of the part of Rdot R^T that is a rotation's. Likewise alpha of the accelerations
+/// Rddot = ([alpha] + [omega]^2) R.
 inline Vector3 angular_velocity(const Matrix3& rotation, const Matrix34& velocity) {
     const Matrix3 w = velocity.leftCols<3>() * rotation.transpose();
     return 0.5 * Vector3(w(2, 1) - w(1, 2), w(0, 2) - w(2, 0), w(1, 0) - w(0, 1));

@@ -8,6 +8,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/constraint/assembly.hpp"
+#include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -17,8 +18,6 @@ using base::Errors;
 using constraint::Assembly;
 using constraint::AssemblyProblem;
 using constraint::Row;
-
-Vector3 axial(const Matrix3& m) { return 0.5 * Vector3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)); }
 
 std::vector<kinematics::Pose> start_poses(const Model& model) {
     std::vector<kinematics::Pose> out;
@@ -93,7 +92,7 @@ void move_bodies(const Assembly& found, Model& model) {
                     << base::format_quantity(turn, "deg", 3) << " to meet its joints";
             model.warnings.push_back(message.str());
         }
-        const Vector3 omega = axial(body.velocity_start.leftCols<3>() * from.rotation.transpose());
+        const Vector3 omega = kinematics::angular_velocity(from.rotation, body.velocity_start);
         body.pose_start = to;
         body.velocity_start.leftCols<3>() = cross_matrix(omega) * to.rotation;
     }
@@ -109,7 +108,7 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const Body& body = model.bodies[i];
         Vector6 v;
-        v << body.velocity_start.col(3), axial(body.velocity_start.leftCols<3>() * body.pose_start.rotation.transpose());
+        v << body.velocity_start.col(3), kinematics::angular_velocity(body.pose_start.rotation, body.velocity_start);
         for (int k = 0; k < 6; ++k)  // where a coordinate is prescribed, its curve decides
             if (!is_free(body, k))
                 v[k] = (motion_value(*body.prescribed[k], 1e-6 * model.timestep) - motion_value(*body.prescribed[k], 0)) /
