@@ -259,8 +259,9 @@ private:
         return options_.accuracy > 0 && !(share * std::min(1.0, motion / quadratic_range()) <= options_.accuracy);
     }
 
-    // Where rounding keeps it from getting there, the least that it gets to is taken.
-    bool is_accurate(const Direction& direction) {
+    // Asked once in each iteration: keeps the least share and counts the iterations since. Where rounding keeps it from getting there, the
+    // least that it gets to is taken.
+    bool has_become_accurate(const Direction& direction) {
         constexpr int tries = 3;  // without halving it
         const double share = *std::max_element(direction.unbalanced.begin(), direction.unbalanced.end());
         if (options_.accuracy == 0 || share <= options_.accuracy) return true;
@@ -281,7 +282,7 @@ private:
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
-        if (solved && !options_.to_rounding && (is_accurate(*direction) || result_.iterations >= options_.max_iterations))
+        if (solved && !options_.to_rounding && (has_become_accurate(*direction) || result_.iterations >= options_.max_iterations))
             return stop(NewtonStatus::converged);
         const char* too_rough = "rounding stops the solve before it is accurate enough for a gradient";
         if (result_.iterations >= options_.max_iterations)  // solved, in numbers that jump by more than such accuracy at each step
