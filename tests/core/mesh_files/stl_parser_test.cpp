@@ -72,7 +72,7 @@ TEST_CASE("STL: what is cut short, damaged or something else is told as that") {
     const std::string bytes = stl_bytes({{"box", &box}});
     // A header that begins like a text, before numbers: without a line end, and with one that happens to be the last byte.
     std::string like_text = bytes;
-    like_text.replace(0, 5, "solid");
+    like_text.replace(0, 6, "solid ");
     std::replace(like_text.begin(), like_text.end(), '\n', '\v');
     CHECK(contains(read.fault(like_text.substr(0, 600)), "12 triangles in 684 bytes, this has 600 and may be cut short"));
     CHECK(contains(read.fault(like_text.substr(0, 599) + "\n"), "12 triangles in 684 bytes, this has 600 and may be cut short"));
