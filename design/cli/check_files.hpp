@@ -30,7 +30,8 @@ struct Check {
 /// Where it goes; empty: nowhere.
 struct CheckFiles {
     std::string junit, sarif, markdown;
-    bool annotations = false;  ///< lines for GitHub Actions on stderr
+    bool annotations = false;    ///< lines for GitHub Actions on stderr
+    std::string summary_before;  ///< where Markdown goes to GitHub's job summary: what others have written there
 
     bool wanted() const { return annotations || !(junit.empty() && sarif.empty() && markdown.empty()); }
 };
@@ -50,10 +51,11 @@ std::string markdown_text(const Checks& checks);
 /// "::error file=...,title=...::..." for each finding.
 std::string annotation_lines(const Checks& checks);
 
-/// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind.
-[[nodiscard]] Errors prepare_check_files(const CheckFiles& files);
+/// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind. `files` keeps
+/// those that can be. Contract: none of them is read by the command (named_files.hpp).
+[[nodiscard]] Errors prepare_check_files(CheckFiles& files);
 
-/// Writes what is asked for. GitHub's job summary, where Markdown is to go there, is added to.
+/// Writes the files that are asked for; can be called again. GitHub's job summary, where Markdown is to go there, is added to.
 [[nodiscard]] Errors write_check_files(const CheckFiles& files, const Checks& checks);
 
 }  // namespace fettle::design::cli

@@ -270,6 +270,14 @@ const std::string& CommandLine::name() const { return app_->get_name(); }
 
 bool CommandLine::is_chosen() const { return app_->parsed(); }
 
+std::vector<GivenValue> CommandLine::given() const {
+    std::vector<GivenValue> given;
+    for (const CLI::Option* option : static_cast<const CLI::App*>(app_)->get_options())
+        for (const std::string& value : option->results())
+            given.push_back({option->get_positional() ? option->get_name(true) : option->get_name(), value, option->get_positional()});
+    return given;
+}
+
 ProgramLine::ProgramLine(const std::string& name, const std::string& description) : app_(std::make_unique<CLI::App>(description, name)) {
     app_->require_subcommand(1);
 }

@@ -54,6 +54,13 @@ struct CommandFacts {
     std::vector<CommandFacts> commands;
 };
 
+/// An option that was given, with one of its values.
+struct GivenValue {
+    std::string option;  ///< "--out"; of what is told by its place "FILE"
+    std::string value;
+    bool by_place = false;
+};
+
 /// The options of the program, or of one of its commands. A copy speaks of the same.
 class CommandLine {
 public:
@@ -81,6 +88,8 @@ public:
     CommandFacts facts() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;
+    /// After parsing: its own options that were given, with all their values.
+    std::vector<GivenValue> given() const;
 
 private:
     CLI::App* app_;
