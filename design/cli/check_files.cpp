@@ -133,6 +133,16 @@ bool is_job_summary(const std::string& file) {
 
 }  // namespace
 
+CheckOutcome to_check(core::clearance::PairStatus status) {
+    using core::clearance::PairStatus;
+    if (status == PairStatus::violated) return CheckOutcome::failed;
+    return status == PairStatus::undecided ? CheckOutcome::undecided : CheckOutcome::passed;
+}
+
+Check not_judged(const std::string& why, const std::string& file) {
+    return {"every pair is judged", CheckOutcome::undecided, "not judged", why, file};
+}
+
 std::string junit_xml(const Checks& checks) {
     const std::string numbers =
         attribute("tests", std::to_string(checks.list.size())) +

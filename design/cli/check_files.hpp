@@ -8,6 +8,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -26,6 +27,12 @@ struct Check {
     std::string message;  ///< with numbers and units
     std::string file;     ///< that it is about; empty: none
 };
+
+/// Of a pair of bodies; "contact" is not judged.
+CheckOutcome to_check(core::clearance::PairStatus status);
+
+/// That not every pair was judged, or not to the end, and why.
+Check not_judged(const std::string& why, const std::string& file);
 
 /// Where it goes; empty: nowhere.
 struct CheckFiles {

@@ -97,10 +97,11 @@ private:
 
 /// What reading a command line comes to.
 struct ParseOutcome {
-    bool run = false;     ///< a command was given, and all that it needs
-    int exit_code = 0;    ///< if not: 0 where help or the version was asked for
-    std::string message;  ///< if not: what is wrong, or the help or version that was asked for
-    std::string command;  ///< if not: the one that was given; empty: none
+    bool run = false;             ///< a command was given, and all that it needs
+    int exit_code = 0;            ///< if not: 0 where help or the version was asked for
+    std::string message;          ///< if not: what is wrong, or the help or version that was asked for
+    std::string command;          ///< if not: the one that was given; empty: none
+    std::string no_command = {};  ///< then: the word in a command's place; empty: none
 };
 
 /// The program's own command line.

@@ -42,13 +42,12 @@ CheckFiles check_files_in(const std::vector<NamedFile>& named) {
 }
 
 // "fettle optmise x": says what was probably meant.
-std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands, int argc, char** argv) {
+std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands) {
     const std::string help = parsed.command.empty() ? "fettle --help" : "fettle " + parsed.command + " --help";
-    const std::string otherwise = parsed.message + "; see " + help, word = argc > 1 ? argv[1] : "";
-    if (!parsed.command.empty() || word.empty() || word[0] == '-') return otherwise;
+    if (parsed.no_command.empty()) return parsed.message + "; see " + help;
     std::vector<std::string_view> known;
     for (const Command& command : commands) known.push_back(command.line.name());
-    return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
+    return "there is no command \"" + parsed.no_command + "\"; " + core::files::did_you_mean(parsed.no_command, known);
 }
 
 // As it can be typed again: words that a shell would take apart or change are quoted.
@@ -107,7 +106,9 @@ int finish(const CheckFiles& files, const std::string& command, int verdict, Con
         return console.exit_code(verdict);
     }
     const int before = console.exit_code(verdict);
-    if (console.checks().empty())
+    const bool only_remarks = std::all_of(console.checks().begin(), console.checks().end(),
+                                          [](const Check& check) { return check.outcome == CheckOutcome::remarked; });
+    if (only_remarks)
         console.found(
             {command, checks_of(command, before, console).verdict, command, "ended with exit code " + std::to_string(before), ""});
     console.unwritten(write_check_files(files, checks_of(command, before, console)));
@@ -201,8 +202,7 @@ int run(int argc, char** argv) {
     const ParseOutcome parsed = line.parse(argc, argv);
     if (!parsed.run) {
         if (parsed.exit_code != 0)
-            return refuse_usage(argc, argv, parsed.command.empty() ? "fettle" : parsed.command,
-                                usage_message(parsed, commands, argc, argv));
+            return refuse_usage(argc, argv, parsed.command.empty() ? "fettle" : parsed.command, usage_message(parsed, commands));
         Console console({asks_for_json(argc, argv), false, {}});  // --help, --version
         console.print(parsed.message);
         return console.exit_code(exit_done);
