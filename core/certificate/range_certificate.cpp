@@ -142,6 +142,12 @@ std::vector<std::array<int, 2>> uncovered_pairs(const RangeCertificate& certific
 }
 
 base::Errors write_range_certificate(const std::filesystem::path& path, const RangeCertificate& certificate) {
+    files::FilesTogether files;
+    base::Errors errors = add_certificate(files, path, certificate);
+    return errors.empty() ? files.take_names() : errors;
+}
+
+base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const RangeCertificate& certificate) {
     JsonWriter out;
     out.text = "{";
     write_number(out, "fettle_range_certificate", certificate.version);
@@ -162,7 +168,7 @@ base::Errors write_range_certificate(const std::filesystem::path& path, const Ra
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_range_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
-    return files::write_file_atomically(path, out.text);
+    return files.add(path, out.text);
 }
 
 base::Result<RangeCertificate> read_range_certificate(const std::filesystem::path& path) {

@@ -101,6 +101,21 @@ const char* to_string(PairStatus status) {
     return "unknown";
 }
 
+const char* words(Solids solids) {
+    switch (solids) {
+        case Solids::disjoint:
+            return "disjoint solids";
+        case Solids::not_closed:
+            return "disjoint solids cannot be verified: not closed";
+        case Solids::unverified:
+            return "one may lie inside the other: not closed";
+        case Solids::overlap:
+        case Solids::unproven:
+            break;
+    }
+    return "not proven to be apart";
+}
+
 const char* why_not_apart(Solids solids) {
     if (solids == Solids::unverified)
         return "whether one lies inside the other cannot be verified: a mesh is not closed, and the other is within what would close it, "

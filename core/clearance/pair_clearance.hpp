@@ -27,6 +27,9 @@ enum class PairStatus {
 };
 const char* to_string(PairStatus status);
 
+/// What is known of the two solids, for people: "disjoint solids".
+const char* words(Solids solids);
+
 /// Of solids that are not certificate::are_apart, though their surfaces are: why not, and what helps.
 const char* why_not_apart(Solids solids);
 

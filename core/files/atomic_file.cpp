@@ -39,12 +39,6 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 
 std::string by_handle(int file) { return "/proc/self/fd/" + std::to_string(file); }
 
-bool is_pipe_or_device(const fs::path& path) {
-    std::error_code code;
-    const fs::file_status status = fs::status(path, code);
-    return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
-
 // A file without a name in the folder of `path`, which can be given one: its handle, -1 if there can be none.
 int open_unnamed(const fs::path& path) {
 #ifdef O_TMPFILE
@@ -89,6 +83,17 @@ void flush_folder(const fs::path& folder) {
     ::close(handle);
 }
 
+// A name of an open file: /dev/stdout, /dev/fd/3, /proc/self/fd/3.
+bool names_open_file(const fs::path& path) {
+    std::error_code code;
+    for (fs::path at = path; fs::is_symlink(fs::symlink_status(at, code)); at = folder_of(at) / fs::read_symlink(at, code)) {
+        const fs::path folder = fs::canonical(folder_of(at), code);
+        if (code) return false;
+        if (folder.filename() == "fd" && *++folder.begin() == "proc") return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 int write_all(int file, std::string_view& left) {
@@ -110,6 +115,13 @@ fs::path free_name(const fs::path& path) {
     }
 }
 
+bool is_written_directly(const fs::path& path) {
+    std::error_code code;
+    const fs::file_status status = fs::status(path, code);
+    if (!fs::exists(status) || fs::is_directory(status)) return false;
+    return !fs::is_regular_file(status) || names_open_file(path);
+}
+
 NewFile::NewFile(fs::path path) : path_(std::move(path)) {
     std::error_code code;
     fs::create_directories(folder_of(path_), code);
@@ -117,9 +129,9 @@ NewFile::NewFile(fs::path path) : path_(std::move(path)) {
         errors_ = failure(folder_of(path_), "the folder cannot be made", code.value());
     } else if (fs::is_directory(path_, code)) {
         fail(unwritten, EISDIR);  // known before a set of files takes its names
-    } else if (is_pipe_or_device(path_)) {
+    } else if (is_written_directly(path_)) {
         directly_ = true;
-        file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+        file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
         if (file_ < 0) fail(unwritten, errno);
     } else if (file_ = open_unnamed(path_); file_ < 0) {
         file_ = open_beside(path_, temporary_);

@@ -19,9 +19,13 @@
 
 namespace fettle::core::files {
 
+/// Does something stand at `path` that is no file or folder (a pipe, a device), or a name that the system gives to an open file
+/// (/dev/stdout, /dev/fd/3)? It is written to, never replaced or taken away.
+bool is_written_directly(const std::filesystem::path& path);
+
 /// A file that is written beside its name, front to back. Its folder is made if it is not there; permissions are those of a new file.
 /// Until it is finished it has no name at all, where the file system can do that: a program that is killed leaves nothing of it.
-/// What stands in the name's place and is no file (a pipe, a device) is written to directly.
+/// What is_written_directly() is written to as it goes.
 class NewFile {
 public:
     explicit NewFile(std::filesystem::path path);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 
 namespace fettle::core::files {
 namespace {
@@ -81,6 +82,13 @@ bool has_top_level_key(const std::filesystem::path& path, std::string_view key) 
         if (!finder.take({block.data(), static_cast<std::size_t>(file.gcount())})) return finder.found();
     }
     return false;
+}
+
+std::string misspelt_key(const JsonNode& object, const std::vector<std::string_view>& formats) {
+    if (!object.is_object()) return {};
+    for (const auto& [key, value] : object.members())
+        if (const auto meant = nearest_word(key, formats)) return "; did you mean `" + *meant + "`, where `" + key + "` stands?";
+    return {};
 }
 
 bool is_version(const JsonNode& node, int version) {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace fettle::core::files {
 
@@ -13,6 +15,10 @@ class JsonNode;
 /// Has the file's outermost object this key? Reads up to where it stands. False for what cannot be read or is no object; of a file that is
 /// not JSON the answer may be either, for its reader to say what is wrong. Contract: a key without characters that JSON escapes.
 bool has_top_level_key(const std::filesystem::path& path, std::string_view key);
+
+/// Of an object that has none of the keys that say a format: "; did you mean `fettle_scene`, where `fetle_scene` stands?". Empty: none of
+/// its keys is near to one.
+std::string misspelt_key(const JsonNode& object, const std::vector<std::string_view>& formats);
 
 /// Is the value of such a key the version that is read here? Otherwise the node fails, with what is.
 bool is_version(const JsonNode& node, int version);

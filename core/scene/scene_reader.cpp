@@ -123,7 +123,8 @@ base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptio
         const bool design = root.is_object() && root["fettle_design"].exists();
         return base::Error{design ? ErrorCode::inconsistent : ErrorCode::missing_key, root.where(),
                            design ? "this is a design, not a scene; the scene is the file that its `scene` names"
-                                  : "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there"};
+                                  : "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there" +
+                                        files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
     }
     return SceneReader(document, options).read();
 }

@@ -25,6 +25,7 @@ Json pair_json(const PairClearance& pair, const std::vector<std::string>& names)
     json["lower"] = pair.lower;
     json["upper"] = pair.upper;
     json["status"] = core::clearance::to_string(pair.status);
+    json["clash"] = pair.is_clash();
     json["time"] = pair.witness.time;
     json["point_a"] = vector_json(pair.witness.point_a);
     json["point_b"] = vector_json(pair.witness.point_b);

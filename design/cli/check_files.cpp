@@ -13,6 +13,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 
 namespace fettle::design::cli {
@@ -81,7 +82,11 @@ Json result_of(const Check& check) {
     result["message"] = {{"text", check.name + ": " + check.message}};
     if (!check.file.empty())
         result["locations"] = Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(check.file)}}}}}}});
-    result["partialFingerprints"] = {{"check/v1", rule_id(check.rule) + ":" + check.name}};  // the same finding in the next run
+    // The same finding in the next run. Of one file there can be several warnings and faults, which their messages tell apart; those of a
+    // requirement have numbers that change with every design.
+    const bool is_told_by_message = check.outcome == CheckOutcome::remarked || check.outcome == CheckOutcome::fault;
+    const std::string more = is_told_by_message ? ":" + core::files::hash_of(check.message) : "";
+    result["partialFingerprints"] = {{"check/v1", rule_id(check.rule) + ":" + check.name + more}};
     return result;
 }
 
@@ -104,11 +109,9 @@ std::string cell(const std::string& text) {
 // The escapes of GitHub's workflow commands.
 std::string escaped(const std::string& text, bool is_property) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : core::base::shown(text)) {
         if (c == '%') {
             out += "%25";
-        } else if (c == '\r') {
-            out += "%0D";
         } else if (c == '\n') {
             out += "%0A";
         } else if (is_property && c == ':') {
@@ -129,6 +132,16 @@ bool is_job_summary(const std::string& file) {
 }
 
 }  // namespace
+
+CheckOutcome to_check(core::clearance::PairStatus status) {
+    using core::clearance::PairStatus;
+    if (status == PairStatus::violated) return CheckOutcome::failed;
+    return status == PairStatus::undecided ? CheckOutcome::undecided : CheckOutcome::passed;
+}
+
+Check not_judged(const std::string& why, const std::string& file) {
+    return {"every pair is judged", CheckOutcome::undecided, "not judged", why, file};
+}
 
 std::string junit_xml(const Checks& checks) {
     const std::string numbers =
@@ -195,30 +208,33 @@ std::string annotation_lines(const Checks& checks) {
     return text;
 }
 
-Errors prepare_check_files(const CheckFiles& files) {
-    for (const std::string& file : {files.junit, files.sarif, files.markdown}) {
-        if (file.empty()) continue;
-        if (Errors errors = try_output_file(file); !errors.empty()) return errors;
-        std::error_code ignored;
-        if (!is_job_summary(file)) fs::remove(file, ignored);
+Errors prepare_check_files(CheckFiles& files) {
+    Errors errors;
+    for (std::string* file : {&files.junit, &files.sarif, &files.markdown}) {
+        if (file->empty()) continue;
+        if (const Errors found = try_output_file(*file); !found.empty()) {
+            errors.insert(errors.end(), found.begin(), found.end());
+            file->clear();
+        } else if (file == &files.markdown && is_job_summary(*file)) {
+            if (const Result<std::string> there = core::files::read_file(*file)) files.summary_before = *there;
+        } else if (!core::files::is_written_directly(*file)) {
+            std::error_code ignored;
+            fs::remove(*file, ignored);
+        }
     }
-    return {};
+    return errors;
 }
 
 Errors write_check_files(const CheckFiles& files, const Checks& checks) {
     Errors errors;
     const auto write = [&](const std::string& file, const std::string& text) {
         if (file.empty()) return;
-        std::string before;
-        if (is_job_summary(file))
-            if (const Result<std::string> there = core::files::read_file(file)) before = *there;
-        const Errors found = core::files::write_file_atomically(file, before + text);
+        const Errors found = core::files::write_file_atomically(file, text);
         errors.insert(errors.end(), found.begin(), found.end());
     };
     write(files.junit, junit_xml(checks));
     write(files.sarif, sarif_json(checks));
-    write(files.markdown, markdown_text(checks));
-    if (files.annotations) std::fputs(annotation_lines(checks).c_str(), stderr);
+    write(files.markdown, files.summary_before + markdown_text(checks));
     return errors;
 }
 

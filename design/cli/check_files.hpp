@@ -8,6 +8,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -27,10 +28,17 @@ struct Check {
     std::string file;     ///< that it is about; empty: none
 };
 
+/// Of a pair of bodies; "contact" is not judged.
+CheckOutcome to_check(core::clearance::PairStatus status);
+
+/// That not every pair was judged, or not to the end, and why.
+Check not_judged(const std::string& why, const std::string& file);
+
 /// Where it goes; empty: nowhere.
 struct CheckFiles {
     std::string junit, sarif, markdown;
-    bool annotations = false;  ///< lines for GitHub Actions on stderr
+    bool annotations = false;    ///< lines for GitHub Actions on stderr
+    std::string summary_before;  ///< where Markdown goes to GitHub's job summary: what others have written there
 
     bool wanted() const { return annotations || !(junit.empty() && sarif.empty() && markdown.empty()); }
 };
@@ -50,10 +58,11 @@ std::string markdown_text(const Checks& checks);
 /// "::error file=...,title=...::..." for each finding.
 std::string annotation_lines(const Checks& checks);
 
-/// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind.
-[[nodiscard]] Errors prepare_check_files(const CheckFiles& files);
+/// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind. `files` keeps
+/// those that can be. Contract: none of them is read by the command (named_files.hpp).
+[[nodiscard]] Errors prepare_check_files(CheckFiles& files);
 
-/// Writes what is asked for. GitHub's job summary, where Markdown is to go there, is added to.
+/// Writes the files that are asked for; can be called again. GitHub's job summary, where Markdown is to go there, is added to.
 [[nodiscard]] Errors write_check_files(const CheckFiles& files, const Checks& checks);
 
 }  // namespace fettle::design::cli

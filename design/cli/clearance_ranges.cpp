@@ -287,7 +287,7 @@ std::string ranges_text(const RangeReport& report, const Model& model, const Joi
                           std::isfinite(least.upper) ? lengths.fixed(least.upper, Towards::up).c_str() : "-",
                           console.coloured(formatted("%-16s", finding_word(least)), least.status == PairStatus::clear).c_str());
         text += "  " + combination(ranges, least, lengths);
-        if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
+        if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
         text += (row.change.word.empty() ? "" : "  " + row.change.word) + "\n";
     }
     int told = 0;
@@ -313,24 +313,24 @@ std::vector<Check> range_checks(const RangeReport& report, const JointRanges& ra
     std::vector<Check> checks;
     for (const RangeRow& row : report.rows) {
         const RangeClearance& least = row.least;
-        Check check{row.spec.a.name + ":" + row.spec.b.name, CheckOutcome::passed, finding_word(least), "", file};
-        if (least.status == PairStatus::violated) check.outcome = CheckOutcome::failed;
-        if (least.status == PairStatus::undecided) check.outcome = CheckOutcome::undecided;
+        Check check{row.spec.a.name + ":" + row.spec.b.name, to_check(least.status), finding_word(least), "", file};
         check.message = "at least " + lengths.fixed(least.lower, Towards::down) + " " + unit + " apart over all positions of the joints";
         if (!row.spec.required_by.empty()) check.message += formatted("; required %.6g ", least.minimum / lengths.metres()) + unit;
         check.message += "; worst at " + combination(ranges, least, lengths);
         if (least.status == PairStatus::undecided) check.message += "; undecided: " + least.reason;
         checks.push_back(std::move(check));
     }
-    if (!report.message.empty()) checks.push_back({"every pair is judged", CheckOutcome::undecided, "not judged", report.message, file});
+    if (!report.message.empty()) checks.push_back(not_judged(report.message, file));
     return checks;
 }
 
 Errors write_range_proof(const RangeQuestion& question, core::certificate::RangeCertificate& certificate, const LoadedModel& loaded) {
     certificate.source = name_from_certificate(question.certificate, question.path);
-    if (Errors errors = core::certificate::write_range_certificate(question.certificate, certificate); !errors.empty()) return errors;
-    return core::records::write_trajectory(certificate_trajectory(question.certificate), core::clearance::as_assembled(loaded.model),
-                                           loaded.model, loaded.scene_path);
+    core::files::FilesTogether files;
+    Errors errors = core::records::add_trajectory(files, certificate_trajectory(question.certificate),
+                                                  core::clearance::as_assembled(loaded.model), loaded.model, loaded.scene_path);
+    if (errors.empty()) errors = core::certificate::add_certificate(files, question.certificate, certificate);
+    return errors.empty() ? files.take_names() : errors;
 }
 
 }  // namespace
@@ -341,7 +341,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
             {{ErrorCode::unsupported, question.path, "a trajectory has no joints: --ranges wants a scene or design"}});
     const Result<LoadedModel> loaded = load_model(question.path, common, false);
     if (!loaded) return console.input_errors(loaded.errors());
-    tell_warnings(console, loaded->warnings);
+    tell_warnings(console, loaded->warnings, question.path);
     Result<JointRanges> ranges = core::clearance::joint_ranges(loaded->model);
     if (!ranges) {
         Errors errors = ranges.errors();
@@ -373,6 +373,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
         console.unwritten(core::files::write_file_atomically(question.csv, table));  // the verdict is told all the same
     }
     Json json = ranges_json(report, loaded->model, *ranges);
+    if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     std::string text = ranges_text(report, loaded->model, *ranges, question.explain, console);
     Errors no_proof;
     if (!question.certificate.empty()) no_proof = write_range_proof(question, certificate, *loaded);

@@ -210,6 +210,14 @@ void sort(std::vector<ReportedPair>& pairs) {
     pairs = std::move(sorted);
 }
 
+// Where every two bodies are of one group, or joined by a joint.
+const char* why_none_is_apart(const core::model::Model& model) {
+    const auto is_grouped = [&](const core::model::Body& body) { return body.group >= 0 && body.group == model.bodies.front().group; };
+    if (std::all_of(model.bodies.begin(), model.bodies.end(), is_grouped)) return "all bodies are of one group";
+    const bool has_groups = std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.group >= 0; });
+    return has_groups ? "the bodies of every pair are of one group, or a joint joins them" : "a joint joins the bodies of every pair";
+}
+
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
     std::string message;
     if (stopped) message = "interrupted: what was not looked at is undecided";
@@ -220,7 +228,7 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
                    (subject.model.bodies.size() < 2 ? "there are no two bodies"
                     : !selection.ignored.empty()    ? "every pair is ignored"
                     : !selection.left_out.empty()   ? "no pair may collide in this motion; name pairs with --pairs"
-                                                    : "all bodies are of one group");
+                                                    : why_none_is_apart(subject.model));
     return message;
 }
 
@@ -313,6 +321,7 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["left_out"] = report.left_out;
     json["uncovered"] = report.uncovered;
     json["notes"] = subject.notes;
+    if (!subject.warnings.empty()) json["warnings"] = subject.warnings;
     if (!report.message.empty()) json["message"] = report.message;
     if (report.baseline) json["baseline"] = report.baseline->json();
     return json;

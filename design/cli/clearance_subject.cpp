@@ -76,8 +76,7 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
     if (cut > 1e-6) {
         subject.notes.push_back(
             formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
-                      "goes round an "
-                      "axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
+                      "goes round an axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
                       read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, answers::unit_name(unit_length).c_str()));
     }
     return {};
@@ -196,7 +195,8 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     Subject subject;
     Result<LoadedModel> loaded = meshes ? loaded_meshes(paths, options.unit, common, subject) : load_model(options.path, common, false);
     if (!loaded) return loaded.errors();
-    tell_warnings(console, loaded->warnings);
+    tell_warnings(console, loaded->warnings, options.path);
+    subject.warnings = std::move(loaded->warnings);
     subject.model = std::move(loaded->model);
     subject.scene_path = loaded->scene_path;
     const auto& bodies = subject.model.bodies;

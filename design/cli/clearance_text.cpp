@@ -75,7 +75,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           least.is_bounded ? lengths.up(least.upper).c_str() : "not proven", console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
         if (least.touch) text += "  " + touched(pair, lengths);
-        if (least.solids == core::clearance::Solids::not_closed) text += "  disjoint solids cannot be verified: not closed";
+        if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
         text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
     }
     return text;
@@ -174,10 +174,12 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     return text + "\n";
 }
 
-CheckOutcome check_outcome(core::clearance::PairStatus status) {
-    using core::clearance::PairStatus;
-    if (status == PairStatus::violated) return CheckOutcome::failed;
-    return status == PairStatus::undecided ? CheckOutcome::undecided : CheckOutcome::passed;
+// What is proven of the distance.
+std::string bounds_of(const PairClearance& pair, const Lengths& lengths) {
+    if (pair.is_far) return "at least twice as far apart as is required";
+    if (!pair.is_bounded) return "no bound is proven" + (pair.reason.empty() ? "" : ": " + pair.reason);
+    return "at least " + lengths.down(pair.lower) + " " + lengths.unit() + " apart, at most " + lengths.up(pair.upper) + " " +
+           lengths.unit();
 }
 
 // Of meshes, the file of that name; else what was judged.
@@ -240,21 +242,19 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
     std::vector<Check> checks;
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
-        Check check{pair_name(pair), check_outcome(least.status), to_string(pair.finding), "",
+        Check check{pair_name(pair), to_check(least.status), to_string(pair.finding), bounds_of(least, lengths),
                     file_of_part(subject, pair.spec.a.name, file)};
-        check.message =
-            least.is_far ? "at least twice as far apart as is required"
-                         : "at least " + lengths.down(least.lower) + " " + unit + " apart, at most " + lengths.up(least.upper) + " " + unit;
         if (!pair.spec.required_by.empty()) check.message += "; required " + lengths.plain(least.minimum) + " " + unit + " per side";
         if (pair.finding == Finding::clash) check.message = "the parts share material; " + check.message;
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
-        if (pair.finding == Finding::undecided && !least.reason.empty()) check.message += "; undecided: " + least.reason;
-        if (subject.motion() && !least.is_far)
+        if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
+            check.message += "; undecided: " + least.reason;
+        if (subject.motion() && !least.is_far && least.is_bounded)
             check.message += formatted(", at %.6g s", least.is_clash() ? least.clash_time : least.witness.time);
         if (!pair.change.word.empty()) check.message += " (" + pair.change.word + ")";
         checks.push_back(std::move(check));
     }
-    if (!report.message.empty()) checks.push_back({"every pair is judged", CheckOutcome::undecided, "not judged", report.message, file});
+    if (!report.message.empty()) checks.push_back(not_judged(report.message, file));
     return checks;
 }
 

@@ -114,7 +114,7 @@ std::string unexpected(const CLI::App& program, const CLI::App* command) {
     }
     const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with("-"); });
     if (option == words.end()) {
-        if (command == nullptr) return "\"" + words.front() + "\" is one word too many";
+        if (command == nullptr) return "\"" + words.front() + "\" is no command";
         const std::string taken = places.empty() ? "no file" : joined_names(places);
         return "\"" + words.front() + "\" is one word too many: `" + command->get_name() + "` takes " + taken + " and options";
     }
@@ -270,6 +270,14 @@ const std::string& CommandLine::name() const { return app_->get_name(); }
 
 bool CommandLine::is_chosen() const { return app_->parsed(); }
 
+std::vector<GivenValue> CommandLine::given() const {
+    std::vector<GivenValue> given;
+    for (const CLI::Option* option : static_cast<const CLI::App*>(app_)->get_options())
+        for (const std::string& value : option->results())
+            given.push_back({option->get_positional() ? option->get_name(true) : option->get_name(), value, option->get_positional()});
+    return given;
+}
+
 ProgramLine::ProgramLine(const std::string& name, const std::string& description) : app_(std::make_unique<CLI::App>(description, name)) {
     app_->require_subcommand(1);
 }
@@ -289,7 +297,11 @@ ParseOutcome ProgramLine::parse(int argc, char** argv) {
         }
         const std::vector<CLI::App*> chosen = app_->get_subcommands();
         const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
-        return {false, error.get_exit_code(), fault_of(error, *app_, command), command == nullptr ? "" : command->get_name()};
+        ParseOutcome fault{false, error.get_exit_code(), fault_of(error, *app_, command), command == nullptr ? "" : command->get_name()};
+        const std::vector<std::string> words = app_->remaining(true);
+        const auto word = std::find_if(words.begin(), words.end(), [](const std::string& each) { return !each.starts_with("-"); });
+        if (command == nullptr && word != words.end()) fault.no_command = *word;
+        return fault;
     }
     return {true, 0, {}, {}};
 }

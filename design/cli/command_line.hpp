@@ -54,6 +54,13 @@ struct CommandFacts {
     std::vector<CommandFacts> commands;
 };
 
+/// An option that was given, with one of its values.
+struct GivenValue {
+    std::string option;  ///< "--out"; of what is told by its place "FILE"
+    std::string value;
+    bool by_place = false;
+};
+
 /// The options of the program, or of one of its commands. A copy speaks of the same.
 class CommandLine {
 public:
@@ -81,6 +88,8 @@ public:
     CommandFacts facts() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;
+    /// After parsing: its own options that were given, with all their values.
+    std::vector<GivenValue> given() const;
 
 private:
     CLI::App* app_;
@@ -88,10 +97,11 @@ private:
 
 /// What reading a command line comes to.
 struct ParseOutcome {
-    bool run = false;     ///< a command was given, and all that it needs
-    int exit_code = 0;    ///< if not: 0 where help or the version was asked for
-    std::string message;  ///< if not: what is wrong, or the help or version that was asked for
-    std::string command;  ///< if not: the one that was given; empty: none
+    bool run = false;             ///< a command was given, and all that it needs
+    int exit_code = 0;            ///< if not: 0 where help or the version was asked for
+    std::string message;          ///< if not: what is wrong, or the help or version that was asked for
+    std::string command;          ///< if not: the one that was given; empty: none
+    std::string no_command = {};  ///< then: the word in a command's place; empty: none
 };
 
 /// The program's own command line.

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -96,12 +97,30 @@ void tell(const Error& error) {
     std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
 }
 
+// "a.json" of "a.json#/bodies/0", "a.json:3:7" and "a.json: /bodies/0"; empty where it is about no file: "command line", "--minimum".
+std::string file_of_place(const std::string& where) {
+    const auto is_file = [](const std::string& name) {
+        std::error_code ignored;
+        return std::filesystem::is_regular_file(name, ignored);
+    };
+    for (std::size_t end = where.size(); end > 0; --end) {
+        if (end < where.size() && where[end] != '#' && where[end] != ':') continue;
+        if (std::string name = where.substr(0, end); is_file(name)) return name;
+    }
+    return {};
+}
+
 bool no_color() {
     const char* value = std::getenv("NO_COLOR");
     return value != nullptr && *value != '\0';
 }
 
 }  // namespace
+
+struct Console::Answer {
+    Json json;
+    std::string text;
+};
 
 Console::Console(const ConsoleOptions& options) : options_(options) {
     terminal_ = ::isatty(STDERR_FILENO) != 0;
@@ -195,6 +214,15 @@ void Console::print(const std::string& text) { put(for_terminal(text)); }
 
 void Console::result(const Json& json, const std::string& text) {
     end_progress();
+    if (!options_.holds_answer) return tell_answer(json, text);
+    held_ = std::make_shared<const Answer>(options_.json ? Answer{json, {}} : Answer{{}, text});
+}
+
+void Console::give_answer() {
+    if (const auto answer = std::exchange(held_, nullptr)) tell_answer(answer->json, answer->text);
+}
+
+void Console::tell_answer(const Json& json, const std::string& text) {
     if (!options_.json) return print(text);
     if (unwritten_.empty()) return put(dumped(json) + "\n");
     Json with_faults = json;
@@ -205,13 +233,18 @@ void Console::result(const Json& json, const std::string& text) {
 void Console::unwritten(const Errors& errors) {
     if (!errors.empty()) end_progress();
     for (const Error& error : errors) tell(error);
+    found_faults(errors);
     unwritten_.insert(unwritten_.end(), errors.begin(), errors.end());
+}
+
+void Console::found_faults(const Errors& errors) {
+    for (const Error& error : errors)
+        found({error.where, CheckOutcome::fault, to_string(error.code), error.message, file_of_place(error.where)});
 }
 
 int Console::input_errors(const Errors& errors) {
     end_progress();
-    for (const Error& error : errors)
-        found({error.where, CheckOutcome::fault, to_string(error.code), error.message, error.where.substr(0, error.where.find('#'))});
+    found_faults(errors);
     if (options_.json) {
         result({{"status", "error"}, {"errors", errors_json(errors)}}, "");
     } else {

@@ -30,7 +30,8 @@ enum ExitCode {
 struct ConsoleOptions {
     bool json = false;
     bool quiet = false;
-    std::string log;  ///< file that gets narration and progress too, line by line; empty: none
+    std::string log;            ///< file that gets narration and progress too, line by line; empty: none
+    bool holds_answer = false;  ///< until give_answer(): files are written before, and the answer tells if they cannot be
 };
 
 class Console {
@@ -47,6 +48,8 @@ public:
 
     /// The command's answer: the object with --json, else the text. What could not be written by then stands in it, as `unwritten`.
     void result(const nlohmann::ordered_json& json, const std::string& text);
+    /// The one that is held, if there is one.
+    void give_answer();
 
     /// Text alone, as that of --help.
     void print(const std::string& text);
@@ -54,8 +57,9 @@ public:
     /// Files that the answer should have left and did not: told on stderr and in the answer, which is given all the same.
     void unwritten(const Errors& errors);
 
-    /// What the program ends with: `verdict`, or exit_bad_input where the answer, the log or a file could not be written.
-    int exit_code(int verdict) const { return unwritten_.empty() ? verdict : static_cast<int>(exit_bad_input); }
+    /// What the program ends with: `verdict`, or exit_bad_input where the answer, the log or a file could not be written. A fault of ours
+    /// stays one.
+    int exit_code(int verdict) const { return unwritten_.empty() || verdict == exit_internal ? verdict : static_cast<int>(exit_bad_input); }
 
     /// Errors in the input. With --json: {"status": "error", "errors": [{code, where, message}]} on stdout; else lines on stderr.
     /// @return exit_bad_input
@@ -74,6 +78,9 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    struct Answer;
+    void found_faults(const Errors& errors);
+    void tell_answer(const nlohmann::ordered_json& json, const std::string& text);
     void log(const std::string& line);
     void log_failed();
     void put(const std::string& text);
@@ -82,6 +89,7 @@ private:
 
     ConsoleOptions options_;
     std::vector<Check> checks_;
+    std::shared_ptr<const Answer> held_;
     std::shared_ptr<std::FILE> log_;
     Clock::time_point begun_ = Clock::now();
     Errors unwritten_;

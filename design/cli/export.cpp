@@ -172,7 +172,9 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
     if (!shown) return console.input_errors(shown.errors());
     const Result<Plan> plan = plan_of(options, shown->stem);
     if (!plan) return console.input_errors(plan.errors());
-    if (const Errors errors = try_output_folder(plan->folder); !errors.empty()) return console.input_errors(errors);
+    Errors unwritable = try_output_folder(plan->folder);
+    for (Error& error : unwritable) error.where = options.to;
+    if (!unwritable.empty()) return console.input_errors(unwritable);
     exports::ExportOptions how;
     const auto& arrangements = exports::arrangement_names();
     const std::string arrange = options.separate() ? "parts" : options.arrange;

@@ -365,10 +365,10 @@ CheckReport run_check(const DesignProblem& problem, const VectorX& values, const
 int run_gradient(const GradientArguments& options, const CommonOptions& common, Console& console) {
     Result<reading::DesignFile> read = open_design(options.path, common);
     if (!read) return console.input_errors(read.errors());
-    tell_warnings(console, read->warnings);
+    tell_warnings(console, read->warnings, options.path);
     const Result<DesignProblem> problem = DesignProblem::create(std::move(read->design));
     if (!problem) return console.input_errors(problem.errors());
-    tell_warnings(console, problem->warnings());
+    tell_warnings(console, problem->warnings(), options.path);
     const Design& design = problem->design();
     const VectorX values = description::values_of(design.parameters);
     problem::EvaluateOptions evaluate;

@@ -58,7 +58,8 @@ Errors strict_faults(const std::string& scene_path, const CommonOptions& common)
     options.strict_meshes = true;
     const Result<core::scene::Scene> scene = core::scene::read_scene(scene_path, options);
     if (!scene) return scene.errors();
-    return core::model::check_scene(*scene, true).errors;
+    const core::model::SceneCheck check = core::model::check_scene(*scene, true);
+    return check.errors.empty() ? as_errors(check.warnings, scene_path) : check.errors;
 }
 
 Result<LoadedModel> load_design(const std::string& path, const CommonOptions& common) {
@@ -128,6 +129,7 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
     if (!loaded) return loaded.errors();
     const auto& more = loaded->model.warnings;
     loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
+    if (common.strict && !loaded->warnings.empty()) return as_errors(loaded->warnings, path);
     return loaded;
 }
 
@@ -160,8 +162,17 @@ std::filesystem::path file_of_certificate(const std::string& certificate, const 
     return std::filesystem::path(certificate).parent_path() / name;  // a whole path stays as it is
 }
 
-void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) console.narrate("warning: " + warning);
+void tell_warnings(Console& console, const std::vector<std::string>& warnings, const std::string& file) {
+    for (const std::string& warning : warnings) {
+        console.narrate("warning: " + warning);
+        console.found({file.empty() ? "the input" : file, CheckOutcome::remarked, "warning", warning, file});
+    }
+}
+
+Errors as_errors(const std::vector<std::string>& warnings, const std::string& file) {
+    Errors errors;
+    for (const std::string& warning : warnings) errors.push_back({ErrorCode::inconsistent, file, warning});
+    return errors;
 }
 
 }  // namespace fettle::design::cli

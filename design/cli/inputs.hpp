@@ -31,15 +31,18 @@ struct LoadedModel {
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
 /// A design, for commands that take nothing else. Errors: a file that is something else by its name and first character is told with what
-/// is read instead; with --strict also faults of its meshes.
+/// is read instead; with --strict also faults of its meshes, and what is doubted of its scene.
 Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common);
 
 /// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
-/// what is read instead.
+/// what is read instead; with --strict its warnings too.
 /// @param check_start  false: a scene whose bodies intersect at the start is taken all the same.
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start = true);
 
-/// Same, with the warnings told.
-void tell_warnings(Console& console, const std::vector<std::string>& warnings);
+/// What --strict makes of warnings.
+Errors as_errors(const std::vector<std::string>& warnings, const std::string& file);
+
+/// On stderr, and as remarks among the checks, about `file` if there is one.
+void tell_warnings(Console& console, const std::vector<std::string>& warnings, const std::string& file = {});
 
 }  // namespace fettle::design::cli

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
@@ -11,6 +13,8 @@
 #include "fettle/core/base/shared_library.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/named_files.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/program_memory.hpp"
 #include "fettle/design/cli/session.hpp"
@@ -28,14 +32,22 @@ bool asks_for_json(int argc, char** argv) {
     return false;
 }
 
+CheckFiles check_files_in(const std::vector<NamedFile>& named) {
+    CheckFiles files;
+    for (const auto& [option, file, is_written] : named) {
+        if (!is_written) continue;
+        (option == "--junit" ? files.junit : option == "--sarif" ? files.sarif : files.markdown) = file;
+    }
+    return files;
+}
+
 // "fettle optmise x": says what was probably meant.
-std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands, int argc, char** argv) {
+std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands) {
     const std::string help = parsed.command.empty() ? "fettle --help" : "fettle " + parsed.command + " --help";
-    const std::string otherwise = parsed.message + "; see " + help, word = argc > 1 ? argv[1] : "";
-    if (!parsed.command.empty() || word.empty() || word[0] == '-') return otherwise;
+    if (parsed.no_command.empty()) return parsed.message + "; see " + help;
     std::vector<std::string_view> known;
     for (const Command& command : commands) known.push_back(command.line.name());
-    return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
+    return "there is no command \"" + parsed.no_command + "\"; " + core::files::did_you_mean(parsed.no_command, known);
 }
 
 // As it can be typed again: words that a shell would take apart or change are quoted.
@@ -75,21 +87,70 @@ void add_check_options(CommandLine program, CheckFiles& files) {
     program.flag("--annotations", files.annotations, "Tell what was found on stderr as GitHub Actions shows it beside the files");
 }
 
-// What was found, where it is wanted. Of a command that tells nothing of its own its end is told. @return the exit code
-int leave_check_files(const CheckFiles& files, const std::string& command, int exit_code, Console& console) {
-    if (!files.wanted()) return exit_code;
+Checks checks_of(const std::string& command, int exit_code, const Console& console) {
     const CheckOutcome outcomes[] = {CheckOutcome::passed, CheckOutcome::failed, CheckOutcome::undecided};
-    const CheckOutcome verdict = exit_code <= exit_undecided ? outcomes[exit_code] : CheckOutcome::fault;
-    if (console.checks().empty()) console.found({command, verdict, command, "ended with exit code " + std::to_string(exit_code), ""});
-    const Errors errors = write_check_files(files, {command, exit_code, verdict, console.checks()});
-    if (errors.empty()) return exit_code;
-    console.input_errors(errors);
-    return exit_code == exit_done ? static_cast<int>(exit_bad_input) : exit_code;
+    return {command, exit_code, exit_code <= exit_undecided ? outcomes[exit_code] : CheckOutcome::fault, console.checks()};
+}
+
+// Those that something else is, too, are not written.
+void keep_apart(CheckFiles& files, const Errors& twice) {
+    for (std::string* file : {&files.junit, &files.sarif, &files.markdown})
+        if (std::any_of(twice.begin(), twice.end(), [&](const Error& error) { return error.where == *file; })) file->clear();
+}
+
+// What was found, where it is wanted, then the answer, which tells what could not be written. Of a command that tells nothing of its own
+// its end is told. @return the exit code
+int finish(const CheckFiles& files, const std::string& command, int verdict, Console& console) {
+    if (!files.wanted()) {
+        console.give_answer();
+        return console.exit_code(verdict);
+    }
+    const int before = console.exit_code(verdict);
+    const bool only_remarks = std::all_of(console.checks().begin(), console.checks().end(),
+                                          [](const Check& check) { return check.outcome == CheckOutcome::remarked; });
+    if (only_remarks)
+        console.found(
+            {command, checks_of(command, before, console).verdict, command, "ended with exit code " + std::to_string(before), ""});
+    console.unwritten(write_check_files(files, checks_of(command, before, console)));
+    console.give_answer();
+    const Checks checks = checks_of(command, console.exit_code(verdict), console);
+    if (checks.exit_code != before) static_cast<void>(write_check_files(files, checks));  // no pass; what cannot be written is told
+    if (files.annotations) std::fputs(annotation_lines(checks).c_str(), stderr);
+    return checks.exit_code;
+}
+
+// Nothing is begun.
+int refuse(const CommonOptions& common, const std::string& command, const Errors& errors) {
+    Console console({common.json, false, {}, true});
+    return finish(common.check_files, command, console.input_errors(errors), console);
+}
+
+// Of a command line that cannot be read: the files that it may mean all the same must not stay as an earlier run left them.
+int refuse_usage(int argc, char** argv, const std::string& command, const std::string& message) {
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const std::vector<NamedFile> named = named_files_in(words, {"--junit", "--sarif", "--markdown"});
+    CommonOptions common;
+    common.json = asks_for_json(argc, argv);
+    common.check_files = check_files_in(named);
+    common.check_files.annotations = std::find(words.begin(), words.end(), "--annotations") != words.end();
+    keep_apart(common.check_files, named_twice(named));
+    static_cast<void>(prepare_check_files(common.check_files));  // the command line is what is wrong
+    return refuse(common, command, {{ErrorCode::unsupported, "command line", message}});
+}
+
+// Those that nothing else is are made ready to be written. @return what is wrong with the others
+Errors prepare(CommonOptions& common, const std::vector<NamedFile>& named) {
+    Errors errors = named_twice(named);
+    keep_apart(common.check_files, errors);
+    const auto add = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
+    add(prepare_check_files(common.check_files));
+    if (!common.log.empty() && errors.empty()) add(try_output_file(common.log));
+    return errors;
 }
 
 int run_command(const Command& command, Console& console) {
     try {
-        return console.exit_code(command.run(console));
+        return command.run(console);
     } catch (const core::base::MissingLibrary& missing) {
         return console.input_errors({{ErrorCode::file_not_found, "libraries", missing.what()}});
     } catch (const std::bad_alloc&) {
@@ -118,6 +179,14 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     return all;
 }
 
+void tell_missing_folders(const std::vector<std::string>& mesh_dirs, Console& console) {
+    std::vector<std::string> warnings;
+    std::error_code ignored;
+    for (const std::string& folder : mesh_dirs)
+        if (!std::filesystem::is_directory(folder, ignored)) warnings.push_back("--mesh-dir " + folder + ": there is no such folder");
+    tell_warnings(console, warnings);
+}
+
 int run(int argc, char** argv) {
     ProgramLine line("fettle", "fettle: tunes mechanisms of rigid parts under certified clearance");
     CommandLine program = line.options();
@@ -132,32 +201,28 @@ int run(int argc, char** argv) {
         "            3 bad input or usage, or output that cannot be written; 4 a fault of this program");
     const ParseOutcome parsed = line.parse(argc, argv);
     if (!parsed.run) {
-        Console console({asks_for_json(argc, argv), false, {}});
-        if (parsed.exit_code == 0) {  // --help, --version
-            console.print(parsed.message);
-            return console.exit_code(exit_done);
-        }
-        return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands, argc, argv)}});
+        if (parsed.exit_code != 0)
+            return refuse_usage(argc, argv, parsed.command.empty() ? "fettle" : parsed.command, usage_message(parsed, commands));
+        Console console({asks_for_json(argc, argv), false, {}});  // --help, --version
+        console.print(parsed.message);
+        return console.exit_code(exit_done);
     }
-    for (const Command& command : commands) {
-        if (!command.line.is_chosen() || !command.refused) continue;
-        if (const Errors errors = command.refused(); !errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
+    const auto command = std::find_if(commands.begin(), commands.end(), [](const Command& each) { return each.line.is_chosen(); });
+    if (command == commands.end()) return Console({common.json, false, {}}).internal_error("no command ran");
+    if (command->refused) {
+        if (const Errors errors = command->refused(); !errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
     }
-    if (!common.log.empty()) {
-        const Errors errors = try_output_file(common.log);
-        if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
-    }
-    if (const Errors errors = prepare_check_files(common.check_files); !errors.empty())
-        return Console({common.json, false, {}}).input_errors(errors);
-    Console console({common.json, common.quiet, common.log});
+    std::vector<GivenValue> given = program.given();
+    const std::vector<GivenValue> own = command->line.given();
+    given.insert(given.end(), own.begin(), own.end());
+    if (const Errors errors = prepare(common, named_files_of(command->line.name(), given)); !errors.empty())
+        return refuse(common, command->line.name(), errors);
+    Console console({common.json, common.quiet, common.log, common.check_files.wanted()});
     std::optional<core::base::ThreadLimit> limit;
     if (common.threads > 0) limit.emplace(common.threads);
     catch_interrupts();
-    for (const Command& command : commands) {
-        if (!command.line.is_chosen()) continue;
-        return leave_check_files(common.check_files, command.line.name(), run_command(command, console), console);
-    }
-    return console.internal_error("no command ran");
+    tell_missing_folders(common.mesh_dirs, console);
+    return finish(common.check_files, command->line.name(), run_command(*command, console), console);
 }
 
 }  // namespace

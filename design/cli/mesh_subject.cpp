@@ -145,6 +145,7 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
     subject.model = std::move(*model);
     const auto& more = subject.model.warnings;
     subject.warnings.insert(subject.warnings.end(), more.begin(), more.end());
+    if (common.strict && !subject.warnings.empty()) return as_errors(subject.warnings, paths.front());
     return subject;
 }
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/output_folder.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <system_error>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 
@@ -23,6 +28,15 @@ std::size_t stored_steps(const fs::path& file) {
     if (std::getline(stream, line) && !line.ends_with('}')) return std::numeric_limits<std::size_t>::max();
     while (std::getline(stream, line)) steps += line.starts_with("{\"nodes\"") ? 1 : 0;
     return steps;
+}
+
+// What somebody made, and a run reads; null: nothing of the kind.
+const char* kind_of_input(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return nullptr;
+    if (core::mesh_files::has_mesh_extension(file.string())) return "a mesh";
+    if (core::files::has_top_level_key(file, "fettle_design")) return "a design";
+    return core::files::has_top_level_key(file, "fettle_scene") ? "a scene" : nullptr;
 }
 
 }  // namespace
@@ -44,7 +58,15 @@ Errors try_run_folder(const fs::path& folder, const std::vector<std::string>& mo
 Errors try_output_file(const fs::path& file) {
     std::error_code ignored;
     if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unwritable, file.string(), "is a folder, a file is wanted"}};
-    return try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+    if (core::files::is_written_directly(file)) {
+        if (::access(file.c_str(), W_OK) == 0) return {};
+        return {{ErrorCode::file_unwritable, file.string(), "cannot be written to: " + std::generic_category().message(errno)}};
+    }
+    if (const char* kind = kind_of_input(file); kind != nullptr)
+        return {{ErrorCode::inconsistent, file.string(), std::string("is ") + kind + ", which would be replaced; write elsewhere"}};
+    Errors errors = try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+    for (Error& error : errors) error.where = file.string();
+    return errors;
 }
 
 std::string name_for_longer_run(const fs::path& file, std::size_t steps) {

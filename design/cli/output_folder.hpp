@@ -20,7 +20,8 @@ namespace fettle::design::cli {
 /// @param more  names of files that this run writes beside what every run does.
 [[nodiscard]] Errors try_run_folder(const std::filesystem::path& folder, const std::vector<std::string>& more = {});
 
-/// The same of the folder of a file that is to be written; a folder in the file's place is a fault too.
+/// The same of a file that is to be written, by its folder, or by itself where a pipe or a device stands there. A folder in its place is a
+/// fault too, and so is a scene, a design or a mesh: nobody wants these replaced by a table or a log.
 [[nodiscard]] Errors try_output_file(const std::filesystem::path& file);
 
 /// If `file` is a trajectory of more than `steps` steps: the name to keep it under when it is replaced, the first of trajectory.1.json,

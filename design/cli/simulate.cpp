@@ -97,11 +97,12 @@ Json balance_json(const core::stepper::Balance& b) {
                 {"angular_momentum_scale", b.angular_momentum_scale}};
 }
 
-void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, Json& json, Console& console) {
+void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, const std::string& file, Json& json,
+                 Console& console) {
     json["balance"] = balance_json(balance);
     const std::string warning = balance_warning(model, balance);
     if (warning.empty()) return;
-    console.narrate("warning: " + warning);
+    tell_warnings(console, {warning}, file);
     json["warnings"].push_back(warning);
 }
 
@@ -163,7 +164,7 @@ Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core
 Result<Simulation> read_earlier(const SimulateArguments& options, const core::model::Model& model, int steps, Console& console) {
     const auto stored = core::records::read_trajectory(options.earlier);
     if (!stored) return stored.errors();
-    tell_warnings(console, stored->warnings);
+    tell_warnings(console, stored->warnings, options.earlier);
     const std::size_t done = stored->trajectory.steps.size();
     if (steps >= 0 && static_cast<std::size_t>(steps) < done)
         return Error{ErrorCode::out_of_range, options.earlier,
@@ -261,7 +262,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!options.poses.empty())
         console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));
     const std::optional<core::stepper::Balance>& balance = simulation.balance;
-    if (balance) add_balance(model, *balance, json, console);
+    if (balance) add_balance(model, *balance, options.path, json, console);
     bool written = false;
     if (writes_out) {
         json["out"] = options.out;
@@ -280,8 +281,6 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
                      report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path});
     const CheckOutcome checked = outcome.exit_code == exit_done ? CheckOutcome::passed : CheckOutcome::undecided;
     console.found({"the motion is simulated and proven", checked, outcome.status, outcome.message, options.path});
-    for (const std::string& warning : run.loaded.warnings)
-        console.found({options.path, CheckOutcome::remarked, "warning", warning, options.path});
     console.result(json, told);
     return outcome.exit_code;
 }
@@ -292,7 +291,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
     const core::model::Model& model = loaded->model;
-    tell_warnings(console, loaded->warnings);
+    tell_warnings(console, loaded->warnings, options.path);
     core::stepper::SimulationOptions simulate_options;
     simulate_options.steps = options.steps >= 0  ? options.steps
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)

@@ -134,9 +134,8 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
     json["kind"] = kinds[static_cast<int>(kind)];
     json.update(verdict.facts);
     json["warnings"] = verdict.warnings;
-    tell_warnings(console, verdict.warnings);
+    tell_warnings(console, verdict.warnings, path);
     console.found({path, CheckOutcome::passed, "valid", std::string("a valid ") + kinds[static_cast<int>(kind)], path});
-    for (const std::string& warning : verdict.warnings) console.found({path, CheckOutcome::remarked, "warning", warning, path});
     const std::string doubts = verdict.warnings.empty() ? "" : ", with " + core::base::counted(verdict.warnings.size(), "warning");
     console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + doubts + "\n" + verdict.text);
     return exit_done;

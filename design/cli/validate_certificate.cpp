@@ -128,21 +128,43 @@ Json claims_json(const Checked& certificate, const Model& model, const std::opti
     return list;
 }
 
-std::string claims_text(const Json& claims, const Checked& certificate) {
+std::string claim_name(const Claim& pair, const Model& model) {
+    const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
+    return name(name_of(model, pair.a)) + ":" + name(name_of(model, pair.b));
+}
+
+std::string claim_text(const Claim& pair, const RoundedLengths& lengths) {
+    return "at least " + lengths.fixed(pair.lower, Towards::down) + ", at most " + lengths.fixed(pair.upper, Towards::up) + " " +
+           lengths.unit() + "; " + core::clearance::words(pair.solids);
+}
+
+std::string claims_text(const Checked& certificate, const Model& model, const std::optional<double>& minimum) {
     const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
     std::string text;
-    const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
-    for (const Json& pair : claims) {
-        const std::string solids = pair["solids"];
-        text += "  " + name(pair["a"]) + ":" + name(pair["b"]) + "  at least " + lengths.fixed(pair["lower"], Towards::down) +
-                ", at most " + lengths.fixed(pair["upper"], Towards::up) + " " + lengths.unit() + "; " +
-                (solids == "disjoint"       ? "disjoint solids"
-                 : solids == "not closed"   ? "disjoint solids cannot be verified: not closed"
-                 : solids == "not verified" ? "one may lie inside the other: not closed"
-                                            : "not proven to be apart") +
-                (pair.contains("status") ? ": " + pair["status"].get<std::string>() : "") + "\n";
-    }
+    for (const Claim& pair : certificate.claims)
+        text += "  " + claim_name(pair, model) + "  " + claim_text(pair, lengths) +
+                (minimum ? std::string(": ") + verdict(pair, *minimum) : "") + "\n";
     return text;
+}
+
+const char* const of_path_alone = "of the path as stored, between whose nodes joints may have the bodies elsewhere";
+
+// Against the minimum; without one, what is proven of the two bodies.
+Check check_of(const Claim& pair, const std::string& name, const RoundedLengths& lengths, const std::optional<double>& minimum,
+               const std::string& file) {
+    Check check{name, CheckOutcome::passed, "proven", claim_text(pair, lengths), file};
+    if (minimum) {
+        check.rule = verdict(pair, *minimum);
+        check.outcome = check.rule == "violated" ? CheckOutcome::failed
+                        : check.rule == "clear"  ? CheckOutcome::passed
+                                                 : CheckOutcome::undecided;
+        check.message += "; required " + formatted("%.6g ", *minimum / lengths.metres()) + lengths.unit();
+    } else if (!pair.is_of_bodies || !are_apart(pair.solids)) {
+        check.rule = "undecided";
+        check.outcome = CheckOutcome::undecided;
+    }
+    if (!pair.is_of_bodies) check.message += std::string("; ") + of_path_alone;
+    return check;
 }
 
 // Are the source's meshes still those of the certificate? Nothing to tell if they are.
@@ -273,8 +295,7 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
     if (is_doubtful)
         answer.json["notes"].push_back(
             "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is proven "
-            "where "
-            "joints hold them; make it anew");
+            "where joints hold them; make it anew");
     if (!accepted) return;
     answer.code = exit_done;
     answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
@@ -283,7 +304,7 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
                              : certificate.motion && certificate.is_of_path ? "over the motion, of the path as stored"
                              : certificate.motion                           ? "over the motion"
                                                                             : "as assembled") +
-                   claims_text(answer.json["pairs"], certificate);
+                   claims_text(certificate, stored.model, minimum);
     if (!uncovered.empty()) answer.text += "not covered: " + uncovered + "\n";
     for (const Json& note : answer.json["notes"]) answer.text += "note: " + note.get<std::string>() + "\n";
     if (!minimum) return;
@@ -294,19 +315,18 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
     answer.code = worst == "violated" ? exit_violated : worst == "undecided" ? exit_undecided : exit_done;
 }
 
-// Each fault, or, of an accepted certificate, each pair against the minimum.
-void tell_checks(const Answer& answer, const std::string& file, const std::string& status, Console& console) {
-    for (const Json& fault : answer.faults)
-        console.found({fault["where"].get<std::string>(), CheckOutcome::failed, status, fault["message"].get<std::string>(), file});
-    if (!answer.faults.empty()) return;
-    console.found({file, CheckOutcome::passed, status, "every claim is proven", file});
-    for (const Json& pair : answer.json["pairs"]) {
-        const std::string judged = pair.contains("status") ? pair["status"].get<std::string>() : "clear";
-        const CheckOutcome outcome = judged == "violated"    ? CheckOutcome::failed
-                                     : judged == "undecided" ? CheckOutcome::undecided
-                                                             : CheckOutcome::passed;
-        console.found({pair["a"].get<std::string>() + ":" + pair["b"].get<std::string>(), outcome, judged, "", file});
-    }
+// Of an accepted certificate.
+void tell_claims(const Checked& certificate, const Model& model, const std::optional<double>& minimum, const std::string& file,
+                 Console& console) {
+    console.found({file, CheckOutcome::passed, "accepted", "every claim is proven", file});
+    const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
+    for (const Claim& pair : certificate.claims) console.found(check_of(pair, claim_name(pair, model), lengths, minimum, file));
+}
+
+void tell_remarks(const Json& json, const std::string& file, Console& console) {
+    const auto remark = [&](const std::string& text) { console.found({file, CheckOutcome::remarked, "note", text, file}); };
+    for (const Json& note : json.value("notes", Json::array())) remark(note.get<std::string>());
+    for (const Json& pair : json.value("uncovered", Json::array())) remark("not covered: " + pair.get<std::string>());
 }
 
 }  // namespace
@@ -326,7 +346,11 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     const std::string status = accepted ? "accepted" : answer.stale ? "stale" : "rejected";
     answer.json["status"] = status;
     answer.json["faults"] = answer.faults;
-    tell_checks(answer, question.path, status, console);
+    for (const Json& fault : answer.faults)
+        console.found(
+            {fault["where"].get<std::string>(), CheckOutcome::failed, status, fault["message"].get<std::string>(), question.path});
+    if (accepted) tell_claims(*certificate, stored->model, *minimum, question.path, console);
+    tell_remarks(answer.json, question.path, console);
     console.result(answer.json, question.path + ": " + console.coloured(status, accepted) + " for " + trajectory + "\n" + answer.text);
     return answer.code;
 }

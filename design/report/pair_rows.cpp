@@ -187,6 +187,7 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
         const auto a = pair.at("a").get<std::string>(), b = pair.at("b").get<std::string>();
         const Json witness = member(pair, "witness"), measured = member(pair, "measured");
         const StepRange range = k < steps.size() ? steps[k] : StepRange{};
+        const bool clashes = member(pair, "clash") == true;  // of an optimisation, whose pairs have no other finding
         const Json time = witness.is_object() ? member(witness, "time") : member(pair, "time");
         Json note = member(pair, "reason");
         if (note.is_null()) note = member(pair, "overlap");
@@ -202,7 +203,7 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
                         {"lower", millimetres(member(pair, "lower"))},
                         {"upper", millimetres(member(pair, "upper"))},
                         {"status", member(pair, "status")},
-                        {"finding", member(pair, "finding")},
+                        {"finding", clashes ? Json("clash") : member(pair, "finding")},
                         {"time", time},
                         {"point_a", millimetres(member(pair, "point_a"))},
                         {"point_b", millimetres(member(pair, "point_b"))},

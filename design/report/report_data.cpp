@@ -143,8 +143,6 @@ Json report_data(const ReportSource& source, const std::function<bool()>& should
     if (source.kind == ReportKind::optimise) add_optimisation(data, source);
     if (source.design && !source.history.empty()) data["history"] = search_curves(source.history, *source.design);
     if (source.motion) add_motion(data, source, should_stop);
-    for (const Json& row : data["requirements"])  // a clearance that no bound can meet: the bodies share material
-        if (row["pair"].is_number() && row["fault"].is_string()) data["pairs"].at(row["pair"].get<std::size_t>())["finding"] = "clash";
     if (!source.motion)  // their gaps have no picture
         for (Json& row : data["requirements"]) row["pair"] = Json();
     return data;

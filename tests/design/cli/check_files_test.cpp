@@ -2,8 +2,11 @@
 // What was found, as JUnit XML, SARIF, Markdown and annotations: the same verdict as the exit code, whatever stands in names.
 #include "fettle/design/cli/check_files.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -115,6 +118,7 @@ TEST_CASE("check files: names of any kind stand in all of them") {
     CHECK(annotations.find("::error file=a folder/ä%2Cb.stl,title=fettle clearance%3A a<b>") == 0);
     CHECK(annotations.find("::warning title=fettle clearance%3A two::100%25 open:%0Anot told\n") != std::string::npos);
     CHECK(annotations.find("three") == std::string::npos);
+    CHECK(annotations.find('\033') == std::string::npos);
 }
 
 TEST_CASE("check files: clearance of meshes, clear, too close and undecided") {
@@ -152,11 +156,94 @@ TEST_CASE("check files: other commands, faults, and what no pass may come of") {
     const Found tuned = found(folder, "optimise " + folder.design() + " --no-report --out " + folder.file("out"));
     CHECK(tuned.junit.find("clearance cube:wall over the motion") != std::string::npos);
     CHECK(found(folder, "draw " + scene + " --out " + folder.file("a.png")).answer.code == 0);  // by its exit code alone
-    // An earlier pass is gone before the work begins, and a file that cannot be written is an error.
-    folder.write("ci/junit.xml", "an earlier pass");
-    CHECK(run("clearance " + scene + " --nonsense --junit " + folder.file("ci/junit.xml")).code == 3);
     CHECK(run("validate " + scene + " --junit /proc/none/junit.xml").code == 3);
     CHECK(run("validate " + scene + " --junit " + folder.path.string()).code == 3);
+}
+
+TEST_CASE("check files: a fault before the work replaces an earlier pass") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json"), junit = folder.file("ci/junit.xml");
+    const std::vector<std::string> commands{
+        "clearance " + scene + " --nonsense --junit " + junit, "clearance --junit=" + junit + " " + scene + " --steps",
+        "clearence " + scene + " --junit " + junit, "validate " + scene + " --log /proc/none/log.txt --junit " + junit,
+        "validate " + scene + " --sarif /proc/none/a.sarif --junit " + junit};
+    for (const std::string& command : commands) {
+        folder.write("ci/junit.xml", "an earlier pass");
+        const Answer answer = run(command + " --json");
+        CAPTURE(command, answer.out);
+        CHECK(answer.code == 3);
+        CHECK(answer.json().at("status") == "error");
+        CHECK(contents(junit).find("<error") != std::string::npos);
+        CHECK(is_well_formed(contents(junit)));
+    }
+}
+
+TEST_CASE("check files: pipes and devices are written to, and stay") {
+    const DesignFolder folder;
+    const std::string validate = "validate " + folder.file("small.scene.json"), told = folder.file("told.md");
+    CHECK(run(validate + " --markdown /dev/fd/3 3>" + told).code == 0);
+    CHECK(contents(told).find("### fettle validate: passed") == 0);
+    const std::string pipe = folder.file("pipe");
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK(run(validate + " --junit " + pipe, false, "timeout 5 cat " + pipe + " >" + told + " & ").code == 0);
+    CHECK(std::filesystem::is_fifo(pipe));
+    std::filesystem::create_symlink("/dev/null", folder.path / "link");
+    CHECK(run(validate + " --sarif " + folder.file("link")).code == 0);
+    CHECK(std::filesystem::is_symlink(folder.path / "link"));
+    // One that takes nothing: one answer, which tells it, and no file that says all was well.
+    for (const char* option : {"--junit", "--sarif", "--markdown"}) {
+        const std::string other = std::string(option) == "--junit" ? " --markdown " : " --junit ";
+        const Answer full = run(validate + " --json " + option + " /dev/full" + other + told);
+        CAPTURE(option, full.out);
+        CHECK(full.code == 3);
+        REQUIRE(full.json().is_object());
+        CHECK(full.json().at("status") == "ok");
+        CHECK(full.json().at("unwritten").at(0).at("where") == "/dev/full");
+        CHECK(contents(told).find(other == " --junit " ? "<error type=\"file_unwritable\"" : "could not be checked") != std::string::npos);
+    }
+}
+
+TEST_CASE("check files: output that cannot be written is a fault in them") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json"), junit = folder.file("j.xml"), sarif = folder.file("a.sarif");
+    const std::string files = " --junit " + junit + " --sarif " + sarif;
+    CHECK(run("simulate " + scene + " --steps 20 --no-report --out " + folder.file("out") + files, false, "ulimit -f 8; ").code == 3);
+    CHECK(contents(junit).find("<error type=\"file_unwritable\"") != std::string::npos);
+    CHECK(Json::parse(contents(sarif)).at("runs")[0].at("invocations")[0].at("exitCode") == 3);
+    CHECK(run("validate " + scene + files + " >/dev/full").code == 3);  // known when the files are there
+    CHECK(contents(junit).find("standard output") != std::string::npos);
+    CHECK(contents(sarif).find("file_unwritable") != std::string::npos);
+}
+
+TEST_CASE("check files: no output takes the place of an input, nor of another output") {
+    const DesignFolder folder;
+    core::geometry::Mesh box = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01});
+    const std::string scene = folder.file("small.scene.json"), part = folder.write("part.stl", core::mesh_files::stl_bytes({{"a", &box}}));
+    const std::string poses = folder.write("poses.csv", "not read");
+    const std::vector<std::string> commands{
+        "validate " + scene + " --junit " + scene,
+        "validate " + scene + " --log " + folder.file("../") + folder.path.filename().string() + "/small.scene.json",
+        "validate " + folder.design() + " --sarif " + scene,  // which the design reads
+        "validate " + part + " --markdown " + part,
+        "validate " + scene + " --log " + part,
+        "clearance " + scene + " --csv " + scene,
+        "clearance " + scene + " --poses " + poses + " --csv " + poses,
+        "clearance " + scene + " --poses " + poses + " --junit " + poses,
+        "validate " + poses + " --nonsense --junit " + poses,
+        "validate " + scene + " --junit " + folder.file("x") + " --sarif " + folder.file("./x")};
+    const std::string before = contents(scene), mesh = contents(part);
+    for (const std::string& command : commands) {
+        const Answer answer = run(command, true);
+        CAPTURE(command, answer.out);
+        CHECK(answer.code == 3);
+        CHECK(contents(scene) == before);
+        CHECK(contents(part) == mesh);
+        CHECK(contents(poses) == "not read");
+    }
+    const Answer named = run("validate " + scene + " --junit " + scene, true);
+    CHECK(named.says("--junit"));
+    CHECK(named.says("FILE"));
+    CHECK(run("validate " + scene + " --junit /dev/null --sarif /dev/null --log /dev/null").code == 0);
 }
 
 TEST_CASE("check files: the summary of GitHub's job is added to") {

@@ -51,6 +51,31 @@ TEST_CASE("messages: options and words that are not taken name what was probably
     refused("", {"no command was given"});
     const Answer unknown = run("frobnicate", true);
     CHECK(unknown.says("there is no command \"frobnicate\"; there are new, "));
+    for (const char* before : {"", "--json ", "--quiet --threads 2 "}) {
+        const Answer misspelt = run(before + ("valdate " + crank), true);
+        CAPTURE(misspelt.out);
+        CHECK(misspelt.code == 3);
+        CHECK(misspelt.says("did you mean "));
+        CHECK(misspelt.says("validate"));
+    }
+}
+
+TEST_CASE("messages: a format's key that is misspelt, and folders that are not there") {
+    const DesignFolder folder;
+    const std::string scene = folder.write("a.scene.json", "{\"fetle_scene\": 1, \"units\": \"mm\"}");
+    refused("validate " + scene, {"did you mean `fettle_scene`, where `fetle_scene` stands?"});
+    const std::string design = folder.write("a.design.json", "{\"fettle_desing\": 1, \"scene\": \"a.scene.json\"}");
+    refused("validate " + design, {"did you mean `fettle_design`, where `fettle_desing` stands?"});
+    refused("optimise " + design, {"did you mean `fettle_design`, where `fettle_desing` stands?"});
+    const Answer nowhere = run("validate " + crank + " --mesh-dir " + folder.file("nosuch"), true);
+    CHECK(nowhere.code == 0);
+    CHECK(nowhere.says("nosuch: there is no such folder"));
+    // The file that was asked for is named, not its folder.
+    const std::string csv = folder.file("small.scene.json/x.csv");
+    refused("clearance " + crank + " --csv " + csv, {"error: " + csv});
+    refused("draw " + crank + " --out /proc/none/x.png", {"error: /proc/none/x.png"});
+    refused("export " + crank + " --to /proc/none/x.stl", {"error: /proc/none/x.stl"});
+    refused("validate " + crank + " --log /proc/none/x.txt", {"error: /proc/none/x.txt"});
 }
 
 TEST_CASE("messages: explore refuses the common options that it does not take, before any file is touched") {

@@ -526,6 +526,33 @@ TEST_CASE("report: an optimisation's has the design before and after, and the fo
     CHECK(notices.dump().find("has changed since") == std::string::npos);
 }
 
+TEST_CASE("report: of an optimisation, an interference is what is one, not what cannot be verified") {
+    const DesignFolder folder;
+    const auto data_with = [&](const std::string& last_triangle) {
+        folder.write("case.obj",
+                     "v -20 -20 -20\nv 20 -20 -20\nv -20 20 -20\nv 20 20 -20\nv -20 -20 20\nv 20 -20 20\nv -20 20 20\nv 20 20 20\n"
+                     "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\n" +
+                         last_triangle);
+        folder.write("cased.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+            {"name": "case", "type": "static", "mesh": "case.obj"},
+            {"name": "part", "type": "static", "density": 1000,
+             "shape": {"generator": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}]})");
+        folder.write("cased.design.json", R"({"fettle_design": 1, "scene": "cased.scene.json", "units": "mm",
+            "parameters": [{"name": "place", "value": 0, "lower": -1, "upper": 1, "moves": [{"body": "part", "position": [1, 0, 0]}]}],
+            "objective": [{"type": "mass", "bodies": ["part"]}],
+            "constraints": [{"type": "clearance", "a": "case", "b": "part", "minimum": 1}], "optimiser": {"max_evaluations": 1}})");
+        const auto tuned = run("optimise " + folder.file("cased.design.json") + " --json --out " + folder.file("cased"));
+        CAPTURE(last_triangle, tuned.out);
+        REQUIRE(std::filesystem::exists(folder.file("cased/report.html")));
+        const Json data = data_of(contents(folder.file("cased/report.html")));
+        CHECK(data["requirements"][0]["fault"].is_string());
+        CHECK(tuned.json().at("clearance").at("pairs")[0].at("clash") == (data["pairs"][0]["finding"] == "clash"));
+        return data;
+    };
+    CHECK(data_with("")["pairs"][0]["finding"] != "clash");  // the case is open: the part may lie in a room of it
+    CHECK(data_with("f 2 8 6\n")["pairs"][0]["finding"] == "clash");
+}
+
 TEST_CASE("a run that cannot begin leaves nothing of an earlier one's motion to be taken for its own") {
     const DesignFolder folder;
     const std::string out = folder.file("opt"), place = "\"name\": \"place\", \"value\": 3, \"lower\": -5, \"upper\": 20";

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// Files that a command line names: none that is read is written to, and none is written twice. Known before anything is read or written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/types.hpp"
+#include "fettle/design/cli/command_line.hpp"
+
+namespace fettle::design::cli {
+
+struct NamedFile {
+    std::string option;  ///< "--junit"; of what is told by its place "FILE"
+    std::string file;
+    bool is_written = false;
+};
+
+/// Of the options that were given, those that name files.
+std::vector<NamedFile> named_files_of(const std::string& command, const std::vector<GivenValue>& given);
+
+/// The same, of a command line that cannot be read: the words after `written`'s options; all others count as read.
+std::vector<NamedFile> named_files_in(const std::vector<std::string>& words, const std::vector<std::string>& written);
+
+/// Those that are written and named by another option too, by whatever path. Devices, pipes and folders are nobody's.
+/// Errors: inconsistent, with both options; `where` is the file as the one that would write it names it.
+Errors named_twice(const std::vector<NamedFile>& files);
+
+}  // namespace fettle::design::cli
