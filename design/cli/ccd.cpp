@@ -236,7 +236,7 @@ Command add_ccd(CommandLine& program) {
         "../mma_bool. JSON: one pair of moving rigid bodies. The truth is that of contact, whatever --minimum-separation; counts of "
         "misses\n"
         "and false alarms are null (-) where a file has none. One thread. Exit code 1 if a contact was missed, 0 otherwise.");
-    return {app, [options](Console& console) { return run_ccd(*options, console); }};
+    return {app, [options](Console& console) { return run_ccd(*options, console); }, {}, {{"QUERIES"}, {}}};
 }
 
 }  // namespace fettle::design::cli

@@ -308,11 +308,14 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
         "Example:  fettle clearance bracket.stl lid.stl --unit mm --minimum 0.3mm     exit code 1: closer than that\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
-    return {app, [options, &common](Console& console) {
+    return {app,
+            [options, &common](Console& console) {
                 options->subject.path = trajectory_in(options->files.front()).value_or(options->files.front());
                 options->subject.more.assign(options->files.begin() + 1, options->files.end());
                 return run_clearance(*options, common, console);
-            }};
+            },
+            {},
+            {{"FILE", "--poses", "--baseline"}, {"--csv", "--certificate"}}};
 }
 
 }  // namespace fettle::design::cli

@@ -266,6 +266,16 @@ CommandFacts CommandLine::facts() const {
     return facts;
 }
 
+std::vector<GivenValue> CommandLine::given() const {
+    std::vector<GivenValue> all;
+    for (const CLI::Option* option : static_cast<const CLI::App*>(app_)->get_options()) {
+        const OptionFacts facts = facts_of(*option);
+        if (facts.value != "TEXT") continue;
+        for (const std::string& value : option->results()) all.push_back({facts.names.back(), value});
+    }
+    return all;
+}
+
 const std::string& CommandLine::name() const { return app_->get_name(); }
 
 bool CommandLine::is_chosen() const { return app_->parsed(); }

@@ -54,6 +54,12 @@ struct CommandFacts {
     std::vector<CommandFacts> commands;
 };
 
+/// What was given for one option, or in one place.
+struct GivenValue {
+    std::string option;  ///< "--out", "FILE"
+    std::string value;
+};
+
 /// The options of the program, or of one of its commands. A copy speaks of the same.
 class CommandLine {
 public:
@@ -79,6 +85,8 @@ public:
     const std::string& name() const;
     /// Of this command and those below it, in the order in which they were added.
     CommandFacts facts() const;
+    /// After parsing: the texts that were given, in the order of the options; no flags, no numbers.
+    std::vector<GivenValue> given() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;
 

@@ -212,7 +212,10 @@ Command add_draw(CommandLine& program, const CommonOptions& common) {
     app.closing_words(
         "Example:  fettle draw examples/slider_crank/slider_crank.scene.json --out slider_crank.png\n"
         "          fettle draw out --worst --view top --out nearest.svg");
-    return {app, [options, &common](Console& console) { return run_draw(*options, common, console); }};
+    return {app,
+            [options, &common](Console& console) { return run_draw(*options, common, console); },
+            {},
+            {{"FILE", "--trajectory"}, {"--out"}}};
 }
 
 }  // namespace fettle::design::cli

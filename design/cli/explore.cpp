@@ -120,8 +120,10 @@ Command add_explore(CommandLine& program, const CommonOptions& common) {
     line.option("--dask", options->dask,
                 "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust");
     line.closing_words("Example:  fettle explore hinge.design.json --out sweep.jsonl --sweep pin_radius=10 --sweep wall=1.6:3:8");
-    return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); },
-            [&common] { return refused_options(common); }};
+    return {line,
+            [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); },
+            [&common] { return refused_options(common); },
+            {{"DESIGN"}, {"--out"}}};
 }
 
 }  // namespace fettle::design::cli

@@ -237,7 +237,10 @@ Command add_export(CommandLine& program, const CommonOptions& common) {
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
         "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
         "          fettle export SCENE --to parts --format stl --arrange separate --in-place        for a check by fettle clearance parts");
-    return {app, [options, &common](Console& console) { return run_export(*options, common, console); }};
+    return {app,
+            [options, &common](Console& console) { return run_export(*options, common, console); },
+            {},
+            {{"FILE", "--trajectory"}, {"--to"}}};
 }
 
 }  // namespace fettle::design::cli

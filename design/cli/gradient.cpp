@@ -412,7 +412,7 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");
-    return {app, [options, &common](Console& console) { return run_gradient(*options, common, console); }};
+    return {app, [options, &common](Console& console) { return run_gradient(*options, common, console); }, {}, {{"DESIGN"}, {}}};
 }
 
 }  // namespace fettle::design::cli

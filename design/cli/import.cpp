@@ -63,7 +63,7 @@ Command add_import(CommandLine& program, const CommonOptions& common) {
     app.option("--to", options->to, "Scene to write, X.scene.json; meshes go to X.meshes beside it").required();
     app.flag("--floating", options->floating, "The root link is free (default: it does not move)");
     app.closing_words("Example:  fettle import arm.urdf --to arm.scene.json && fettle simulate arm.scene.json --out out");
-    return {app, [options, &common](Console& console) { return run_import(*options, common, console); }};
+    return {app, [options, &common](Console& console) { return run_import(*options, common, console); }, {}, {{"FILE"}, {"--to"}}};
 }
 
 }  // namespace fettle::design::cli

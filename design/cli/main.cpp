@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/parallel.hpp"
@@ -12,6 +13,7 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/outputs_apart.hpp"
 #include "fettle/design/cli/program_memory.hpp"
 #include "fettle/design/cli/session.hpp"
 
@@ -140,8 +142,12 @@ int run(int argc, char** argv) {
         return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands, argc, argv)}});
     }
     for (const Command& command : commands) {
-        if (!command.line.is_chosen() || !command.refused) continue;
-        if (const Errors errors = command.refused(); !errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
+        if (!command.line.is_chosen()) continue;
+        std::vector<GivenValue> given = program.given();
+        for (GivenValue& value : command.line.given()) given.push_back(std::move(value));
+        Errors errors = command.refused ? command.refused() : Errors();
+        if (errors.empty()) errors = check_outputs_apart(command, given, common);
+        if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
     }
     if (!common.log.empty()) {
         const Errors errors = try_output_file(common.log);

@@ -187,7 +187,7 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     app.flag("--no-report", options->no_report, "No report.html");
     app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
     app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
-    return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }};
+    return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }, {}, {{"DESIGN"}, {}}};
 }
 
 }  // namespace fettle::design::cli

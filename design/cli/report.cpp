@@ -46,7 +46,7 @@ Command add_report(CommandLine& program, const CommonOptions& common) {
     app.option("DIR", options->source, "What optimise, simulate or clearance wrote with --out; or the file that explore wrote").required();
     app.option("--out", options->out, "File for it (default: report.html in DIR; of sweep.jsonl sweep.report.html)");
     app.closing_words("Examples:  fettle report out\n           fettle report sweep.jsonl");
-    return {app, [options, &common](Console& console) { return run_report(*options, common, console); }};
+    return {app, [options, &common](Console& console) { return run_report(*options, common, console); }, {}, {{"DIR"}, {"--out"}}};
 }
 
 }  // namespace fettle::design::cli

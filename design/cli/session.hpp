@@ -23,12 +23,19 @@ struct CommonOptions {
     bool allow_programs = false;  ///< parts of a scene may be made by the programs that it names
 };
 
+/// Which of a command's options name files, beside those of the program.
+struct FileOptions {
+    std::vector<std::string> reads;   ///< "FILE", "--poses": files, or folders of them
+    std::vector<std::string> writes;  ///< "--csv": files
+};
+
 /// A subcommand: adds itself to the program's options; `run` is called once the command line has been read, and returns the exit code.
 /// `refused`, if there is one, says which of the common options were given that it does not take, before any file is touched.
 struct Command {
     CommandLine line;
     std::function<int(Console&)> run;
     std::function<Errors()> refused = {};
+    FileOptions files = {};
 };
 
 Command add_clearance(CommandLine& program, const CommonOptions& common);

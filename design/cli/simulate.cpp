@@ -357,7 +357,10 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
         "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");
-    return {app, [options, &common](Console& console) { return run_simulate(*options, common, console); }};
+    return {app,
+            [options, &common](Console& console) { return run_simulate(*options, common, console); },
+            {},
+            {{"SCENE", "--continue"}, {"--poses"}}};
 }
 
 }  // namespace fettle::design::cli

@@ -157,7 +157,8 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
     app.closing_words(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");
-    return {app, [options, &common](Console& console) { return run_validate(*options, common, console); }};
+    return {
+        app, [options, &common](Console& console) { return run_validate(*options, common, console); }, {}, {{"FILE", "--trajectory"}, {}}};
 }
 
 }  // namespace fettle::design::cli

@@ -65,6 +65,39 @@ TEST_CASE("messages: explore refuses the common options that it does not take, b
     CHECK_FALSE(std::filesystem::exists(out));
 }
 
+TEST_CASE("messages: a file that is read is not written, and none is written twice") {
+    const DesignFolder folder;
+    const core::geometry::Mesh a = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01}), b = box_mesh({0.02, 0, 0}, {0.03, 0.01, 0.01});
+    const std::string scene = folder.file("small.scene.json"), design = folder.design();
+    const std::string mesh = folder.write("cad/a.stl", core::mesh_files::stl_bytes({{"a", &a}}));
+    const std::string meshes = folder.write("cad/b.stl", core::mesh_files::stl_bytes({{"b", &b}})) + " " + mesh + " --unit mm";
+    const std::string part =
+        folder.write("part.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [{"name": "a", "mesh": "cad/a.stl"}]})");
+    std::filesystem::create_symlink(scene, folder.path / "link.json");
+    const auto kept = [&](const std::string& arguments, const std::string& file, const std::vector<std::string>& words) {
+        const std::string before = contents(file);
+        refused(arguments, words);
+        CHECK(contents(file) == before);
+    };
+    for (const std::string option : {"--sarif", "--junit", "--log", "--markdown"}) {
+        kept("validate " + scene + " " + option + " " + scene, scene,
+             {option + ": " + scene + " is what FILE reads: it would be destroyed"});
+        kept("validate " + design + " " + option + " " + scene, scene, {option + ": " + scene + " is what FILE reads, named by " + design});
+        kept("validate " + part + " " + option + " " + mesh, mesh, {option + ": " + mesh + " is what FILE reads, named by " + part});
+    }
+    kept("clearance " + scene + " --csv " + folder.file("link.json"), scene, {"--csv: ", " is what FILE reads"});
+    kept("clearance " + scene + " --certificate " + folder.path.string() + "/./small.scene.json", scene, {"--certificate: "});
+    kept("clearance " + meshes + " --csv " + mesh, mesh, {"--csv: ", " is what FILE reads"});
+    kept("clearance " + folder.file("cad") + " --unit mm --log " + mesh, mesh, {" is what FILE reads, named by " + folder.file("cad")});
+    kept("simulate " + scene + " --steps 1 --poses " + scene, scene, {"--poses: ", " is what SCENE reads"});
+    kept("draw " + scene + " --out " + scene, scene, {"--out: ", " is what FILE reads"});
+    const std::string twice = folder.file("twice");
+    refused("clearance " + scene + " --csv " + twice + " --log " + folder.path.string() + "/./twice",
+            {"--csv: ", " is what --log writes too"});
+    CHECK_FALSE(std::filesystem::exists(twice));
+    CHECK(run("validate " + scene + " --log /dev/null --junit /dev/null").code == 0);  // takes what both write
+}
+
 TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
     for (const std::string option : {"--minimum", "--pairs", "--process", "--out", "--certificate"})
         refused("clearance " + crank + " " + option + " ''", {option + ": a value is wanted, found an empty text"});
