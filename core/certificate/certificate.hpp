@@ -37,6 +37,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/certificate/ideal_joints.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 
 namespace fettle::core::certificate {
 
@@ -124,6 +125,8 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 /// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
 /// others, which it writes `:`. Written whole or not at all.
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
+/// The same beside other files.
+[[nodiscard]] base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const Certificate& certificate);
 base::Result<Certificate> read_certificate(const std::filesystem::path& path);
 
 /// Is this file a certificate, as far as its keys tell? False for anything that cannot be read.

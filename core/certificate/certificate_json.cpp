@@ -177,7 +177,7 @@ PairCertificate read_pair(const JsonNode& node) {
 
 }  // namespace
 
-base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
+base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const Certificate& certificate) {
     JsonWriter out;
     out.text = "{";
     out.key("fettle_certificate");
@@ -209,7 +209,13 @@ base::Errors write_certificate(const std::filesystem::path& path, const Certific
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
-    return files::write_file_atomically(path, out.text);
+    return files.add(path, out.text);
+}
+
+base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
+    files::FilesTogether file;
+    base::Errors errors = add_certificate(file, path, certificate);
+    return errors.empty() ? file.take_names() : errors;
 }
 
 base::Result<Certificate> read_certificate(const std::filesystem::path& path) {

@@ -141,7 +141,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const RangeCertificate& certific
     return uncovered;
 }
 
-base::Errors write_range_certificate(const std::filesystem::path& path, const RangeCertificate& certificate) {
+base::Errors add_range_certificate(files::FilesTogether& files, const std::filesystem::path& path, const RangeCertificate& certificate) {
     JsonWriter out;
     out.text = "{";
     write_number(out, "fettle_range_certificate", certificate.version);
@@ -162,7 +162,13 @@ base::Errors write_range_certificate(const std::filesystem::path& path, const Ra
     out.key("pairs");
     out.list(certificate.pairs.size(), ",\n ", [&](std::size_t i) { write_range_pair(out, certificate.pairs[i]); });
     out.text += "}\n";
-    return files::write_file_atomically(path, out.text);
+    return files.add(path, out.text);
+}
+
+base::Errors write_range_certificate(const std::filesystem::path& path, const RangeCertificate& certificate) {
+    files::FilesTogether file;
+    base::Errors errors = add_range_certificate(file, path, certificate);
+    return errors.empty() ? file.take_names() : errors;
 }
 
 base::Result<RangeCertificate> read_range_certificate(const std::filesystem::path& path) {

@@ -56,6 +56,9 @@ std::vector<std::array<int, 2>> uncovered_pairs(const RangeCertificate& certific
 ///   pairs [{a, b, lower, upper, solids, at, point_a {kind, index, weight}, point_b, splits, normals}], `normals` flat
 /// Written whole or not at all.
 [[nodiscard]] base::Errors write_range_certificate(const std::filesystem::path& path, const RangeCertificate& certificate);
+/// The same beside other files.
+[[nodiscard]] base::Errors add_range_certificate(files::FilesTogether& files, const std::filesystem::path& path,
+                                                 const RangeCertificate& certificate);
 base::Result<RangeCertificate> read_range_certificate(const std::filesystem::path& path);
 
 /// Is this file such a certificate, as far as its keys tell? False for anything that cannot be read.

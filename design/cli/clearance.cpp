@@ -6,6 +6,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -140,9 +141,22 @@ Errors write_proof(const std::string& path, core::certificate::Certificate& cert
         if (!named) return named.errors();
         certificate.exports = std::move(*named);
     }
-    const Errors errors = core::certificate::write_certificate(path, certificate);
-    if (!errors.empty() || subject.source == SubjectSource::trajectory) return errors;
-    return core::records::write_trajectory(certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
+    core::files::FilesTogether files;
+    Errors errors;
+    if (subject.source != SubjectSource::trajectory)
+        errors = core::records::add_trajectory(files, certificate_trajectory(path), subject.trajectory, subject.model, subject.scene_path);
+    if (errors.empty()) errors = core::certificate::add_certificate(files, path, certificate);
+    return errors.empty() ? files.take_names() : errors;
+}
+
+// Where nothing is proven an earlier certificate, and the trajectory that was written beside it, do not stay to be taken for this run's.
+Errors take_proof_away(const std::string& path, const Subject& subject) {
+    if (!core::certificate::is_certificate_file(path) && !core::certificate::is_range_certificate_file(path)) return {};
+    core::files::FilesTogether files;
+    files.take_away(path);
+    const std::string trajectory = certificate_trajectory(path);
+    if (subject.source != SubjectSource::trajectory && core::records::is_trajectory_file(trajectory)) files.take_away(trajectory);
+    return files.take_names();
 }
 
 Json proof_json(const ClearanceArguments& options, const Subject& subject) {
@@ -224,6 +238,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (!options.csv.empty()) console.unwritten(core::files::write_file_atomically(options.csv, margins_csv(report, *subject, unit)));
     const bool is_proof = !options.certificate.empty() && !certificate.pairs.empty();  // there is something to certify
     if (is_proof) errors = write_proof(options.certificate, certificate, *subject);
+    if (!is_proof && !options.certificate.empty()) errors = take_proof_away(options.certificate, *subject);
     console.unwritten(errors);
     Json json = report_json(report, *subject);
     std::string text = report_text(report, *subject, unit, options.explain, console);

@@ -328,9 +328,11 @@ std::vector<Check> range_checks(const RangeReport& report, const JointRanges& ra
 
 Errors write_range_proof(const RangeQuestion& question, core::certificate::RangeCertificate& certificate, const LoadedModel& loaded) {
     certificate.source = name_from_certificate(question.certificate, question.path);
-    if (Errors errors = core::certificate::write_range_certificate(question.certificate, certificate); !errors.empty()) return errors;
-    return core::records::write_trajectory(certificate_trajectory(question.certificate), core::clearance::as_assembled(loaded.model),
-                                           loaded.model, loaded.scene_path);
+    core::files::FilesTogether files;
+    Errors errors = core::records::add_trajectory(files, certificate_trajectory(question.certificate),
+                                                  core::clearance::as_assembled(loaded.model), loaded.model, loaded.scene_path);
+    if (errors.empty()) errors = core::certificate::add_range_certificate(files, question.certificate, certificate);
+    return errors.empty() ? files.take_names() : errors;
 }
 
 }  // namespace
