@@ -101,10 +101,10 @@ std::string cell(const std::string& text) {
     return out;
 }
 
-// The escapes of GitHub's workflow commands.
+// The escapes of GitHub's workflow commands; control characters are shown.
 std::string escaped(const std::string& text, bool is_property) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : core::base::shown(text)) {
         if (c == '%') {
             out += "%25";
         } else if (c == '\r') {

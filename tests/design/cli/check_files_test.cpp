@@ -115,6 +115,8 @@ TEST_CASE("check files: names of any kind stand in all of them") {
     CHECK(annotations.find("::error file=a folder/ä%2Cb.stl,title=fettle clearance%3A a<b>") == 0);
     CHECK(annotations.find("::warning title=fettle clearance%3A two::100%25 open:%0Anot told\n") != std::string::npos);
     CHECK(annotations.find("three") == std::string::npos);
+    CHECK(annotations.find("|d\\x1b[31m%0Ae::") != std::string::npos);
+    for (const std::string& text : {junit, markdown, annotations}) CHECK(text.find('\033') == std::string::npos);
 }
 
 TEST_CASE("check files: clearance of meshes, clear, too close and undecided") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the program says to people: each line must be understood by one who has read nothing else, with place, finding and remedy.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
@@ -183,6 +184,16 @@ TEST_CASE("requirements in words") {
     CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 to 0.304 mm");
     measured.upper = measured.lower;
     CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 mm");
+    // What is printed is proven: 3e-4 is not, of either.
+    measured.lower = measured.upper = 2.99999999e-4;
+    CHECK(description::proven_text(measured, {.lower = 3e-4, .unit = 1e-3}, "mm") == "0.2999999 mm");
+    CHECK(description::proven_bound_text(2.99999999e-4, description::Towards::down, 1e-3, "mm") == "0.2999999 mm");
+    measured.lower = measured.upper = 3.00000001e-4;
+    CHECK(description::proven_text(measured, {.upper = 3e-4, .unit = 1e-3}, "mm") == "0.3000001 mm");
+    measured.lower = 2.9999996e-4;
+    measured.upper = 3.04000004e-4;
+    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.2999999 to 0.3040001 mm");
+    CHECK(description::proven_bound_text(-INFINITY, description::Towards::down, 1e-3, "mm") == "-inf mm");
     CHECK(core::base::unit_name(core::base::Dimension::area, 1e-3 * 1e-3) == "mm^2");
     CHECK(core::base::unit_name(core::base::Dimension::number, 1).empty());
 }
