@@ -5,6 +5,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/fixture_reader.hpp"
 #include "fettle/core/scene/mechanism_reader.hpp"
 #include "fettle/core/scene/scene_body.hpp"
@@ -116,14 +117,24 @@ private:
     MaterialDensities densities_;
 };
 
+// Of a key that says what the file is, with a slip in it.
+std::string meant_by(const files::JsonNode& root) {
+    if (!root.is_object()) return {};
+    for (const auto& [key, member] : root.members())
+        if (const auto meant = files::nearest_word(key, {"fettle_scene", "fettle_design", "rigid_body_problem"}))
+            return "; `" + key + "` is: did you mean `" + *meant + "`?";
+    return {};
+}
+
 base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptions& options) {
     const files::JsonNode root = document.root();
     if (is_fixture(root)) return read_fixture(document, options);
     if (!root.is_object() || !root["fettle_scene"].exists()) {
         const bool design = root.is_object() && root["fettle_design"].exists();
         return base::Error{design ? ErrorCode::inconsistent : ErrorCode::missing_key, root.where(),
-                           design ? "this is a design, not a scene; the scene is the file that its `scene` names"
-                                  : "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there"};
+                           design
+                               ? "this is a design, not a scene; the scene is the file that its `scene` names"
+                               : "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there" + meant_by(root)};
     }
     return SceneReader(document, options).read();
 }

@@ -107,8 +107,6 @@ std::string escaped(const std::string& text, bool is_property) {
     for (const char c : core::base::shown(text)) {
         if (c == '%') {
             out += "%25";
-        } else if (c == '\r') {
-            out += "%0D";
         } else if (c == '\n') {
             out += "%0A";
         } else if (is_property && c == ':') {

@@ -210,6 +210,14 @@ void sort(std::vector<ReportedPair>& pairs) {
     pairs = std::move(sorted);
 }
 
+// Of bodies of which no pair is looked at unless it is named.
+std::string why_no_pair_is_judged(const core::model::Model& model) {
+    const bool is_joined = !model.mechanism.not_colliding.empty();
+    const bool is_grouped = std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.group >= 0; });
+    if (is_joined && is_grouped) return "of each pair the bodies are of one group, or a joint joins them; name pairs with --pairs";
+    return is_joined ? "a joint joins the bodies of each pair; name pairs with --pairs" : "all bodies are of one group";
+}
+
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
     std::string message;
     if (stopped) message = "interrupted: what was not looked at is undecided";
@@ -220,7 +228,7 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
                    (subject.model.bodies.size() < 2 ? "there are no two bodies"
                     : !selection.ignored.empty()    ? "every pair is ignored"
                     : !selection.left_out.empty()   ? "no pair may collide in this motion; name pairs with --pairs"
-                                                    : "all bodies are of one group");
+                                                    : why_no_pair_is_judged(subject.model));
     return message;
 }
 

@@ -75,9 +75,8 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
     const double cut = read->largest_cut, unit_length = subject.model.length_unit;
     if (cut > 1e-6) {
         subject.notes.push_back(
-            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
-                      "goes round an "
-                      "axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
+            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one "
+                      "that goes round an axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
                       read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, answers::unit_name(unit_length).c_str()));
     }
     return {};

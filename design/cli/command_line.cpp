@@ -295,13 +295,16 @@ ParseOutcome ProgramLine::parse(int argc, char** argv) {
         if (error.get_exit_code() == 0) {  // --help, --version
             std::ostringstream text, none;
             app_->exit(error, text, none);
-            return {false, 0, text.str(), {}};
+            return {false, 0, text.str(), {}, {}};
         }
         const std::vector<CLI::App*> chosen = app_->get_subcommands();
         const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
-        return {false, error.get_exit_code(), fault_of(error, *app_, command), command == nullptr ? "" : command->get_name()};
+        const std::vector<std::string> words = app_->remaining();
+        const bool is_word = command == nullptr && !words.empty() && !words.front().starts_with('-');
+        return {false, error.get_exit_code(), fault_of(error, *app_, command), command == nullptr ? "" : command->get_name(),
+                is_word ? words.front() : ""};
     }
-    return {true, 0, {}, {}};
+    return {true, 0, {}, {}, {}};
 }
 
 }  // namespace fettle::design::cli

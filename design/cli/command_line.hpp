@@ -100,6 +100,7 @@ struct ParseOutcome {
     int exit_code = 0;    ///< if not: 0 where help or the version was asked for
     std::string message;  ///< if not: what is wrong, or the help or version that was asked for
     std::string command;  ///< if not: the one that was given; empty: none
+    std::string word;     ///< if none was: the first word where it should stand
 };
 
 /// The program's own command line.

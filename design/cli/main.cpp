@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -31,13 +33,12 @@ bool asks_for_json(int argc, char** argv) {
 }
 
 // "fettle optmise x": says what was probably meant.
-std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands, int argc, char** argv) {
+std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>& commands) {
     const std::string help = parsed.command.empty() ? "fettle --help" : "fettle " + parsed.command + " --help";
-    const std::string otherwise = parsed.message + "; see " + help, word = argc > 1 ? argv[1] : "";
-    if (!parsed.command.empty() || word.empty() || word[0] == '-') return otherwise;
+    if (parsed.word.empty()) return parsed.message + "; see " + help;
     std::vector<std::string_view> known;
     for (const Command& command : commands) known.push_back(command.line.name());
-    return "there is no command \"" + word + "\"; " + core::files::did_you_mean(word, known);
+    return "there is no command \"" + parsed.word + "\"; " + core::files::did_you_mean(parsed.word, known);
 }
 
 // As it can be typed again: words that a shell would take apart or change are quoted.
@@ -75,6 +76,16 @@ void add_check_options(CommandLine program, CheckFiles& files) {
     program.option("--sarif", files.sarif, "Write what was found as SARIF 2.1.0 too, for code scanning");
     program.option("--markdown", files.markdown, "Write what was found as a table in Markdown too (of GitHub's job summary: added to it)");
     program.flag("--annotations", files.annotations, "Tell what was found on stderr as GitHub Actions shows it beside the files");
+}
+
+// Folders to look in that are none would be passed over without a word.
+Errors check_mesh_dirs(const std::vector<std::string>& folders) {
+    Errors errors;
+    std::error_code ignored;
+    for (const std::string& folder : folders)
+        if (!std::filesystem::is_directory(folder, ignored))
+            errors.push_back({ErrorCode::file_not_found, "--mesh-dir", "there is no folder " + folder});
+    return errors;
 }
 
 // What was found, where it is wanted. Of a command that tells nothing of its own its end is told. @return the exit code
@@ -139,13 +150,14 @@ int run(int argc, char** argv) {
             console.print(parsed.message);
             return console.exit_code(exit_done);
         }
-        return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands, argc, argv)}});
+        return console.input_errors({{ErrorCode::unsupported, "command line", usage_message(parsed, commands)}});
     }
     for (const Command& command : commands) {
         if (!command.line.is_chosen()) continue;
         std::vector<GivenValue> given = program.given();
         for (GivenValue& value : command.line.given()) given.push_back(std::move(value));
         Errors errors = command.refused ? command.refused() : Errors();
+        if (errors.empty()) errors = check_mesh_dirs(common.mesh_dirs);
         if (errors.empty()) errors = check_outputs_apart(command, given, common);
         if (!errors.empty()) return Console({common.json, false, {}}).input_errors(errors);
     }

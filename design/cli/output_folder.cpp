@@ -44,7 +44,9 @@ Errors try_run_folder(const fs::path& folder, const std::vector<std::string>& mo
 Errors try_output_file(const fs::path& file) {
     std::error_code ignored;
     if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unwritable, file.string(), "is a folder, a file is wanted"}};
-    return try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+    Errors errors = try_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+    for (Error& error : errors) error = {error.code, file.string(), "in " + error.where + ": " + error.message};
+    return errors;
 }
 
 std::string name_for_longer_run(const fs::path& file, std::size_t steps) {

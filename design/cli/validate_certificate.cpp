@@ -128,18 +128,23 @@ Json claims_json(const Checked& certificate, const Model& model, const std::opti
     return list;
 }
 
+// "at least 0.4, at most 0.5 mm; disjoint solids"
+std::string claim_text(const Json& pair, const RoundedLengths& lengths) {
+    const std::string solids = pair["solids"];
+    return "at least " + lengths.fixed(pair["lower"], Towards::down) + ", at most " + lengths.fixed(pair["upper"], Towards::up) + " " +
+           lengths.unit() + "; " +
+           (solids == "disjoint"       ? "disjoint solids"
+            : solids == "not closed"   ? "disjoint solids cannot be verified: not closed"
+            : solids == "not verified" ? "one may lie inside the other: not closed"
+                                       : "not proven to be apart");
+}
+
 std::string claims_text(const Json& claims, const Checked& certificate) {
     const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
     std::string text;
     const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
     for (const Json& pair : claims) {
-        const std::string solids = pair["solids"];
-        text += "  " + name(pair["a"]) + ":" + name(pair["b"]) + "  at least " + lengths.fixed(pair["lower"], Towards::down) +
-                ", at most " + lengths.fixed(pair["upper"], Towards::up) + " " + lengths.unit() + "; " +
-                (solids == "disjoint"       ? "disjoint solids"
-                 : solids == "not closed"   ? "disjoint solids cannot be verified: not closed"
-                 : solids == "not verified" ? "one may lie inside the other: not closed"
-                                            : "not proven to be apart") +
+        text += "  " + name(pair["a"]) + ":" + name(pair["b"]) + "  " + claim_text(pair, lengths) +
                 (pair.contains("status") ? ": " + pair["status"].get<std::string>() : "") + "\n";
     }
     return text;
@@ -221,6 +226,7 @@ struct Answer {
     Json json, faults = Json::array();
     std::string text;
     bool stale = false;
+    double length_unit = 1;  ///< of the certificate
     int code = exit_violated;
 
     void add_fault(const std::string& where, const std::string& message) {
@@ -243,6 +249,7 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
     const core::certificate::CertificateReport& report = certificate.report;
     for (const auto& fault : report.faults) answer.add_fault(fault.where, fault.message);
     answer.stale = report.stale;
+    answer.length_unit = certificate.length_unit;
     const SourceCheck source = check_source(certificate, question.path, common);
     if (source.stale) {
         answer.stale = true;
@@ -272,9 +279,8 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
     for (const std::string& note : exports.notes) answer.json["notes"].push_back(note);
     if (is_doubtful)
         answer.json["notes"].push_back(
-            "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is proven "
-            "where "
-            "joints hold them; make it anew");
+            "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is "
+            "proven where joints hold them; make it anew");
     if (!accepted) return;
     answer.code = exit_done;
     answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
@@ -295,17 +301,21 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
 }
 
 // Each fault, or, of an accepted certificate, each pair against the minimum.
-void tell_checks(const Answer& answer, const std::string& file, const std::string& status, Console& console) {
+void tell_checks(const Answer& answer, const CertificateQuestion& question, const std::string& status, Console& console) {
+    const std::string& file = question.path;
     for (const Json& fault : answer.faults)
         console.found({fault["where"].get<std::string>(), CheckOutcome::failed, status, fault["message"].get<std::string>(), file});
     if (!answer.faults.empty()) return;
     console.found({file, CheckOutcome::passed, status, "every claim is proven", file});
+    const RoundedLengths lengths(answers::unit_name(answer.length_unit));
+    const std::string required = question.minimum.empty() ? "" : "; required " + question.minimum;
     for (const Json& pair : answer.json["pairs"]) {
         const std::string judged = pair.contains("status") ? pair["status"].get<std::string>() : "clear";
         const CheckOutcome outcome = judged == "violated"    ? CheckOutcome::failed
                                      : judged == "undecided" ? CheckOutcome::undecided
                                                              : CheckOutcome::passed;
-        console.found({pair["a"].get<std::string>() + ":" + pair["b"].get<std::string>(), outcome, judged, "", file});
+        console.found({pair["a"].get<std::string>() + ":" + pair["b"].get<std::string>(), outcome, judged,
+                       claim_text(pair, lengths) + required, file});
     }
 }
 
@@ -326,7 +336,7 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     const std::string status = accepted ? "accepted" : answer.stale ? "stale" : "rejected";
     answer.json["status"] = status;
     answer.json["faults"] = answer.faults;
-    tell_checks(answer, question.path, status, console);
+    tell_checks(answer, question, status, console);
     console.result(answer.json, question.path + ": " + console.coloured(status, accepted) + " for " + trajectory + "\n" + answer.text);
     return answer.code;
 }

@@ -161,6 +161,16 @@ TEST_CASE("check files: other commands, faults, and what no pass may come of") {
     CHECK(run("validate " + scene + " --junit " + folder.path.string()).code == 3);
 }
 
+TEST_CASE("check files: a certificate's pairs are told with their bounds") {
+    const DesignFolder folder;
+    const std::string proof = folder.file("fit.certificate.json");
+    REQUIRE(run("clearance " + folder.file("small.scene.json") + " --minimum 1mm --pairs cube:wall --certificate " + proof).code == 0);
+    const Found close = found(folder, "validate " + proof + " --minimum 30mm");
+    CHECK(close.answer.code == 1);
+    CHECK(close.junit.find("message=\"at least 24.") != std::string::npos);
+    CHECK(close.junit.find(" mm; disjoint solids; required 30mm\"") != std::string::npos);
+}
+
 TEST_CASE("check files: the summary of GitHub's job is added to") {
     const DesignFolder folder;
     const std::string summary = folder.write("summary.md", "before\n");

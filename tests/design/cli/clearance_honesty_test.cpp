@@ -85,6 +85,24 @@ TEST_CASE("clearance: where nothing was judged nothing is clear") {
     CHECK(run("clearance " + lonely.file("small.scene.json") + " --minimum 0.3mm").code == 2);
 }
 
+TEST_CASE("clearance: why nothing was judged is told, joints or groups") {
+    const auto message = [](const std::string& group, const std::string& joints) {
+        const DesignFolder folder(small_design,
+                                  R"({ "fettle_scene": 1, "units": "mm", "bodies": [{ "name": "a", "type": "static",)" + group +
+                                      R"("shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } },
+                                         { "name": "b",)" +
+                                      group +
+                                      R"("position": [11, 0, 0], "density": 1000,
+            "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } }])" +
+                                      joints + " }");
+        return run("clearance " + folder.file("small.scene.json") + " --minimum 0.3mm --json").json().value("message", "");
+    };
+    const std::string joint =
+        R"(, "joints": [{ "name": "pin", "type": "revolute", "a": "a", "b": "b", "point": [5.5, 0, 0], "axis": [0, 0, 1] }])";
+    CHECK(message(R"("group": 1, )", "") == "nothing was judged: all bodies are of one group");
+    CHECK(message("", joint) == "nothing was judged: a joint joins the bodies of each pair; name pairs with --pairs");
+}
+
 TEST_CASE("clearance: no earlier certificate stays where nothing is proven, and none is written without its trajectory") {
     const DesignFolder folder;
     const std::string proof = folder.file("fit.certificate.json"), path = folder.file("fit.trajectory.json");
