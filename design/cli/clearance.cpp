@@ -241,6 +241,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (!is_proof && !options.certificate.empty()) errors = take_proof_away(options.certificate, *subject);
     console.unwritten(errors);
     Json json = report_json(report, *subject);
+    for (const std::string& warning : subject->warnings) json["notes"].push_back("warning: " + warning);
     std::string text = report_text(report, *subject, unit, options.explain, console);
     if (!options.certificate.empty() && !is_proof) {
         json["certificate"] = Json();

@@ -375,6 +375,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
         console.unwritten(core::files::write_file_atomically(question.csv, table));  // the verdict is told all the same
     }
     Json json = ranges_json(report, loaded->model, *ranges);
+    for (const std::string& warning : loaded->warnings) json["notes"].push_back("warning: " + warning);
     std::string text = ranges_text(report, loaded->model, *ranges, question.explain, console);
     Errors no_proof;
     if (!question.certificate.empty()) no_proof = write_range_proof(question, certificate, *loaded);

@@ -198,6 +198,7 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     tell_warnings(console, loaded->warnings);
     subject.model = std::move(loaded->model);
     subject.scene_path = loaded->scene_path;
+    subject.warnings = std::move(loaded->warnings);
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
     const int steps = options.steps >= 0  ? options.steps

@@ -36,6 +36,7 @@ struct Subject {
     std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
     std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
     std::vector<std::string> notes;                      ///< what the reader of a report should know
+    std::vector<std::string> warnings;                   ///< of the input, told on stderr when it was read
     std::vector<std::string> files;                      ///< the meshes, where nothing else was read
 
     /// Without steps there is none, wherever the poses come from.

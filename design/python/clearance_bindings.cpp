@@ -185,8 +185,7 @@ void bind_ranges(py::module_& module) {
         py::arg("ranges") = py::none(), py::arg("certificate") = py::none(), py::arg("progress") = py::none(),
         "Proven bounds [m] of the least distance of pairs of bodies over all positions of the joints within their limits, in every "
         "combination: Pairs of RangeClearance. pairs, minimum: as of certify_clearance. tolerance: None is 10 um or 1% of the least "
-        "minimum, "
-        "and 1% of the bodies' size where more than two coordinates move a pair.");
+        "minimum, and 1% of the bodies' size where more than two coordinates move a pair.");
     module.def(
         "pose_at_witness",
         [](const Model& model, const JointRanges& ranges, const RangeClearance& pair, const py::object& body) {
@@ -244,8 +243,7 @@ void bind_clearance(py::module_& module) {
         py::arg("tolerance") = 1e-6, py::arg("margin_curve") = false, py::arg("certificate") = py::none(), py::arg("progress") = py::none(),
         "Proven bounds [m] of the least distance of pairs of bodies, rounding included: over the continuous motion of the trajectory, or, "
         "without one, as assembled: Pairs of PairClearance. pairs: PairRequests, (a, b) or (a, b, minimum), bodies by name or number; "
-        "None: all "
-        "that may collide; with `minimum`, metres or \"0.3mm\". certificate: gets the proofs.");
+        "None: all that may collide; with `minimum`, metres or \"0.3mm\". certificate: gets the proofs.");
     module.def(
         "as_assembled", [](const Model& model) { return std::make_shared<Trajectory>(core::clearance::as_assembled(model)); },
         py::arg("model"), "The start as a trajectory without steps.");
