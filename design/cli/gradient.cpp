@@ -338,7 +338,7 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
         const std::string unit = description::unit_name(design.constraints[i]);
         text += formatted("%-40s %s, proven at least %s, required %s\n", name.c_str(),
                           description::amount_text(measured.value, bounds.unit, unit).c_str(),
-                          description::amount_text(measured.lower, bounds.unit, unit).c_str(),
+                          description::proven_bound_text(measured.lower, description::Towards::down, bounds.unit, unit).c_str(),
                           description::required_text(bounds, unit).c_str());
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
         text += tie_text(design, tie_of(e, false, i), bounds.unit);

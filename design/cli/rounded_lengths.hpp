@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Bounds as text: a bound that is printed in a unit is still a bound. The decimal that is written is compared with it in extended
-/// precision: it reads back to the bound itself, or lies on its safe side.
+/// Bounds of lengths as text, on their safe side (core/base/bound_text.hpp).
 #pragma once
 
 #include <string>
 
+#include "fettle/core/base/bound_text.hpp"
+
 namespace fettle::design::cli {
 
-enum class Towards { down, up };
+using core::base::Towards;
 
 class RoundedLengths {
 public:
@@ -24,8 +25,6 @@ public:
     double metres() const { return metres_; }
 
 private:
-    template <class Text>
-    std::string bounded(double x, Towards towards, const Text& text) const;
     std::string unit_;
     double metres_;
     long double exact_;  // metres per unit, closer

@@ -4,9 +4,12 @@
 
 #include <string>
 
+#include "fettle/core/base/bound_text.hpp"
 #include "fettle/design/description/constraint.hpp"
 
 namespace fettle::design::description {
+
+using core::base::Towards;
 
 /// What numbers of the requirement are told in: "mm"; empty: plain numbers.
 std::string unit_name(const Constraint& constraint);
@@ -17,7 +20,11 @@ std::string amount_text(double si, double unit, const std::string& unit_name, in
 /// "at least 0.3 mm", "at most 2 N", "29.95 to 30.05 mm", "exactly 1".
 std::string required_text(const Bounds& bounds, const std::string& unit_name);
 
-/// What is proven of it: "0.302 mm", or "0.302 to 0.304 mm" where the two differ in the digits that are told.
+/// A proven bound, rounded to its safe side: 0.30199996 mm downwards -> "0.3019999 mm".
+std::string proven_bound_text(double si, Towards towards, double unit, const std::string& unit_name);
+
+/// What is proven of it: "0.302 to 0.304 mm", the lower bound rounded down and the upper one up; "0.302 mm", the one that is nearer to its
+/// limit, where the two do not differ in the digits that are told.
 std::string proven_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name);
 
 }  // namespace fettle::design::description

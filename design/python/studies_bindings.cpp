@@ -137,8 +137,7 @@ void bind_studies(py::module_& module) {
         py::arg("max_evaluations") = py::none(), py::arg("allow_programs") = false, py::arg("report") = true,
         py::arg("progress") = py::none(),
         "Optimises a *.design.json into a folder, as `fettle optimise` does: history, final design, trajectory, motion.glb, result.json "
-        "and "
-        "report.html; resume goes on with what is there.");
+        "and report.html; resume goes on with what is there.");
     module.def(
         "start_of_seed",
         [](const DesignProblem& problem, std::int64_t seed) { return studies::start_of_seed(problem.design(), seed_from(seed)); },

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -17,6 +18,7 @@ namespace fettle::design::cli::clearance_honesty_test {
 namespace {
 
 using Json = nlohmann::json;
+namespace fs = std::filesystem;
 using namespace fettle::tests::design_support;
 using fettle::tests::support::Answer;
 using fettle::tests::support::contents;
@@ -81,6 +83,46 @@ TEST_CASE("clearance: where nothing was judged nothing is clear") {
     }
     const DesignFolder lonely(small_design, scene_of({box_body("a", "static", "10", "[0, 0, 0]")}));
     CHECK(run("clearance " + lonely.file("small.scene.json") + " --minimum 0.3mm").code == 2);
+}
+
+TEST_CASE("clearance: why nothing was judged is told, joints or groups") {
+    const auto message = [](const std::string& group, const std::string& joints) {
+        const DesignFolder folder(small_design,
+                                  R"({ "fettle_scene": 1, "units": "mm", "bodies": [{ "name": "a", "type": "static",)" + group +
+                                      R"("shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } },
+                                         { "name": "b",)" +
+                                      group +
+                                      R"("position": [11, 0, 0], "density": 1000,
+            "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } }])" +
+                                      joints + " }");
+        return run("clearance " + folder.file("small.scene.json") + " --minimum 0.3mm --json").json().value("message", "");
+    };
+    const std::string joint =
+        R"(, "joints": [{ "name": "pin", "type": "revolute", "a": "a", "b": "b", "point": [5.5, 0, 0], "axis": [0, 0, 1] }])";
+    CHECK(message(R"("group": 1, )", "") == "nothing was judged: all bodies are of one group");
+    CHECK(message("", joint) == "nothing was judged: a joint joins the bodies of each pair; name pairs with --pairs");
+}
+
+TEST_CASE("clearance: no earlier certificate stays where nothing is proven, and none is written without its trajectory") {
+    const DesignFolder folder;
+    const std::string proof = folder.file("fit.certificate.json"), path = folder.file("fit.trajectory.json");
+    const std::string command = "clearance " + folder.file("small.scene.json") + " --minimum 1mm --pairs cube:wall --json --certificate ";
+    REQUIRE(run(command + proof).code == 0);
+    REQUIRE(fs::exists(proof));
+    REQUIRE(fs::exists(path));
+    const Answer nothing = run(command + proof + " --ignore '*:*'");
+    CHECK(nothing.code == 2);
+    CHECK(nothing.json().at("certificate").is_null());
+    CHECK_FALSE(fs::exists(proof));
+    CHECK_FALSE(fs::exists(path));
+    const std::string theirs = folder.write("theirs.json", "{}");
+    CHECK(run(command + theirs + " --ignore '*:*'").code == 2);
+    CHECK(fs::exists(theirs));
+    fs::create_directory(path);  // which no trajectory can replace
+    const Answer unwritten = run(command + proof);
+    CHECK(unwritten.code == 3);
+    CHECK(unwritten.json().at("status") == "clear");
+    CHECK_FALSE(fs::exists(proof));
 }
 
 TEST_CASE("clearance: a plate passed through between two poses is a clash, told with its first instant") {

