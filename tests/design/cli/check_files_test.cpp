@@ -160,6 +160,46 @@ TEST_CASE("check files: other commands, faults, and what no pass may come of") {
     CHECK(run("validate " + scene + " --junit " + folder.path.string()).code == 3);
 }
 
+TEST_CASE("check files: warnings are remarks, about their file, and errors where asked to be strict") {
+    const std::string body = "\"shape\": {\"generator\": \"box\", \"dimensions\": {\"size_x\": 40000, \"size_y\": 9, \"size_z\": 9}}";
+    const DesignFolder folder(small_design,
+                              replaced(small_scene,
+                                       R"("shape": { "generator": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } },)"
+                                       R"( "position": [40, 0, 0])",
+                                       body + ", \"position\": [0, 0, 500]"));
+    const std::string scene = folder.file("small.scene.json");
+    for (const char* command : {"validate ", "clearance --minimum 0.01mm --pairs table:cube ", "simulate --steps 1 "}) {
+        const Found all = found(folder, command + scene + " --json");
+        CAPTURE(command, all.answer.out, all.junit);
+        CHECK(all.answer.code == 0);
+        CHECK(all.answer.json().at("warnings").dump().find("its size is 40 m") != std::string::npos);
+        REQUIRE(all.results().size() == 1);
+        CHECK(all.results()[0].at("ruleId") == "warning");
+        CHECK(all.results()[0]
+                  .at("locations")[0]
+                  .at("physicalLocation")
+                  .at("artifactLocation")
+                  .at("uri")
+                  .get<std::string>()
+                  .ends_with("small.scene.json"));
+        CHECK(all.markdown.find("its size is 40 m") != std::string::npos);
+        CHECK(run(command + scene + " --strict").code == 3);
+    }
+    const Answer strict = run("validate " + folder.design() + " --strict", true);
+    CHECK(strict.code == 3);
+    CHECK(strict.says("its size is 40 m"));
+    // What is about no file names none; a place in a file names the file.
+    CHECK_FALSE(found(folder, "clearance " + scene + " --minimum 3").results()[0].contains("locations"));
+    const Found broken = found(folder, "validate " + folder.write("broken.scene.json", "{\n \"fettle_scene\": }"));
+    CHECK(broken.results()[0]
+              .at("locations")[0]
+              .at("physicalLocation")
+              .at("artifactLocation")
+              .at("uri")
+              .get<std::string>()
+              .ends_with("broken.scene.json"));
+}
+
 TEST_CASE("check files: a fault before the work replaces an earlier pass") {
     const DesignFolder folder;
     const std::string scene = folder.file("small.scene.json"), junit = folder.file("ci/junit.xml");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // fettle clearance SCENE --ranges from outside: reports, refusals, certificates.
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -238,6 +239,11 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
         CHECK(doubtful.json()["judgement"] == "undecided");
         CHECK(doubtful.json()["pairs"][0]["status"] == "undecided");
         CHECK(doubtful.says("it has no joints"));
+        const std::string junit = folder.file("j.xml");
+        CHECK(run("validate " + file + " --junit " + junit).code == 0);  // accepted; of the bodies it says nothing
+        CHECK(contents(junit).find("<failure type=\"undecided\"") != std::string::npos);
+        CHECK(contents(junit).find("between whose nodes joints may have the bodies elsewhere") != std::string::npos);
+        CHECK(contents(junit).find("it has no joints") != std::string::npos);
     }
     scene["motors"][0]["name"] = "other";  // a name is none of the mathematics; a joint's place is
     folder.write("small.scene.json", scene.dump());
@@ -261,8 +267,9 @@ TEST_CASE("kinematic: where joints are not proven to have bodies there is no bou
                                {"position", {900, 0, 0}}});
     const DesignFolder folder(small_design, scene.dump());
     const std::string proof = folder.file("fit.certificate.json");
-    const Answer answer = run("clearance " + folder.file("small.scene.json") +
-                              " --kinematic --steps 5 --json --minimum 1mm --pairs post:left_hand,post:wall --certificate " + proof);
+    const std::string command = "clearance " + folder.file("small.scene.json") + " --kinematic --steps 5 --json --minimum 1mm",
+                      junit = folder.file("j.xml");
+    const Answer answer = run(command + " --pairs post:left_hand,post:wall --certificate " + proof + " --junit " + junit);
     INFO(answer.out);
     CHECK(answer.code == 2);
     const Json pair = answer.pair("post", "left_hand");
@@ -276,6 +283,20 @@ TEST_CASE("kinematic: where joints are not proven to have bodies there is no bou
     CHECK(valid.code == 0);
     REQUIRE(valid.json()["pairs"].size() == 1);
     CHECK(valid.json()["pairs"][0]["b"] == "wall");
+    CHECK(contents(junit).find("message=\"no bound is proven: ") != std::string::npos);
+    CHECK(contents(junit).find("at most inf") == std::string::npos);
+    CHECK(contents(junit).find("at least 0 mm") == std::string::npos);
+    // Of nothing that is proven there is no certificate, nor an earlier one.
+    const std::string trajectory = folder.file("fit.trajectory.json");
+    REQUIRE(std::filesystem::exists(trajectory));
+    const Answer none = run(command + " --pairs post:left_hand --certificate " + proof);
+    CHECK(none.code == 2);
+    CHECK(none.json().at("certificate").is_null());
+    CHECK_FALSE(std::filesystem::exists(proof));
+    CHECK_FALSE(std::filesystem::exists(trajectory));
+    folder.write("fit.certificate.json", "{\"theirs\": 1}");  // no certificate: it is left alone
+    CHECK(run(command + " --pairs post:left_hand --certificate " + proof).code == 2);
+    CHECK(std::filesystem::exists(proof));
 }
 
 }  // namespace fettle::design::cli::clearance_ranges_command_test

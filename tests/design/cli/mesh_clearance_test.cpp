@@ -8,6 +8,7 @@
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::cli::mesh_clearance_test {
 
@@ -16,6 +17,7 @@ namespace {
 using core::mesh_files::MeshPart;
 using fettle::tests::support::Answer;
 using fettle::tests::support::box_mesh;
+using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 
@@ -126,6 +128,13 @@ TEST_CASE("clearance: a part in a mesh that is not closed is not clear of it, no
     const Answer valid = run("validate " + boxes.file("fit.certificate.json") + " --minimum 0.1mm --json");
     CHECK(valid.code == 2);
     CHECK(valid.json()["judgement"] == "undecided");
+    const std::string validate = "validate " + boxes.file("fit.certificate.json") + " --junit " + boxes.file("j.xml");
+    CHECK(run(validate).code == 0);  // the claims are proven; that the two are apart is none of them
+    CHECK(contents(boxes.file("j.xml")).find("<failure type=\"undecided\" message=\"at least ") != std::string::npos);
+    CHECK(contents(boxes.file("j.xml")).find("one may lie inside the other") != std::string::npos);
+    CHECK(run(validate + " --minimum 10mm").code == 1);
+    CHECK(contents(boxes.file("j.xml")).find("<failure type=\"violated\" message=\"at least ") != std::string::npos);
+    CHECK(contents(boxes.file("j.xml")).find("; required 10 mm") != std::string::npos);
     const Answer beside =
         run("clearance " + boxes.file("open.stl") + " " + boxes.file("cad/lid.stl") + " --unit mm --minimum 0.1mm --json");
     CHECK(beside.code == 0);

@@ -63,6 +63,23 @@ TEST_CASE("messages: options and words that are not taken name what was probably
     }
 }
 
+TEST_CASE("messages: why nothing is judged") {
+    const std::string body = R"("density": 1000, "shape": {"generator": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}})";
+    const DesignFolder folder;
+    const auto said = [&](const std::string& more, const std::string& words) {
+        const std::string scene =
+            folder.write("two.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [{"name": "a", "group": 1, )" + body +
+                                               R"(, {"name": "b", "position": [20, 0, 0], )" + more);
+        const Answer answer = run("clearance " + scene + " --minimum 1mm", true);
+        CAPTURE(answer.out);
+        CHECK(answer.code == 2);
+        CHECK(answer.says("nothing was judged: " + words));
+    };
+    said("\"group\": 1, " + body + "]}", "all bodies are of one group");
+    said(body + R"(], "joints": [{"name": "hinge", "type": "revolute", "a": "a", "b": "b", "point": [10, 0, 0], "axis": [0, 0, 1]}]})",
+         "the bodies of every pair are of one group, or a joint joins them");
+}
+
 TEST_CASE("messages: a format's key that is misspelt, and folders that are not there") {
     const DesignFolder folder;
     const std::string scene = folder.write("a.scene.json", "{\"fetle_scene\": 1, \"units\": \"mm\"}");
