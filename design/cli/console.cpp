@@ -97,12 +97,13 @@ void tell(const Error& error) {
     std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
 }
 
+bool is_file(const std::string& name) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(name, ignored);
+}
+
 // "a.json" of "a.json#/bodies/0", "a.json:3:7" and "a.json: /bodies/0"; empty where it is about no file: "command line", "--minimum".
 std::string file_of_place(const std::string& where) {
-    const auto is_file = [](const std::string& name) {
-        std::error_code ignored;
-        return std::filesystem::is_regular_file(name, ignored);
-    };
     for (std::size_t end = where.size(); end > 0; --end) {
         if (end < where.size() && where[end] != '#' && where[end] != ':') continue;
         if (std::string name = where.substr(0, end); is_file(name)) return name;
@@ -235,6 +236,11 @@ void Console::unwritten(const Errors& errors) {
     for (const Error& error : errors) tell(error);
     found_faults(errors);
     unwritten_.insert(unwritten_.end(), errors.begin(), errors.end());
+}
+
+void Console::found(Check check) {
+    if (!is_file(check.file)) check.file.clear();
+    checks_.push_back(std::move(check));
 }
 
 void Console::found_faults(const Errors& errors) {

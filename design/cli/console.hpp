@@ -69,8 +69,8 @@ public:
     /// The same where there is not enough memory, with what was being done. @return exit_bad_input
     int out_of_memory();
 
-    /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves.
-    void found(Check check) { checks_.push_back(std::move(check)); }
+    /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves. `file` is kept if it is one.
+    void found(Check check);
     const std::vector<Check>& checks() const { return checks_; }
 
     /// "clear" in green and so on, if colours are wanted.

@@ -171,6 +171,22 @@ TEST_CASE("a free name is one that not even a link has", "[base]") {
     CHECK(free_name(folder.path / "none") == folder.path / "none.1");
 }
 
+TEST_CASE("the name that the system gives to an open file is written to, not replaced", "[base]") {
+    const TemporaryFolder folder;
+    const std::string file = folder.write("file", "");
+    const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND);
+    REQUIRE(handle >= 0);
+    const fs::path name = "/dev/fd/" + std::to_string(handle);
+    CHECK(is_written_directly(name));
+    CHECK(write_file_atomically(name, "through").empty());
+    ::close(handle);
+    CHECK(read_file(file).value() == "through");
+    for (const fs::path& each : {fs::path("/dev/null"), fs::path("/dev/full")}) CHECK(is_written_directly(each));
+    for (const fs::path& each : {fs::path(file), folder.path, folder.path / "none"}) CHECK_FALSE(is_written_directly(each));
+    fs::create_symlink(file, folder.path / "link");  // of a user: replaced
+    CHECK_FALSE(is_written_directly(folder.path / "link"));
+}
+
 TEST_CASE("files that are not there, and folders, are not read", "[base]") {
     const TemporaryFolder folder;
     CHECK(read_file(folder.path / "none").errors().at(0).code == ErrorCode::file_not_found);
