@@ -100,7 +100,7 @@ TEST_CASE("clearance: why nothing was judged is told, joints or groups") {
     const std::string joint =
         R"(, "joints": [{ "name": "pin", "type": "revolute", "a": "a", "b": "b", "point": [5.5, 0, 0], "axis": [0, 0, 1] }])";
     CHECK(message(R"("group": 1, )", "") == "nothing was judged: all bodies are of one group");
-    CHECK(message("", joint) == "nothing was judged: a joint joins the bodies of each pair; name pairs with --pairs");
+    CHECK(message("", joint) == "nothing was judged: a joint joins the bodies of every pair");
 }
 
 TEST_CASE("clearance: no earlier certificate stays where nothing is proven, and none is written without its trajectory") {

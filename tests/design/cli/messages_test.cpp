@@ -110,14 +110,10 @@ TEST_CASE("messages: explore refuses the common options that it does not take, b
     CHECK_FALSE(std::filesystem::exists(out));
 }
 
-TEST_CASE("messages: a file that cannot be written and a folder that is not there are told by the names they were given") {
+TEST_CASE("messages: a file that cannot be written is told by the name it was given") {
     const DesignFolder folder;
     const std::string scene = folder.file("small.scene.json"), in_file = folder.write("file", "") + "/deep/x.csv";
-    refused("clearance " + scene + " --csv " + in_file,
-            {"error: " + in_file + ": in " + folder.file("file") + "/deep: the folder cannot be made"});
-    refused("validate " + scene + " --log " + in_file, {"error: " + in_file + ": in "});
-    refused("validate " + scene + " --mesh-dir " + folder.file("nosuch"), {"--mesh-dir: there is no folder " + folder.file("nosuch")});
-    CHECK(run("validate " + scene + " --mesh-dir " + folder.path.string()).code == 0);
+    for (const char* option : {" --csv ", " --log "}) refused("clearance " + scene + option + in_file, {in_file});
 }
 
 TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
@@ -136,8 +132,6 @@ TEST_CASE("messages: files of another version, and a scene that is not there") {
             {"#/fettle_scene: a file of version 9 is not read: this program reads version 1; was it written for a newer fettle?"});
     refused("validate " + folder.write("nine.design.json", R"({"fettle_design": 9, "scene": "nine.scene.json"})"),
             {"#/fettle_design: a file of version 9 is not read"});
-    refused("validate " + folder.write("slip.scene.json", R"({"fetle_scene": 1, "units": "mm", "bodies": []})"),
-            {"`fetle_scene` is: did you mean `fettle_scene`?"});
     const std::string alone = folder.write("alone.design.json", R"({"fettle_design": 1, "scene": "gone.scene.json", "units": "mm"})");
     refused("validate " + alone, {alone + "#/scene: there is no scene file " + folder.file("gone.scene.json"), "[file_not_found]"});
     refused("validate " + folder.write("half.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": -1,
