@@ -301,8 +301,9 @@ TEST_CASE("a folder in which another program's report lies is left alone") {
     folder.write("out/report.html", theirs);
     refused("report " + folder.file("out"), {"report.html: is there and was not written by fettle"});
     CHECK(run("report " + folder.file("out") + " --out " + folder.file("out/report.html")).code == 0);  // it was named
-    const std::string sweep = folder.write("sweep.jsonl", R"({"fettle_explore": 1})"
-                                                          "\n");
+    const std::string sweep = folder.write("sweep.jsonl", R"({"fettle_explore": 1, "design": "x", "parameters": ["height"]}
+{"key": "0", "kind": "evaluate", "seed": 0, "status": "failed", "reason": "no shape"}
+)");
     CHECK(run("report " + sweep).code == 0);
     CHECK(run("report " + sweep).code == 0);
     folder.write("sweep.report.html", theirs);

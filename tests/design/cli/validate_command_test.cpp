@@ -72,8 +72,8 @@ TEST_CASE("validate: what can hardly be meant is doubted") {
     const std::string two = folder.write("two.scene.json", R"({"fettle_scene": 1, "units": "m", "bodies": [
         {"name": "part", "type": "static", "mesh": "part.obj"},
         {"name": "other", "type": "static", "mesh": "part.obj", "position": [100, 0, 0]}]})");
-    CHECK(mentions(run("clearance --json --minimum 0.3mm " + two).json().at("notes"),
-                   "warning: " + two + "#/bodies/0: body `part`: its size is 60 m"));
+    CHECK(
+        mentions(run("clearance --json --minimum 0.3mm " + two).json().at("warnings"), two + "#/bodies/0: body `part`: its size is 60 m"));
     const Json light = run("validate --json " + folder.write("l.scene.json", scene_of("mm", "1.24"))).json();
     CHECK(mentions(light.at("warnings"), "a density of 1.24 kg/m^3 is hardly meant"));
 }
