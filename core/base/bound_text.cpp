@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/base/bound_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 namespace fettle::core::base {
 
@@ -14,8 +16,8 @@ std::string bound_text(double x, double unit, long double exact_unit, Towards to
         return shown;
     }
     const double beyond = towards == Towards::down ? -INFINITY : INFINITY;
-    const double y = x / unit;
-    for (double step = 0;; step = 2 * step + std::abs(y) * 0x1p-53) {
+    const double y = x / unit, least = std::numeric_limits<double>::denorm_min();
+    for (double step = 0;; step = 2 * step + std::max(std::abs(y) * 0x1p-53, least)) {
         const double near = towards == Towards::down ? y - step : y + step;
         const std::string shown = text(step == 0 ? y : std::nextafter(near, beyond));
         const long double number = std::strtold(shown.c_str(), nullptr) * exact_unit;

@@ -2,6 +2,7 @@
 // What the program says to people: each line must be understood by one who has read nothing else, with place, finding and remedy.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
@@ -210,6 +211,8 @@ TEST_CASE("requirements in words") {
     measured.lower = 2.9999996e-4;
     measured.upper = 3.04000004e-4;
     CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.2999999 to 0.3040001 mm");
+    for (const double least : {4.9406564584124654e-324, 1e-320, 3.3e-310})  // comes to an end
+        CHECK(std::strtod(description::proven_bound_text(least, description::Towards::down, 1, "").c_str(), nullptr) <= least);
     CHECK(description::proven_bound_text(-INFINITY, description::Towards::down, 1e-3, "mm") == "-inf mm");
     CHECK(core::base::unit_name(core::base::Dimension::area, 1e-3 * 1e-3) == "mm^2");
     CHECK(core::base::unit_name(core::base::Dimension::number, 1).empty());
