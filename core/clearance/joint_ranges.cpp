@@ -219,7 +219,7 @@ private:
     // Gears and racks: factor_0 m_0 + factor_1 m_1 = constant.
     void couple() {
         for_rows([&](const constraint::Row& row, const Joint& owner) {
-            if (owner.kind != JointKind::gear && owner.kind != JointKind::rack) return;
+            if (!couples_joints(owner.kind)) return;
             const int first = variable_of(row.parts[0].measure), second = variable_of(row.parts[1].measure);
             if (first < 0 || second < 0) return;  // of joints between what does not move
             const Affine a = variables_[static_cast<std::size_t>(first)].is, b = variables_[static_cast<std::size_t>(second)].is;

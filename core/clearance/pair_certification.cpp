@@ -74,6 +74,7 @@ public:
 
     PairClearance run(double contact_distance) {
         measure();
+        look_at_minimum();
         if (found_.lower == 0 && found_.complete) {
             look_closer();
             settle();
@@ -96,6 +97,18 @@ private:
         found_ = certified_search(pair_, options_, search_, record_);
         result_.sampled = !options_.sample_nodes ? infinity : (apart ? *search_.seed : found_.sampled).pair.distance;
         search_.seed.reset();
+    }
+
+    // The tolerance is how well a distance is measured; whether the minimum is kept is asked as finely as it takes, as far as rounding
+    // lets.
+    void look_at_minimum() {
+        constexpr int tries = 8;
+        for (int k = 0; k < tries && found_.complete && !found_.intersecting; ++k) {
+            if (!(found_.lower < result_.minimum && result_.minimum <= found_.upper)) return;
+            const double room = found_.upper - result_.minimum;
+            if (!(room > 64 * most_slack(pair_))) return;
+            search_to(0.5 * room, search_.max_evaluations / 20);
+        }
     }
 
     // Closer than the tolerance, which need not mean that they touch: a finer one may prove that they do not.
@@ -293,7 +306,9 @@ private:
                          : !(result_.lower > 0)
                              ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
                          : !told ? why_not_apart(result_.solids)
-                                 : "the minimum lies between the bounds: a smaller tolerance tells";
+                         : result_.upper - result_.minimum <= 64 * most_slack(pair_) + checking_room(options_, pair_)
+                             ? "the minimum lies within rounding of the distance"
+                             : "the minimum lies between the bounds, and the search for a closer one was cut short by its budget";
     }
 
     const PairMotion& pair_;

@@ -146,7 +146,7 @@ private:
         const SaddleSolver::Solution solution = solver_.solve(-gathered(system.gradient), at_.remaining);
         multipliers_ = solution.multipliers;
         double fraction = 1 / std::max(1.0, stride(solution.y));
-        const double close = assembled_gap * problem_.size;
+        const double close = closed_gap(problem_.size, start_);
         for (int k = 0; k < most_halvings; ++k, fraction *= 0.5) {
             Place trial = moved(solution.y, fraction);
             if (!(trial.gap <= std::max(close, (1 - 0.1 * fraction) * at_.gap))) continue;
@@ -192,8 +192,14 @@ bool same_rows(const std::vector<DependentRow>& a, const std::vector<DependentRo
 
 }  // namespace
 
+double closed_gap(double size, const std::vector<Pose>& poses) {
+    double farthest = 0;
+    for (const Pose& pose : poses) farthest = std::max(farthest, pose.position.cwiseAbs().maxCoeff());
+    return std::max(1e-12 * size, 16 * std::numeric_limits<double>::epsilon() * farthest);
+}
+
 Assembly assemble(const AssemblyProblem& problem, const std::vector<Pose>& start) {
-    const double close = assembled_gap * problem.size;
+    const double close = closed_gap(problem.size, start);
     Assembly out;
     out.poses = start;
     out.angles = angles_at(problem.set, start, {});

@@ -22,8 +22,8 @@ struct AssemblyProblem {
     double size = 1;  ///< of the scene [m]
 };
 
-/// Gaps at most this share of the scene's size are none.
-inline constexpr double assembled_gap = 1e-12;
+/// Gaps of rows up to this are none [m]: 1e-12 of the scene's size, or what rounding makes of places as far out as these.
+double closed_gap(double size, const std::vector<kinematics::Pose>& poses);
 
 struct Assembly {
     std::vector<kinematics::Pose> poses;

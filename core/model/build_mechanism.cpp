@@ -25,8 +25,6 @@ using scene::JointKind;
 
 constexpr int x_axis = 0, y_axis = 1, z_axis = 2;
 
-bool has_rows_of_its_own(JointKind kind) { return kind != JointKind::gear && kind != JointKind::rack; }
-
 bool turns(JointKind kind) { return kind == JointKind::revolute || kind == JointKind::screw; }
 
 const char* kind_of(const scene::Joint&) { return "joint"; }
@@ -65,10 +63,10 @@ public:
     Errors build() {
         const scene::Mechanism& from = scene_.mechanism;
         for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
-            if (has_rows_of_its_own(joint.kind)) add_joint(joint);
+            if (!scene::couples_joints(joint.kind)) add_joint(joint);
         });
         for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
-            if (!has_rows_of_its_own(joint.kind)) add_coupling(joint);
+            if (scene::couples_joints(joint.kind)) add_coupling(joint);
         });
         check_names(from.springs, "spring or damper");
         check_names(from.motors, "motor");

@@ -187,6 +187,27 @@ Errors check_motion(const scene::Body& body, const std::string& where) {
     return found;
 }
 
+/// Newmark's rule makes a prescribed coordinate's velocity of those before it, so that a jump of its speed goes to and fro for ever, in the
+/// forces that drive it and in the energy. (A body that is driven altogether has its velocity from its places.)
+Errors check_integrator(const scene::Scene& scene) {
+    if (scene.integrator != scene::Integrator::newmark) return {};
+    const auto moves = [](const auto& curve) {
+        const auto is_zero = [](double x) { return x == 0; };
+        return curve && !(curve->rate == 0 && std::all_of(curve->values.begin(), curve->values.end(), is_zero));
+    };
+    for (const scene::Body& body : scene.bodies) {
+        if (body.type != BodyType::dynamic_body) continue;
+        const bool driven_altogether = std::all_of(body.prescribed.begin(), body.prescribed.end(), [](const auto& c) { return bool(c); });
+        if (driven_altogether || std::none_of(body.prescribed.begin(), body.prescribed.end(), moves)) continue;
+        return {{ErrorCode::unsupported, place_of(scene, body) + "/prescribed",
+                 "body `" + body.name +
+                     "`: `newmark` lets a prescribed coordinate that moves oscillate, and the forces that drive it; `implicit_euler` and "
+                     "`bdf2` do "
+                     "not"}};
+    }
+    return {};
+}
+
 /// Names stand in messages, tables, drawings and files of other programs.
 Errors check_names(const scene::Scene& scene) {
     Errors errors;
@@ -322,7 +343,7 @@ void doubt_units(const scene::Scene& scene, SceneCheck& check) {
 SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
     SceneCheck check;
     check.errors = check_numbers(scene);
-    for (const Errors& more : {check_names(scene), check_friction(scene)})
+    for (const Errors& more : {check_integrator(scene), check_names(scene), check_friction(scene)})
         check.errors.insert(check.errors.end(), more.begin(), more.end());
     BodyChecks bodies(check_meshes);
     std::vector<const geometry::Mesh*> meshes;

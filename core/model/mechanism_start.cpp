@@ -37,7 +37,7 @@ std::string names_of(const Mechanism& mechanism, const std::vector<int>& rows) {
 
 // What is not met: a row that others determine is contradicted by them; all else are loops that do not close.
 Errors describe_gaps(const scene::Scene& scene, const Model& model, const AssemblyProblem& problem, const Assembly& found) {
-    const double close = constraint::assembled_gap * problem.size;
+    const double close = constraint::closed_gap(problem.size, found.poses);
     Errors errors;
     const std::string where = scene.path + "#/joints";
     for (const constraint::DependentRow& d : found.dependent) {

@@ -25,8 +25,9 @@ std::string contacts_csv(const stepper::Simulation& simulation, const std::vecto
 std::string drives_csv(const stepper::Simulation& simulation, const std::vector<std::string>& names);
 
 /// One row per step and joint, gear or motor: time, name, force on body b fx fy fz [N] and torque on it about the joint's point tx ty tz
-/// [N m], effort of a motor [N], [N m] (0 of others); of a joint, along its coordinate [N], [N m], what its spring, damping, friction and
-/// stops push with: beside force and torque, which keep it together. A motor's force and torque are its own, beside those of its joint.
+/// [N m], effort of a motor, a gear or a rack [N], [N m] (0 of others); of a joint, along its coordinate [N], [N m], what its spring,
+/// damping, friction and stops push with: beside force and torque, which keep it together. A motor's force and torque are its own, beside
+/// those of its joint.
 std::string joints_csv(const stepper::Simulation& simulation, const model::Mechanism& mechanism);
 
 /// `later` after those rows of `earlier`, a table of the run that was taken up again, whose time is at most `until` [s]: the table of a run

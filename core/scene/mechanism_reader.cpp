@@ -153,7 +153,7 @@ private:
         const auto kind = node.require("type").choice(names);
         if (!kind) return;
         joint.kind = static_cast<JointKind>(std::find(names.begin(), names.end(), *kind) - names.begin());
-        if (joint.kind == JointKind::gear || joint.kind == JointKind::rack)
+        if (couples_joints(joint.kind))
             read_coupling(node, joint);
         else
             read_lower_pair(node, joint);

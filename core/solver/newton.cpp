@@ -254,9 +254,12 @@ private:
         return range;
     }
 
-    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken?
+    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken? Of a stiff
+    // force the step leaves about as much as it was out of balance times its length. Friction of a joint that is about to slide has next to
+    // no stiffness left: what the step leaves is the bend of its law, however little it was out of balance.
     bool leaves_too_much(double share, double motion) const {
-        return options_.accuracy > 0 && !(share * std::min(1.0, motion / quadratic_range()) <= options_.accuracy);
+        const double length = std::min(1.0, motion / quadratic_range());
+        return options_.accuracy > 0 && !(std::max(share, joints_rub_ ? length : 0) * length <= options_.accuracy);
     }
 
     // Asked once in each iteration: keeps the least share and counts the iterations since. Where rounding keeps it from getting there, the

@@ -16,8 +16,9 @@ double energy_of(const energy::TermReport& r) { return r.kinetic_energy + r.pote
 
 }  // namespace
 
-BalanceSum::BalanceSum(const energy::TermReport& start, double h)
+BalanceSum::BalanceSum(const energy::TermReport& start, double h, double largest_work)
     : h_(h),
+      largest_work_(largest_work),
       most_stored_(stored_energy(start) + start.kinetic_energy),
       least_potential_(start.potential_energy),
       most_potential_(start.potential_energy) {
@@ -43,7 +44,7 @@ void BalanceSum::add(const StepOutputs& step) {
     sum_.energy_scale = std::max({most_stored_, most_work_, sum_.dissipated, most_potential_ - least_potential_});
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
     const double potential = std::max(std::abs(least_potential_), std::abs(most_potential_));
-    sum_.energy_rounding = rounding * (most_stored_ + most_work_ + sum_.dissipated + potential);
+    sum_.energy_rounding = rounding * (most_stored_ + most_work_ + sum_.dissipated + potential + largest_work_);
     defect_ += step.momentum_defect;
     angular_defect_ += step.angular_momentum_defect;
     sum_.momentum_error = defect_.norm();
@@ -54,6 +55,14 @@ void BalanceSum::add(const StepOutputs& step) {
     angular_rounding_ += step.angular_momentum_rounding;
     sum_.angular_momentum_scale = most_angular_ + angular_impulses_;
     sum_.angular_momentum_uncertainty = 0.5 * most_impulse_ + angular_rounding_;
+}
+
+double largest_work(const model::Model& model) {
+    double sum = 0;
+    for (const model::Body& body : model.bodies)
+        if (energy::has_free_dof(body))
+            sum += (body.moments(3, 3) * model.gravity.norm() + body.force.norm()) * model.diagonal + body.torque.norm();
+    return sum;
 }
 
 std::string balance_warning(const model::Model& model, const Balance& balance) {

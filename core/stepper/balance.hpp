@@ -31,14 +31,15 @@ struct Balance {
 /// The balance of steps that are added one by one.
 class BalanceSum {
 public:
-    /// @param start  energies and momenta where the first step begins (start_report).
-    /// @param h      time step [s].
-    BalanceSum(const energy::TermReport& start, double h);
+    /// @param start       energies and momenta where the first step begins (start_report).
+    /// @param h           time step [s].
+    /// @param largest_work  the work of all loads and weights over a way as long as the scene: energies are known to its rounding [J].
+    BalanceSum(const energy::TermReport& start, double h, double largest_work = 0);
     void add(const StepOutputs& step);
     const Balance& balance() const { return sum_; }
 
 private:
-    double h_ = 0;
+    double h_ = 0, largest_work_ = 0;
     bool has_steps_ = false;
     double supplied_ = 0, dissipated_ = 0;                                                      // powers at the end of the step before [W]
     double most_stored_ = 0;                                                                    // or in motion [J]
@@ -47,6 +48,9 @@ private:
     Vector3 defect_ = Vector3::Zero(), angular_defect_ = Vector3::Zero();
     Balance sum_;
 };
+
+/// Of the bodies that are solved for: (weight + force) times the scene's size, and torques [J].
+double largest_work(const model::Model& model);
 
 /// What a user should know of it, with a remedy; empty: nothing. Energy that comes from nowhere is told from 1% of the scale on, angular
 /// momentum from 5% on, and nothing that is within rounding or less than is known of it. Energy that is lost is not: implicit Euler and

@@ -61,6 +61,7 @@ std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const s
         JointForce& acting = out[static_cast<std::size_t>(owner)];
         const double force = -multipliers[i] / problem.weight;
         if (joint.is_motor) acting.effort += force;
+        if (scene::couples_joints(joint.kind)) acting.effort += force * mechanism.rows[static_cast<std::size_t>(i)].parts[1].factor;
         const int body = joint.b != measure::world ? joint.b : joint.a;
         for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) {
             const constraint::RowGradient& e = rows.entries[static_cast<std::size_t>(k)];

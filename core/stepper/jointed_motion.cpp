@@ -190,7 +190,7 @@ public:
         for (const PrescribedNode& node : prescribed_path(model_, poses, time)) {
             const double share = node.fraction - step.fractions.back();
             const auto found = assembled(guess(poses, at, node, share), time + node.fraction * h);
-            if (!found) return unmet(time + node.fraction * h);
+            if (!found) return unmet(poses, time + node.fraction * h);
             step.nodes.push_back(points(poses, *found, node, step.nodes.back()));
             step.fractions.push_back(node.fraction);
             remember(at, *found, share);
@@ -296,11 +296,12 @@ private:
         return std::nullopt;
     }
 
-    std::string unmet(double time) const {
+    std::string unmet(const std::vector<Pose>& poses, double time) const {
         std::set<std::string> names;
         const double worst = gaps_.size() > 0 ? gaps_.maxCoeff() : 0;
+        const double closed = constraint::closed_gap(model_.diagonal, poses);
         for (std::size_t i = 0; i < rows_.size(); ++i)
-            if (gaps_[static_cast<Eigen::Index>(i)] > constraint::assembled_gap * model_.diagonal)
+            if (gaps_[static_cast<Eigen::Index>(i)] > closed)
                 names.insert("`" + model_.mechanism.joints[static_cast<std::size_t>(rows_[i].owner)].name + "`");
         std::ostringstream message;
         message << "at " << time << " s the joints cannot be met: " << base::joined(names) << ", by "

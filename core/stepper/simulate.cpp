@@ -69,7 +69,8 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     solver::NewtonWorkspace workspace(model);
     const int steps = step_count(model, options);
     std::optional<BalanceSum> balance;
-    if (options.outputs && model.integrator != scene::Integrator::quasi_static) balance.emplace(start_report(model, state), model.timestep);
+    if (options.outputs && model.integrator != scene::Integrator::quasi_static)
+        balance.emplace(start_report(model, state), model.timestep, largest_work(model));
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {

@@ -138,6 +138,18 @@ void add_momentum_defects(const energy::StepProblem& problem, const solver::Newt
             if (c.a == static_cast<int>(i) || c.b == static_cast<int>(i)) out.angular_impulse += h * (c.normal + c.friction.norm()) * reach;
     }
     out.angular_momentum_size = std::max(angular_at_start, angular_at_end);
+    // Springs, dampers, friction and stops of joints, each by itself: what holds against a load leaves nothing in the sum of forces.
+    const model::Mechanism& mechanism = model.mechanism;
+    for (std::size_t k = 0; k < out.measure_forces.size(); ++k) {
+        const measure::Measure& m = mechanism.set.measures[static_cast<std::size_t>(mechanism.terms[k].measure)];
+        for (const int frame : {m.a, m.b}) {
+            const int body = mechanism.set.frames[static_cast<std::size_t>(frame)].body;
+            if (body == measure::world) continue;
+            const double reach =
+                solved.poses[static_cast<std::size_t>(body)].position.norm() + model.bodies[static_cast<std::size_t>(body)].radius;
+            out.angular_impulse += h * std::abs(out.measure_forces[k]) * (m.kind == measure::MeasureKind::angle ? 1 : reach);
+        }
+    }
 }
 
 }  // namespace

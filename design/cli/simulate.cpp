@@ -65,7 +65,7 @@ Json joints_at_end(const core::model::Model& model, const Simulation& simulation
     for (const core::stepper::JointForce& f : simulation.outputs.back().joints) {
         const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
         Json entry{{"name", joint.name}, {"force", answers::vector_json(f.force)}, {"torque", answers::vector_json(f.torque)}};
-        if (joint.is_motor) entry["effort"] = f.effort;
+        if (joint.is_motor || couples_joints(joint.kind)) entry["effort"] = f.effort;
         if (!joint.is_motor && joint.coordinate >= 0)
             entry["own"] = Json{{"spring", f.spring}, {"damping", f.damping}, {"friction", f.friction}, {"stop", f.stop}};
         list.push_back(entry);
@@ -110,7 +110,9 @@ void add_balance(const core::model::Model& model, const core::stepper::Balance& 
 std::string balance_text(const core::stepper::Balance& b) {
     std::string text = formatted("energy: %.4g J at the start, %.4g J at the end; %.4g J supplied, %.4g J lost by friction and dampers",
                                  b.energy_start, b.energy_end, b.work, b.dissipated);
-    if (b.energy_scale > 0)
+    if (std::abs(b.energy_error) <= b.energy_rounding)
+        text += "; the time integration kept it to rounding";
+    else
         text += formatted("; %.4g J %s by the time integration (%s of what passed through the motion)", std::abs(b.energy_error),
                           b.energy_error > 0 ? "gained" : "lost", core::base::percent(std::abs(b.energy_error) / b.energy_scale).c_str());
     return text + "\n";

@@ -333,4 +333,24 @@ TEST_CASE("What is proven apart is so with a certificate too, however small the 
     }
 }
 
+TEST_CASE("Whether a minimum is kept hangs neither on the tolerance nor on a certificate", "[clearance]") {
+    const auto model = model_of({box({5e-3, 5e-3, 5e-3}), box({4e-3, 4e-3, 4e-3})}, {{0, 0, 0}, {0, 0, 11e-3}});
+    const auto trajectory = one_step(model, {{{0, 0, 11e-3}, zero}, {{1e-3, 0, 11e-3}, Vector3(0.1, 0.2, 0)}});
+    ClearanceOptions exact = over_motion();
+    exact.tolerance = 1e-10;
+    const PairClearance truth = certify_clearance(model, trajectory, {{0, 1, 0}}, exact)[0];
+    REQUIRE(truth.lower > 0);
+    for (const double off : {-3e-7, -2e-8, 2e-8, 3e-7})
+        for (const bool recorded : {false, true}) {
+            ClearanceOptions options = over_motion();
+            options.tolerance = 1e-5;
+            core::certificate::Certificate certificate;
+            if (recorded) options.certificate = &certificate;
+            const PairClearance pair = certify_clearance(model, trajectory, {{0, 1, truth.lower + off}}, options)[0];
+            CAPTURE(off, recorded, pair.lower, pair.upper, pair.reason);
+            CHECK(pair.status == (off < 0 ? PairStatus::clear : PairStatus::violated));
+            if (recorded) CHECK(check_certificate(certificate, model, trajectory).accepted());
+        }
+}
+
 }  // namespace fettle::core::clearance::clash_test

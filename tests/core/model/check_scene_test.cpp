@@ -49,6 +49,27 @@ TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
     CHECK(contains(only_error(build_model(scene_of({cube}))).where, "/prescribed"));
 }
 
+TEST_CASE("Newmark's rule, which lets them oscillate, drives no coordinates of a body that is free otherwise", "[model]") {
+    scene::Scene scene = scene_of({box_body("slide", {0, 0, 0}, {0.1, 0.1, 0.1})});
+    scene.integrator = scene::Integrator::newmark;
+    scene::Body& body = scene.bodies[0];
+    body.prescribed[2] = scene::MotionCurve{};  // held
+    CHECK(check_scene(scene, true).errors.empty());
+    scene::MotionCurve driven;
+    driven.rate = 0.4;
+    body.prescribed[0] = driven;
+    const Errors errors = check_scene(scene, true).errors;
+    REQUIRE(errors.size() == 1);
+    CHECK(contains(errors[0].where, "/prescribed"));
+    CHECK(contains(errors[0].message, "bdf2"));
+    body.prescribed.fill(driven);  // its velocity is that of its places
+    CHECK(check_scene(scene, true).errors.empty());
+    body.prescribed.fill(std::nullopt);
+    body.prescribed[0] = driven;
+    scene.integrator = scene::Integrator::bdf2;
+    CHECK(check_scene(scene, true).errors.empty());
+}
+
 TEST_CASE("A size or a density that is hardly meant is a warning, with its place and what to look at", "[model]") {
     const auto warnings = [](std::vector<scene::Body> bodies) { return build_model(scene_of(std::move(bodies))).value().warnings; };
     const auto told = [&](std::vector<scene::Body> bodies, const std::string& part) {

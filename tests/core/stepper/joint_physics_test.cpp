@@ -318,6 +318,48 @@ TEST_CASE("friction of a joint holds below its torque and brakes above it", "[jo
     }
 }
 
+TEST_CASE("a joint slides as soon as the force is more than its friction, with the default accuracy", "[joints]") {
+    for (const double excess : {0.002, 0.006, 0.02})
+        for (const double h : {0.01, 0.002}) {
+            scene::Scene scene = scene_of({bar("mass", 0.2)}, h);
+            scene.velocity_tolerance.reset();
+            scene.mechanism.joints = {
+                joint("slide", JointKind::prismatic, {"", Vector3::Zero(), x_axis}, {"mass", Vector3::Zero(), x_axis})};
+            scene.mechanism.joints[0].forces.friction = 5;
+            scene.bodies[0].force = Vector3(5 * (1 + excess), 0, 0);
+            const model::Model model = built(scene);
+            constexpr double time = 1;
+            const Simulation out = run(model, static_cast<int>(time / h));
+            const double mass = model.bodies[0].moments(3, 3), way = 0.5 * 5 * excess / mass * time * time;
+            const double moved =
+                place(model, out, static_cast<int>(time / h), 0, Vector3::Zero()).x() - place(model, out, 0, 0, Vector3::Zero()).x();
+            INFO("excess " << excess << ", time step " << h << ": " << moved << " m of " << way);
+            CHECK(moved > 0.95 * way);  // below eps_v, 1 mm/s, it takes a moment longer
+            CHECK(moved < 1.03 * way + 1e-3 * time);
+        }
+}
+
+TEST_CASE("what a gear transmits is told: the torque that turns its second wheel", "[joints]") {
+    scene::Scene scene = scene_of({bar("one", 0.1), bar("two", 0.1, Vector3(0.3, 0, 0))}, 1e-3);
+    scene.mechanism.joints = {joint("a", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"one", Vector3::Zero(), z_axis}),
+                              joint("b", JointKind::revolute, {"", Vector3(0.3, 0, 0), z_axis}, {"two", Vector3::Zero(), z_axis})};
+    scene::Joint gear = joint("g", JointKind::gear, {}, {});
+    gear.of = {"a", "b"};
+    gear.ratio = -0.4;
+    scene.mechanism.joints.push_back(gear);
+    scene.bodies[0].torque = Vector3(0, 0, 0.001);
+    const model::Model model = built(scene);
+    const Simulation out = run(model, 50);
+    const auto inertia = [&](int body) {  // about its hinge, along z
+        const Matrix4& m = model.bodies[static_cast<std::size_t>(body)].moments;
+        const Vector3 c = model.bodies[static_cast<std::size_t>(body)].reference_point;
+        return m(0, 0) + m(1, 1) + 2 * c.head<2>().dot(m.topRightCorner<2, 1>()) + c.head<2>().squaredNorm() * m(3, 3);
+    };
+    // torque + ratio effort' = I1 a1,  -effort' = I2 a2 with a2 = ratio a1: the second wheel gets I2 ratio torque/(I1 + ratio^2 I2).
+    const double effort = inertia(1) * gear.ratio * 0.001 / (inertia(0) + gear.ratio * gear.ratio * inertia(1));
+    CHECK(out.outputs.back().joints[2].effort == Approx(effort).epsilon(1e-3));
+}
+
 TEST_CASE("a motor that contact stops is blocked: joint, torque and what is in the way are named", "[joints]") {
     // The bar comes round against a post after a quarter turn.
     scene::Scene scene = scene_of({bar("arm", 0.3), bar("post", 0.05, Vector3(-0.025, 0.2, 0))}, 0.01);

@@ -70,6 +70,24 @@ TEST_CASE("jointed motion: what joints may part by goes with the mechanism's siz
     CHECK(default_joint_gap(built(scene)) == Approx(1e-3 * gap));
 }
 
+TEST_CASE("jointed motion: a small mechanism far from the origin is followed to the rounding of its places") {
+    scene::Scene scene = slider_crank();
+    const Vector3 away(5.4, -9.6, -4.6);
+    for (scene::Body& body : scene.bodies) {
+        body.mesh.vertices *= 1e-3;
+        body.pose.position = 1e-3 * body.pose.position + away;
+    }
+    for (scene::Joint& joint : scene.mechanism.joints) {
+        for (scene::Attachment* end : {&joint.a, &joint.b}) {
+            end->point *= 1e-3;
+            if (end->body.empty()) end->point += away;
+        }
+    }
+    const auto motion = follow_joints(built(scene), 50, 1e-8);
+    CAPTURE(motion ? std::string() : motion.errors()[0].message);
+    CHECK(motion);
+}
+
 TEST_CASE("jointed motion: joints part between nodes by less than is told, and a finer path is asked for by a smaller gap", "[mechanism]") {
     const model::Model model = built(slider_crank());
     const auto coarse = follow_joints(model, 50, 1), fine = follow_joints(model, 50, 1e-5);
