@@ -21,6 +21,8 @@
 #include <tbb/task_group.h>
 #endif
 
+#include "fettle/core/base/stop.hpp"
+
 namespace fettle::core::base {
 namespace {
 
@@ -363,14 +365,18 @@ void parallel_pieces(int count, int grain, const std::function<void(int begin, i
     FETTLE_ASSERT(count >= 0 && grain >= 1, "a negative count or an empty grain");
     const int pieces = count / grain + (count % grain != 0);
     FirstFailure failure;
+    const std::function<bool()>* const should_stop = StopScope::asked();
     const auto run = [&](int piece) {
         if (failure.is_below(piece)) return;
+        const std::function<bool()>* const own = std::exchange(StopScope::asked(), should_stop);
         try {
+            stop_if_asked();
             const int begin = piece * grain;
             body(begin, begin + std::min(grain, count - begin));
         } catch (...) {
             failure.record(piece);
         }
+        StopScope::asked() = own;
     };
     if (pieces == 1) {
         run(0);

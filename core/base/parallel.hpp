@@ -39,6 +39,7 @@ void wake_threads(const std::function<void()>& meanwhile = {});
 
 /// Calls body(begin, end) for the pieces [0, grain), [grain, 2 grain), ... of [0, count), in any order, on any thread, each once.
 /// If pieces throw, the exception of the lowest is thrown on, after all that were running have ended; higher ones may not have run.
+/// A StopScope of the caller (stop.hpp) holds in all pieces, and is asked before each.
 /// Contract: count >= 0, grain >= 1.
 void parallel_pieces(int count, int grain, const std::function<void(int begin, int end)>& body);
 

@@ -16,7 +16,7 @@ public:
 
 class SharedLibrary {
 public:
-    /// Throws MissingLibrary.
+    /// Throws MissingLibrary; std::bad_alloc where there is no memory for it.
     /// @param name  As the loader looks for it: "libnlopt.so.0".
     /// @param path  Where it was when this program was built: tried second. Empty: nowhere.
     SharedLibrary(const std::string& name, const std::string& path);

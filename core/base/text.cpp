@@ -34,11 +34,14 @@ Character character_at(std::string_view text, std::size_t at) {
     return {code, bytes};
 }
 
-bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
+// U+FFFE and U+FFFF are no characters, nor may they stand in XML.
+bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0xFFFE || code == 0xFFFF; }
 
-std::string hexadecimal(unsigned byte) {
+std::string hexadecimal(unsigned code) {
     constexpr std::string_view digits = "0123456789abcdef";
-    return {'\\', 'x', digits[byte >> 4U & 15U], digits[byte & 15U]};
+    std::string out = "\\x";
+    for (unsigned shift = code > 0xFF ? 16 : 8; shift > 0;) out += digits[code >> (shift -= 4) & 15U];
+    return out;
 }
 
 // Calls `kept(character's bytes, its code)` for each, `other(shown)` for what no terminal is to have.

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/rounding.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/contact/chord_deviation.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 
@@ -108,6 +109,7 @@ public:
         const double threshold = std::min(options_.linear.tolerance, hit_share * gap);
         double s = 0;
         for (int piece = 0; piece < options_.max_pieces && gap > threshold; ++piece) {
+            base::stop_if_asked();
             const double reached = advance(s, x, gap);
             if (reached >= 1) return {};
             if (!(reached > s)) break;

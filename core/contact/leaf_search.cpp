@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/contact/separating_plane.hpp"
 
 namespace fettle::core::contact {
@@ -198,7 +199,10 @@ void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, P
     // Kept for their memory.
     static thread_local PlacedLeaves placed_a, placed_b;
     LeafSearch search(pair, placed_a, placed_b, out);
-    for (const NodePair& l : leaves) search.visit(l);
+    for (const NodePair& l : leaves) {
+        base::stop_if_asked();
+        search.visit(l);
+    }
 }
 
 }  // namespace fettle::core::contact

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/rounding.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
@@ -153,6 +154,7 @@ private:
         if (distance > kept + travel) return 1;
         const double surely_free = distance > kept ? (1 - 1e-12) * (distance - kept) / travel : 0;
         if (surely_free > least_) return 1;
+        base::stop_if_asked();
         // Always the whole segment: a part of it would be another path, by rounding.
         const CurvedCcdResult ccd = curved_ccd(type, sa, sb, X, kept);
         const double fraction = ccd.hit ? std::max(ccd.toi, surely_free) : 1;  // in this order: what is not a number loses

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "fettle/core/base/mixed_bits.hpp"
+#include "fettle/core/base/stop.hpp"
 
 namespace fettle::core::files {
 
@@ -81,6 +82,20 @@ void flush_folder(const fs::path& folder) {
     if (handle < 0) return;
     ::fsync(handle);
     ::close(handle);
+}
+
+constexpr std::size_t longest_stream = std::size_t{1} << 30;  // of what may have no end: a pipe, a terminal
+
+// /dev/zero, a disk; not /dev/null, which has its end at once, nor a terminal, where somebody gives one.
+bool is_endless(const fs::path& path) {
+    struct stat there {};
+    if (::stat(path.c_str(), &there) != 0 || (!S_ISCHR(there.st_mode) && !S_ISBLK(there.st_mode))) return false;
+    struct stat null {};
+    if (::stat("/dev/null", &null) == 0 && there.st_rdev == null.st_rdev) return false;
+    const int file = ::open(path.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    const bool terminal = file >= 0 && ::isatty(file) != 0;
+    if (file >= 0) ::close(file);
+    return !terminal;
 }
 
 // A name of an open file: /dev/stdout, /dev/fd/3, /proc/self/fd/3.
@@ -291,12 +306,17 @@ Result<std::string> read_file(const fs::path& path) {
     std::error_code code;
     if (!fs::exists(path, code)) return Error{ErrorCode::file_not_found, path.string(), "no such file"};
     if (fs::is_directory(path, code)) return Error{ErrorCode::file_unreadable, path.string(), "is a folder, a file is wanted"};
+    if (is_endless(path)) return Error{ErrorCode::file_unreadable, path.string(), "is a device, not a regular file: it has no end"};
+    const bool has_size = fs::is_regular_file(path, code);
     std::ifstream stream(path, std::ios::binary);
     std::string contents;
     std::vector<char> block(1 << 16);
     do {
+        base::stop_if_asked();
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
         contents.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+        if (!has_size && contents.size() > longest_stream)
+            return Error{ErrorCode::file_unreadable, path.string(), "gives more than 1 GiB; what is that long is read from a regular file"};
     } while (stream);
     if (!stream.is_open() || stream.bad()) return Error{ErrorCode::file_unreadable, path.string(), "the file cannot be read"};
     return contents;

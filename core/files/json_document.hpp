@@ -66,6 +66,7 @@ public:
     JsonNode unless_null() const&;
     JsonNode unless_null() &&;
     std::vector<JsonNode> elements() const;                         ///< of an array; wrong_type otherwise; empty if absent
+    std::vector<JsonNode> objects() const;                          ///< the same, of objects alone; wrong_type of each that is none
     std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key; the same rules
     /// read(i, nodes[i]) for each of some nodes of one document, on all threads. What they report comes in their order.
     static void read_each(const std::vector<JsonNode>& nodes, const std::function<void(std::size_t i, const JsonNode& node)>& read);

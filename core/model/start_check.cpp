@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/closure.hpp"
@@ -156,6 +157,7 @@ public:
         std::vector<std::pair<int, int>> open{{0, 0}};
         const auto &a_nodes = a_.body->hierarchy->nodes(), &b_nodes = b_.body->hierarchy->nodes();
         while (!open.empty() && !(fault_ && fault_->intersects)) {
+            base::stop_if_asked();
             const auto [i, j] = open.back();
             open.pop_back();
             const HierarchyNode &a = a_nodes[i], &b = b_nodes[j];

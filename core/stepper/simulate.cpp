@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/stepper/step.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 
@@ -60,6 +61,20 @@ Simulation taken_up(const model::Model& model, const SimulationOptions& options)
     return out;
 }
 
+// A step that is stopped in the middle of its searches is one that did not happen.
+StepResult stoppable_step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace,
+                          const SimulationOptions& options) {
+    const base::StopScope scope(options.should_stop);
+    try {
+        return step(model, state, workspace, options);
+    } catch (const base::Stopped&) {
+        StepResult stopped;
+        stopped.status = SimulationStatus::interrupted;
+        stopped.message = "stopped on request; the steps before it are whole";
+        return stopped;
+    }
+}
+
 }  // namespace
 
 Simulation simulate(const model::Model& model, const SimulationOptions& options) {
@@ -77,7 +92,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
             workspace.forget();
             out.checkpoint = {t, state};
         }
-        StepResult result = step(model, state, workspace, options);
+        StepResult result = stoppable_step(model, state, workspace, options);
         out.report.newton_iterations += result.report.newton_iterations;
         if (result.status != SimulationStatus::ok) {
             std::ostringstream message;

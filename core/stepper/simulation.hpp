@@ -46,7 +46,7 @@ struct SimulationOptions {
     bool last_outputs_only = false;                ///< they are kept of the last step alone: for an on_step that writes them as they come
     const struct Simulation* resume = nullptr;     ///< an earlier run of this model: goes on from its checkpoint, ends as one run would
     std::function<void(const Progress&)> on_step;  ///< optional
-    std::function<bool()> should_stop;             ///< optional, asked after each Newton iteration
+    std::function<bool()> should_stop;             ///< optional, asked often, on any thread
 };
 
 struct StepReport {

@@ -77,11 +77,15 @@ const char* level(CheckOutcome outcome) {
     return outcome == CheckOutcome::undecided ? "warning" : "error";
 }
 
-Json result_of(const Check& check) {
+// A finding's own file, else the command's.
+const std::string& place_of(const Check& check, const Checks& checks) { return check.file.empty() ? checks.about : check.file; }
+
+Json result_of(const Check& check, const Checks& checks) {
     Json result{{"ruleId", rule_id(check.rule)}, {"kind", "fail"}, {"level", level(check.outcome)}};
     result["message"] = {{"text", check.name + ": " + check.message}};
-    if (!check.file.empty())
-        result["locations"] = Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(check.file)}}}}}}});
+    const std::string& place = place_of(check, checks);
+    const std::string uri = uri_of(place.empty() ? "." : place);
+    result["locations"] = Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri}}}}}}});
     // The same finding in the next run. Of one file there can be several warnings and faults, which their messages tell apart; those of a
     // requirement have numbers that change with every design.
     const bool is_told_by_message = check.outcome == CheckOutcome::remarked || check.outcome == CheckOutcome::fault;
@@ -173,7 +177,7 @@ std::string sarif_json(const Checks& checks) {
         if (!is_finding(check)) continue;
         if (std::exchange(known[rule_id(check.rule)], true) == false)
             rules.push_back({{"id", rule_id(check.rule)}, {"shortDescription", {{"text", check.rule}}}});
-        results.push_back(result_of(check));
+        results.push_back(result_of(check, checks));
     }
     const Json driver{{"name", "fettle"}, {"version", core::base::version()}, {"rules", rules}};
     const bool done = checks.verdict != CheckOutcome::fault;
@@ -202,7 +206,8 @@ std::string annotation_lines(const Checks& checks) {
         const std::string kind = check.outcome == CheckOutcome::remarked    ? "notice"
                                  : check.outcome == CheckOutcome::undecided ? "warning"
                                                                             : "error";
-        text += "::" + kind + " " + (check.file.empty() ? "" : "file=" + escaped(check.file, true) + ",") +
+        const std::string& place = place_of(check, checks);
+        text += "::" + kind + " " + (place.empty() ? "" : "file=" + escaped(place, true) + ",") +
                 "title=" + escaped("fettle " + checks.command + ": " + check.name, true) + "::" + escaped(check.message, false) + "\n";
     }
     return text;

@@ -50,10 +50,12 @@ struct Checks {
     int exit_code = 0;
     CheckOutcome verdict = CheckOutcome::passed;  ///< that it stands for
     std::vector<Check> list;
+    std::string about = {};  ///< the file that the command is about: where findings are that have no file of their own
 };
 
 std::string junit_xml(const Checks& checks);
-/// Findings alone; files that are below the working directory by their way from there, as code scanning wants them.
+/// Findings alone, each with a file (code scanning refuses all where one has none: `about`, else the working directory); those below the
+/// working directory by their way from there, as code scanning wants them.
 std::string sarif_json(const Checks& checks);
 std::string markdown_text(const Checks& checks);
 /// "::error file=...,title=...::..." for each finding.

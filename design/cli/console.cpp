@@ -277,6 +277,12 @@ int Console::out_of_memory() {
                               "); ask for less at a time (fewer steps, pairs or samples, coarser meshes), or give the program more"}});
 }
 
+int Console::stopped() {
+    result({{"status", "interrupted"}},
+           "interrupted: " + (doing_.empty() ? std::string("stopped on request") : "last told: " + doing_) + "\n");
+    return exit_undecided;
+}
+
 std::string Console::coloured(const std::string& text, bool good) const {
     if (!colours_) return text;
     return (good ? green : red) + text + plain;

@@ -68,10 +68,15 @@ public:
     int internal_error(const std::string& message);
     /// The same where there is not enough memory, with what was being done. @return exit_bad_input
     int out_of_memory();
+    /// Of work that was asked to stop before it had an answer. @return exit code
+    int stopped();
 
     /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves. `file` is kept if it is one.
     void found(Check check);
     const std::vector<Check>& checks() const { return checks_; }
+    /// The file that the command is about: of checks that have no other.
+    void set_about(std::string file) { about_ = std::move(file); }
+    const std::string& about() const { return about_; }
 
     /// "clear" in green and so on, if colours are wanted.
     std::string coloured(const std::string& text, bool good) const;
@@ -89,6 +94,7 @@ private:
 
     ConsoleOptions options_;
     std::vector<Check> checks_;
+    std::string about_;
     std::shared_ptr<const Answer> held_;
     std::shared_ptr<std::FILE> log_;
     Clock::time_point begun_ = Clock::now();

@@ -94,6 +94,18 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     return plan;
 }
 
+/// Files of the bodies' meshes, which a certificate can speak of.
+bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
+
+/// Of files that hold meshes alone the parts can be arranged.
+Errors arrange_errors(const ExportArguments& options) {
+    if (options.arrange == "assembled") return {};
+    const Result<Plan> plan = plan_of(options, "");
+    if (!plan) return plan.errors();
+    if (std::any_of(plan->formats.begin(), plan->formats.end(), has_meshes_alone)) return {};
+    return {{ErrorCode::inconsistent, "--arrange", "is of 3mf, stl and obj: other formats have the parts where they are"}};
+}
+
 /// The time series: poses at the ends of the steps, and of a run's folder its tables.
 Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::FileSink& sink) {
     const std::string name = plan.one_file ? plan.stem + ".csv" : "poses.csv";
@@ -115,9 +127,6 @@ Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::
     }
     return errors;
 }
-
-/// Files of the bodies' meshes, which a certificate can speak of.
-bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
 
 /// Writes into the certificate which files were made of its bodies. Errors: it is about another path or other bodies.
 Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair<std::string, double>>& files) {
@@ -151,13 +160,16 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     Json files = Json::array();
     std::string text;
     core::files::FilesTogether together;
+    std::vector<NamedFile> written;
     Errors errors;
     for (const auto& [name, bytes] : robot->files) {
         const fs::path path = fs::path(options.to).parent_path() / name;
+        written.push_back({"--to", path.string(), true});
         if (errors.empty()) errors = together.add(path, bytes);
         files.push_back({{"file", path.string()}, {"format", "urdf"}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
         text += path.string() + "\n";
     }
+    if (errors.empty()) errors = replaced_inputs(written, common.given);
     if (errors.empty()) errors = together.take_names();
     if (!errors.empty()) return console.input_errors(errors);
     console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", robot->warnings}}, text);
@@ -168,6 +180,7 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
     if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
     if (options.in_place && !options.separate())
         return console.input_errors({{ErrorCode::inconsistent, "--in-place", "is of --arrange separate: a file for each part"}});
+    if (const Errors errors = arrange_errors(options); !errors.empty()) return console.input_errors(errors);
     Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
     const Result<Plan> plan = plan_of(options, shown->stem);
@@ -187,10 +200,12 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
     std::string text, format;
     double rounding = 0;
     core::files::FilesTogether together;
+    std::vector<NamedFile> written;
     const exports::FileSink sink = [&](const std::string& name, const std::string& bytes) -> Errors {
         const std::string path = (plan->folder / name).string();
         files.push_back({{"file", path}, {"format", format}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
         text += formatted("%s  %zu bytes\n", path.c_str(), bytes.size());
+        written.push_back({"--to", path, true});
         if (has_meshes_alone(format) && !name.ends_with(".mtl")) of_meshes.emplace_back(path, rounding);
         return together.add(plan->folder / name, bytes);
     };
@@ -207,6 +222,7 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
         }
         if (!errors.empty()) return console.input_errors(errors);
     }
+    if (const Errors errors = replaced_inputs(written, common.given); !errors.empty()) return console.input_errors(errors);
     if (const Errors errors = together.take_names(); !errors.empty()) return console.input_errors(errors);
     if (!shown->certificate.empty() && !of_meshes.empty()) {
         const Errors errors = name_in_certificate(*shown, of_meshes);
@@ -238,7 +254,8 @@ Command add_export(CommandLine& program, const CommonOptions& common) {
         "meshes, and fettle validate says \"stale\" when one has changed.\n"
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
         "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
-        "          fettle export SCENE --to parts --format stl --arrange separate --in-place        for a check by fettle clearance parts");
+        "          fettle export SCENE --to parts --format stl --arrange separate --in-place   for a check by fettle clearance parts "
+        "--unit mm");
     return {app, [options, &common](Console& console) { return run_export(*options, common, console); }};
 }
 

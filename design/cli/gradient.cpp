@@ -404,11 +404,14 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("gradient", "Objective, constraints and their gradients");
     auto options = std::make_shared<GradientArguments>();
     app.option("DESIGN", options->path, "Design, taken at its values").required();
-    app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
-    app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2").above(0);
+    const Option check = app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
+    app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2")
+        .above(0)
+        .needs(check);
     app.option("--check-parameters", options->check_parameters,
                "Check that many alone, those that the objective hangs on most in shares of their ranges (default: all)")
-        .at_least(1);
+        .at_least(1)
+        .needs(check);
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");

@@ -41,13 +41,16 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
     Json files = Json::array();
     std::string told;
     core::files::FilesTogether together;
+    std::vector<NamedFile> written;
     Errors errors;
     for (const auto& [file, contents] : scene->files) {
         const fs::path path = fs::path(arguments.to).parent_path() / file;
+        written.push_back({"--to", path.string(), true});
         if (errors.empty()) errors = together.add(path, contents);
         files.push_back(path.string());
         told += path.string() + "\n";
     }
+    if (errors.empty()) errors = replaced_inputs(written, common.given);
     if (errors.empty()) errors = together.take_names();
     if (!errors.empty()) return console.input_errors(errors);
     console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", scene->warnings}}, told);

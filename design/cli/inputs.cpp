@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
@@ -92,6 +93,7 @@ Result<LoadedModel> load_scene(const std::string& path, const CommonOptions& com
     loaded.warnings = std::move(scene->warnings);
     core::model::BuildOptions options;
     options.check_start = check_start;
+    const core::base::StopScope scope(interrupted);
     Result<core::model::Model> model = core::model::build_model(*std::move(scene), options);
     if (!model) return model.errors();
     loaded.model = std::move(model).value();

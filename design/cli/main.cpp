@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/shared_library.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -89,7 +91,7 @@ void add_check_options(CommandLine program, CheckFiles& files) {
 
 Checks checks_of(const std::string& command, int exit_code, const Console& console) {
     const CheckOutcome outcomes[] = {CheckOutcome::passed, CheckOutcome::failed, CheckOutcome::undecided};
-    return {command, exit_code, exit_code <= exit_undecided ? outcomes[exit_code] : CheckOutcome::fault, console.checks()};
+    return {command, exit_code, exit_code <= exit_undecided ? outcomes[exit_code] : CheckOutcome::fault, console.checks(), console.about()};
 }
 
 // Those that something else is, too, are not written.
@@ -119,9 +121,22 @@ int finish(const CheckFiles& files, const std::string& command, int verdict, Con
     return checks.exit_code;
 }
 
+// What a command is about: the first file or folder that it is given and that is there; else the first that it is given.
+std::string subject_of(const std::vector<NamedFile>& named) {
+    std::string first;
+    std::error_code ignored;
+    for (const auto& [option, file, is_written] : named) {
+        const bool is_input = !is_written && !option.starts_with("-") && !file.starts_with("-");
+        if (is_input && std::filesystem::exists(file, ignored)) return file;
+        if (is_input && first.empty() && option != "another word") first = file;
+    }
+    return first;
+}
+
 // Nothing is begun.
 int refuse(const CommonOptions& common, const std::string& command, const Errors& errors) {
     Console console({common.json, false, {}, true});
+    console.set_about(subject_of(common.given.named));
     return finish(common.check_files, command, console.input_errors(errors), console);
 }
 
@@ -131,6 +146,7 @@ int refuse_usage(int argc, char** argv, const std::string& command, const std::s
     const std::vector<NamedFile> named = named_files_in(words, {"--junit", "--sarif", "--markdown"});
     CommonOptions common;
     common.json = asks_for_json(argc, argv);
+    common.given.named = named;
     common.check_files = check_files_in(named);
     common.check_files.annotations = std::find(words.begin(), words.end(), "--annotations") != words.end();
     keep_apart(common.check_files, named_twice(named));
@@ -138,9 +154,25 @@ int refuse_usage(int argc, char** argv, const std::string& command, const std::s
     return refuse(common, command, {{ErrorCode::unsupported, "command line", message}});
 }
 
+// Those that are named; and of a folder of results what may also be a run's input.
+std::vector<NamedFile> written_by(const GivenFiles& given) {
+    std::vector<NamedFile> written;
+    for (const NamedFile& file : given.named) {
+        if (!file.is_written) continue;
+        written.push_back(file);
+        if (file.option != "--out" || (given.command != "simulate" && given.command != "clearance" && given.command != "optimise"))
+            continue;
+        written.push_back({file.option, (std::filesystem::path(file.file) / "motion.glb").string(), true});
+        if (given.command == "optimise")
+            written.push_back({file.option, (std::filesystem::path(file.file) / "design.final.json").string(), true});
+    }
+    return written;
+}
+
 // Those that nothing else is are made ready to be written. @return what is wrong with the others
-Errors prepare(CommonOptions& common, const std::vector<NamedFile>& named) {
-    Errors errors = named_twice(named);
+Errors prepare(CommonOptions& common) {
+    Errors errors = named_twice(common.given.named);
+    if (errors.empty()) errors = replaced_inputs(written_by(common.given), common.given);
     keep_apart(common.check_files, errors);
     const auto add = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
     add(prepare_check_files(common.check_files));
@@ -153,6 +185,8 @@ int run_command(const Command& command, Console& console) {
         return command.run(console);
     } catch (const core::base::MissingLibrary& missing) {
         return console.input_errors({{ErrorCode::file_not_found, "libraries", missing.what()}});
+    } catch (const core::base::Stopped&) {
+        return console.stopped();
     } catch (const std::bad_alloc&) {
         return console.out_of_memory();
     } catch (const std::exception& error) {
@@ -215,9 +249,10 @@ int run(int argc, char** argv) {
     std::vector<GivenValue> given = program.given();
     const std::vector<GivenValue> own = command->line.given();
     given.insert(given.end(), own.begin(), own.end());
-    if (const Errors errors = prepare(common, named_files_of(command->line.name(), given)); !errors.empty())
-        return refuse(common, command->line.name(), errors);
+    common.given = {command->line.name(), named_files_of(command->line.name(), given), common.mesh_dirs};
+    if (const Errors errors = prepare(common); !errors.empty()) return refuse(common, command->line.name(), errors);
     Console console({common.json, common.quiet, common.log, common.check_files.wanted()});
+    console.set_about(subject_of(common.given.named));
     std::optional<core::base::ThreadLimit> limit;
     if (common.threads > 0) limit.emplace(common.threads);
     catch_interrupts();
@@ -225,9 +260,16 @@ int run(int argc, char** argv) {
     return finish(common.check_files, command->line.name(), run_command(*command, console), console);
 }
 
+// Ours are the threads: those of libraries of linear algebra, which are loaded later, take tens of megabytes each, and where that cannot
+// be had they wait for ever. What the user has set holds.
+void expect_one_thread_of_libraries() {
+    for (const char* name : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS"}) setenv(name, "1", 0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    expect_one_thread_of_libraries();
     expect_failed_writes();
     keep_freed_memory();
     expect_out_of_memory(asks_for_json(argc, argv));

@@ -63,7 +63,9 @@ Errors named_twice(const std::vector<NamedFile>& files) {
             const bool is_told = other.is_written && &other <= &file;  // of two that are written, once
             if (!file.is_written || is_told || !is_same_file(file.file, other.file)) continue;
             errors.push_back({ErrorCode::inconsistent, file.file,
-                              file.option + " would write what " + other.option + (other.is_written ? " writes too" : " names to be read") +
+                              file.option + " would " +
+                                  (other.is_written ? "write what " + other.option + " writes too"
+                                                    : "replace a file that is read (" + other.option + ")") +
                                   "; name another file"});
         }
     }

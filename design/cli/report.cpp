@@ -24,6 +24,7 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
     options.mesh_dirs = common.mesh_dirs;
     options.programs = programs_of(common);
     options.should_stop = interrupted;
+    options.tell = [&](const std::string& notice) { tell_warnings(console, {notice}, arguments.source); };
     if (!arguments.out.empty()) {
         const Errors errors = try_output_file(arguments.out);
         if (!errors.empty()) return console.input_errors(errors);

@@ -27,6 +27,7 @@ Result<std::string> file_to_read(const ShownOptions& options, std::string& certi
         certificate = path;
         return options.trajectory.empty() ? certificate_trajectory(path) : options.trajectory;
     }
+    if (!options.trajectory.empty()) return Error{ErrorCode::inconsistent, "--trajectory", "is of a certificate, and " + path + " is none"};
     return path;
 }
 

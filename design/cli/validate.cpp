@@ -121,6 +121,11 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
     if (kind == FileKind::certificate) return validate_certificate({path, options.trajectory, options.minimum}, common, console);
+    Errors not_taken;
+    for (const auto& [option, value] : {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}})
+        if (!value.empty())
+            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is of a certificate; ask fettle clearance")});
+    if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});

@@ -49,9 +49,7 @@ public:
         read_range(node, parameter);
         const JsonNode moves = node.require("moves");
         if (moves.is_array() && moves.elements().empty()) moves.fail(ErrorCode::out_of_range, "a parameter that moves nothing");
-        for (const JsonNode& entry : moves.elements()) {
-            if (entry.is_object()) read_move(entry, parameter);
-        }
+        for (const JsonNode& entry : moves.objects()) read_move(entry, parameter);
         return parameter;
     }
 

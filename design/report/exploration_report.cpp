@@ -21,24 +21,23 @@ using Json = nlohmann::ordered_json;
 Errors read_lines(const std::string& file, ExplorationSource& source) {
     const Result<std::string> text = core::files::read_file(file);
     if (!text) return text.errors();
-    std::istringstream lines(text->substr(0, text->rfind('\n') + 1));  // what follows the last line feed was cut off
+    const std::size_t end = text->rfind('\n') + 1;
+    std::istringstream lines(text->substr(0, end));
     std::string line;
     std::getline(lines, line);
     source.header = parsed_json(line);
     if (member(source.header, "fettle_explore") != 1)
         return {
             {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
-    int damaged = 0;
-    while (std::getline(lines, line)) {
+    for (int number = 2; std::getline(lines, line); ++number) {
         if (line.empty()) continue;
         Json result = parsed_json(line);
-        if (result.is_object() && member(result, "status").is_string()) {
-            source.results.push_back(std::move(result));
-        } else {
-            ++damaged;
-        }
+        if (!result.is_object() || !member(result, "status").is_string())
+            return {{ErrorCode::parse, file + ": line " + std::to_string(number),
+                     "the line is damaged: it is no result of an exploration; take it out, or name another file"}};
+        source.results.push_back(std::move(result));
     }
-    if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
+    if (end < text->size()) source.notices.emplace_back(cut_off);
     if (source.results.empty())
         return {{ErrorCode::missing_key, file,
                  "an exploration without a result: there is nothing to report yet; `fettle explore` with the same --out goes on with it"}};
@@ -85,6 +84,8 @@ Result<std::string> write_exploration_report(const std::string& file, const Repo
     if (Errors errors = read_lines(file, source); !errors.empty()) return errors;
     source.folder = file;
     source.name = fs::path(file).stem().string();
+    if (options.tell)
+        for (const std::string& notice : source.notices) options.tell(notice);
     take_design(file, options, source);
     const std::string page = page_of(exploration_data(source, options.should_stop));
     if (Errors errors = core::files::write_file_atomically(out, page); !errors.empty()) return errors;

@@ -15,6 +15,7 @@
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/report_page.hpp"
+#include "fettle/design/studies/history.hpp"
 
 namespace fettle::design::report {
 
@@ -182,13 +183,26 @@ private:
         source_.gravity = file->design.scene.gravity;
         source_.name = name_of(file->scene_path, folder_);
         source_.linear = linear_motors(file->design.scene.mechanism);
-        source_.history = text_or_empty(folder_ / "history.jsonl");
+        if (Errors errors = read_history(); !errors.empty()) return errors;
         source_.design = file->design;
         if (!source_.motion) return {};
         const Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
         if (!problem) return problem.errors();
         if (Errors errors = take_tables(*problem); !errors.empty()) return errors;
         return take_before(*problem, file->scene_path);
+    }
+
+    Errors read_history() {
+        const fs::path path = folder_ / "history.jsonl";
+        source_.history = text_or_empty(path);
+        const std::size_t end = source_.history.rfind('\n') + 1;
+        const bool whole = end == source_.history.size();
+        source_.history.resize(end);
+        if (!whole) {
+            source_.notices.push_back(path.filename().string() + ": " + cut_off);
+            if (options_.tell) options_.tell(path.string() + ": " + cut_off);
+        }
+        return studies::history_faults(source_.history, path.string());
     }
 
     // Forces of the final design: as they are kept, or simulated once more, with the same bits.

@@ -19,12 +19,16 @@
 
 namespace fettle::design::report {
 
+/// Of a file of lines that a run was adding to when it ended.
+inline constexpr const char* cut_off = "The last line of the file was cut off, as a run that is killed leaves it: it was left out.";
+
 struct ReportOptions {
     std::string out;                                           ///< file; empty: report.html in the folder
     std::vector<std::string> mesh_dirs;                        ///< also looked in for meshes
     reading::Programs programs = reading::Programs::refused;   ///< may parts be made anew by the programs that the scene names?
     std::optional<Motion> motion;                              ///< of the folder's trajectory, if it is at hand
     std::function<bool()> should_stop = [] { return false; };  ///< asked often; true: what takes computing is left out
+    std::function<void(const std::string&)> tell = {};         ///< optional: what of the input was left out, as the page says it too
 };
 
 /// @return the path of the report. Errors: no result.json, one of another kind, files that cannot be read or written, or a report.html of

@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -209,6 +210,27 @@ bool lock(int file) {
 }
 
 }  // namespace
+
+Errors history_faults(const std::string& text, const std::string& path) {
+    std::istringstream lines(text);
+    std::string line;
+    if (!std::getline(lines, line)) return {};
+    HistoryHeader header;
+    int number = 1;
+    const auto fault = [&](const std::string& what) {
+        return Errors{{ErrorCode::parse, path + ": line " + std::to_string(number), "damaged: " + what}};
+    };
+    try {
+        const Json json = core::files::is_safe_json_text(line) ? Json::parse(line) : Json();
+        if (!json.is_object() || json.at("fettle_history") != 1) return fault("this is not a history of fettle");
+        header.parameters = json.at("parameters").get<std::vector<std::string>>();
+        header.constraints = json.at("constraints").get<std::vector<std::string>>();
+        for (number = 2; std::getline(lines, line); ++number) static_cast<void>(parsed_entry(line, header));
+    } catch (const std::exception& e) {
+        return fault(e.what());
+    }
+    return {};
+}
 
 Result<History> History::open(const std::string& directory, const HistoryHeader& header, HistoryMode mode) {
     History history;

@@ -39,6 +39,9 @@ enum class HistoryMode {
     resume  ///< an existing history is replayed; none is a fresh start
 };
 
+/// What is damaged in the text of a history, whose last line is whole, by itself: with the line's number (parse). None in an empty one.
+Errors history_faults(const std::string& text, const std::string& path);
+
 /// Owns the open file, which it locks against a second process.
 class History {
 public:

@@ -191,6 +191,8 @@ TEST_CASE("files that are not there, and folders, are not read", "[base]") {
     const TemporaryFolder folder;
     CHECK(read_file(folder.path / "none").errors().at(0).code == ErrorCode::file_not_found);
     CHECK(read_file(folder.path).errors().at(0).code == ErrorCode::file_unreadable);
+    CHECK(read_file("/dev/zero").errors().at(0).code == ErrorCode::file_unreadable);  // which has no end
+    CHECK(*read_file("/dev/null") == "");
 }
 
 }  // namespace fettle::core::files::atomic_file_test

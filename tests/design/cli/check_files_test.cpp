@@ -286,6 +286,64 @@ TEST_CASE("check files: no output takes the place of an input, nor of another ou
     CHECK(run("validate " + scene + " --junit /dev/null --sarif /dev/null --log /dev/null").code == 0);
 }
 
+TEST_CASE("check files: nor of what an input names") {
+    const DesignFolder folder;
+    core::geometry::Mesh box = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01});
+    const std::string part = folder.write("in/rod.stl", core::mesh_files::stl_bytes({{"rod", &box}}));
+    const std::string scene = folder.write("in/m.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.02,
+        "bodies": [{"name": "rod", "mesh": "rod.stl", "mesh_unit": "mm", "density": 1000}]})");
+    const std::string in = folder.file("in"), run_folder = folder.file("run"), proof = folder.file("fit.certificate.json");
+    REQUIRE(run("export " + scene + " --to " + folder.file("other.stl")).code == 0);
+    REQUIRE(run("simulate " + folder.file("small.scene.json") + " --steps 2 --out " + run_folder).code == 0);
+    REQUIRE(run("clearance " + folder.file("small.scene.json") + " --minimum 0.001mm --certificate " + proof).code < 3);
+    const std::vector<std::pair<std::string, std::string>> commands{
+        {"export " + scene + " --to " + part, part},
+        {"export " + scene + " --to " + in + " --format stl --arrange separate --in-place", part},
+        {"export " + in + " --unit mm --to " + in + " --format stl --arrange separate", part},
+        {"report " + run_folder + " --out " + run_folder + "/result.json", run_folder + "/result.json"},
+        {"report " + run_folder + " --out " + run_folder + "/trajectory.json", run_folder + "/trajectory.json"},
+        {"validate " + proof + " --junit " + folder.file("fit.trajectory.json"), folder.file("fit.trajectory.json")}};
+    for (const auto& [command, file] : commands) {
+        const std::string before = contents(file);
+        const Answer answer = run(command, true);
+        CAPTURE(command, answer.out);
+        CHECK(answer.code == 3);
+        CHECK(contents(file) == before);
+        CHECK_FALSE(before.empty());
+    }
+    CHECK(run("export " + scene + " --to " + part, true).says("m.scene.json"));
+    CHECK(run("export " + scene + " --to " + folder.file("other.stl")).code == 0);  // which nothing reads
+    CHECK(run("report " + run_folder).code == 0);
+}
+
+TEST_CASE("check files: every finding of SARIF has a place, for code scanning refuses all where one has none") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json");
+    for (const std::string& command :
+         {"clearance " + scene + " --minimum 0.001mm --csv /dev/full", "validate " + folder.file("nowhere.scene.json"),
+          "simulate " + scene + " --stpes 3", "clearance " + scene + " --minimum 0.3", "simulate " + scene + " --steps 1 --out /proc/x",
+          std::string("clearance")}) {
+        const Found fault = found(folder, command);
+        CAPTURE(command, fault.sarif.dump());
+        CHECK(fault.answer.code == 3);
+        CHECK_FALSE(fault.results().empty());
+        for (const Json& result : fault.results())
+            CHECK_FALSE(result.at("locations").at(0).at("physicalLocation").at("artifactLocation").at("uri").get<std::string>().empty());
+    }
+}
+
+TEST_CASE("check files: options of a certificate are not passed over where there is none") {
+    const DesignFolder folder;
+    const std::string scene = folder.file("small.scene.json");
+    const Answer minimum = run("validate " + scene + " --minimum 0.3mm", true);
+    CHECK(minimum.code == 3);
+    CHECK(minimum.says("ask fettle clearance"));
+    CHECK(run("validate " + scene + " --trajectory x.json").code == 3);
+    CHECK(run("draw " + scene + " --trajectory x.json --out " + folder.file("x.png")).code == 3);
+    CHECK(run("export " + scene + " --arrange plate --to " + folder.file("x.glb")).code == 3);
+    CHECK(run("gradient " + folder.design() + " --check-limit 1").code == 3);
+}
+
 TEST_CASE("check files: the summary of GitHub's job is added to") {
     const DesignFolder folder;
     const std::string summary = folder.write("summary.md", "before\n");

@@ -309,6 +309,13 @@ TEST_CASE("a folder in which another program's report lies is left alone") {
 )");
     CHECK(run("report " + sweep).code == 0);
     CHECK(run("report " + sweep).code == 0);
+    const std::string header = "{\"fettle_explore\": 1, \"design\": \"x\", \"parameters\": [\"height\"]}\n",
+                      line = "{\"key\": \"0\", \"kind\": \"evaluate\", \"seed\": 0, \"status\": \"failed\", \"reason\": \"no shape\"}\n";
+    refused("report " + folder.write("torn.jsonl", header + "garbage\n" + line), {"torn.jsonl: line 2", "damaged"});
+    const Answer cut =
+        run("report " + folder.write("cut.jsonl", header + line + "{\"key\": \"1\", \"ki"), true);  // of a run that was killed
+    CHECK(cut.code == 0);
+    CHECK(cut.says("cut off"));
     folder.write("sweep.report.html", theirs);
     refused("report " + sweep, {"sweep.report.html: is there and was not written by fettle"});
     folder.write("out/result.json", R"({"my": "numbers"})");

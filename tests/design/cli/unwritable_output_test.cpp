@@ -160,6 +160,10 @@ TEST_CASE("names cannot write to a terminal, and are refused where they come in"
     const Answer path = run("validate \"$(printf '/no\\033where')\"", true);
     CHECK(path.code == 3);
     CHECK_FALSE(path.says("\033"));
+    const DesignFolder output(replaced(small_design, "\"units\": \"mm\"", "\"units\": \"mm\", \"output\": \"a\\u001b[31mb\""));
+    const Answer written = run("validate " + output.design() + " --json");
+    CHECK(written.code == 3);
+    CHECK(written.says("/output"));
     const DesignFolder parameter(replaced(small_design, "\"name\": \"height\"", "\"name\": \"hei\\nght\""));
     const Answer design = run("validate " + parameter.design() + " --json");
     CHECK(design.code == 3);

@@ -110,6 +110,17 @@ TEST_CASE("every fault of a design is named, with its place") {
     }
 }
 
+TEST_CASE("a move that is no object is a wrong type, not passed over") {
+    const std::string at = "\"moves\": [";
+    for (const char* value : {"\"\"", "[]", "1e8", "[[]]", "null", "true"}) {
+        const DesignFolder folder(replaced(small_design, at, at + value + ", "));
+        const Result<DesignFile> design = read_design(folder.design());
+        CAPTURE(value, all(design.errors()));
+        REQUIRE_FALSE(design);
+        CHECK(has(design.errors(), {"", "", ErrorCode::wrong_type, "/moves/0", ""}));
+    }
+}
+
 TEST_CASE("a scene in a design's place is called one; what is no object is said once") {
     const DesignFolder folder(replaced(small_design, "{ \"name\": \"mma\", \"max_evaluations\": 8 }", "\"ipopt\""));
     const Result<DesignFile> scene = read_design(folder.file("small.scene.json"));
