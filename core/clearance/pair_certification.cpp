@@ -50,7 +50,7 @@ SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& op
         return search_pair(pair.a, pair.b, pair.segments, search);
     }
     search.tolerance *= 0.75;
-    search.proof = &record->certificate.segments;
+    search.proof = &record->certificate.boxes;
     SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
     const double room = checking_room(options, pair);
     found.lower = std::max(0.0, found.lower - room);
@@ -185,7 +185,7 @@ private:
         result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b, pair_start(), found_.lower);
         if (!record_ || result_.solids != Solids::overlap) return;
         record_->certificate.lower = 0;
-        record_->certificate.segments.clear();
+        record_->certificate.boxes.clear();
     }
 
     struct Instant {

@@ -83,16 +83,8 @@ private:
     void start_record() {
         std::vector<const PieceTree*> trees;
         for (const BodyShape& shape : shapes_) trees.push_back(shape.tree.get());
-        const certificate::Certificate frame = start_certificate(model_, start_, trees, false, 0);
-        certificate::RangeCertificate& out = *options_.certificate;
-        out = {};
-        out.geometry_hash = frame.geometry_hash;
-        out.path_hash = frame.path_hash;
-        out.length_unit = frame.length_unit;
-        out.bodies = frame.bodies;
-        out.linkage = ranges_.linkage;
-        out.pairs.resize(pairs_.size());
-        for (auto& pair : out.pairs) pair.point_a.index = -1;
+        *options_.certificate = start_certificate(model_, start_, trees, false, pairs_.size());
+        options_.certificate->linkage = ranges_.linkage;
     }
 
     RangeClearance certified(std::size_t i) const {
@@ -157,7 +149,7 @@ private:
     }
 
     void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, RangeClearance& out,
-                certificate::RangePairCertificate& record) const {
+                certificate::PairCertificate& record) const {
         record.a = out.a;
         record.b = out.b;
         record.at = out.at;
@@ -166,8 +158,10 @@ private:
         const double above = found.lower - (out.minimum < found.lower ? out.minimum : 0);  // a claim keeps what was decided, if it can
         room = std::max(8 * pair.slack, std::min(room, 0.5 * above));
         out.lower = found.lower > room ? found.lower - room : 0;
-        if (out.lower > 0) record.proof = prove_ranges(pair, out.lower + 0.5 * room, search);
-        if (record.proof.splits.empty()) out.lower = 0;
+        certificate::BoxProof proof;
+        if (out.lower > 0) proof = prove_ranges(pair, out.lower + 0.5 * room, search);
+        if (proof.splits.empty()) out.lower = 0;
+        if (out.lower > 0) record.boxes = {std::move(proof)};
         record.lower = out.lower;
         record.upper = found.upper + 4 * pair.slack;  // for the checker's own rounding
         const auto point = [&](const PieceTree& tree, const ScrewedBody& body, int element, Primitive kind, int corner, const Vector3& x) {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
 
@@ -19,7 +19,7 @@ struct RangeClearanceOptions {
     long max_bounds = 4'000'000;  ///< per pair of bodies; beyond it: undecided with true bounds
     std::function<void(int done, int of)> on_pair;
     std::function<bool()> should_stop;
-    certificate::RangeCertificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
+    certificate::Certificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
 };
 
 /// Where nothing is asked for: 10 um, or 1% of the least minimum that is required; with more than two coordinates 1% of the bodies' radii.
