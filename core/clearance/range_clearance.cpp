@@ -13,6 +13,7 @@
 #include "fettle/core/clearance/body_motions.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/pair_certification.hpp"
 #include "fettle/core/clearance/range_search.hpp"
 
 namespace fettle::core::clearance {
@@ -89,12 +90,7 @@ private:
 
     RangeClearance certified(std::size_t i) const {
         const PairRequest& request = pairs_[i];
-        RangeClearance out;
-        out.a = request.a;
-        out.b = request.b;
-        out.minimum = request.minimum;
-        out.upper = infinity;
-        out.complete = false;
+        RangeClearance out{unmeasured({request.a, request.b, request.minimum}, ""), 0, {}, {}, 0};
         const certificate::LinkedPair linked = linked_pair(ranges_.linkage, request.a, request.b);
         out.coordinates = linked.coordinates;
         for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[static_cast<std::size_t>(k)].start);
@@ -140,12 +136,12 @@ private:
         out.bounds = found.bounds;
         if (found.nearest.element_a >= 0) {
             for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
-            out.witness = range_witness(pair, found.nearest);
+            out.witness = out.witnesses.front() = range_witness(pair, found.nearest);
         }
         if (options_.certificate != nullptr) record(pair, found, search, out, options_.certificate->pairs[index]);
         decide_solids(out);
         if (options_.certificate != nullptr) options_.certificate->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
-        judge(out);
+        judge(out, {out.a, out.b, out.minimum}, 0, false);
     }
 
     void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, RangeClearance& out,
@@ -181,22 +177,6 @@ private:
                                             *shapes_[static_cast<std::size_t>(out.b)].solid, {start_, -1, 0, out.a, out.b}, out.lower);
         if (out.solids != Solids::overlap) return;
         out.lower = out.upper = 0;
-    }
-
-    static void judge(RangeClearance& out) {
-        const bool told = out.lower > 0 && certificate::are_apart(out.solids);
-        if (out.is_clash() || (out.minimum > 0 && out.upper < out.minimum)) {
-            out.status = PairStatus::violated;
-        } else if (told && out.lower >= out.minimum) {
-            out.status = PairStatus::clear;
-        } else {
-            out.status = PairStatus::undecided;
-            out.reason = !out.complete      ? "the search was cut short, by a stop or its budget"
-                         : !(out.lower > 0) ? "the surfaces come within rounding of each other: neither that they cross nor that they "
-                                              "stay apart is proven"
-                         : !told            ? why_not_apart(out.solids)
-                                            : "the minimum lies between the bounds: a smaller tolerance tells";
-        }
     }
 
     const model::Model& model_;
