@@ -6,6 +6,13 @@
 
 namespace fettle::core::certificate {
 
+void add_leaf(BoxProof& proof, const LeafPlane& plane) {
+    const bool is_one = plane.n0 == plane.n1;
+    proof.splits += is_one ? '.' : ':';
+    proof.normals.push_back(plane.n0);
+    if (!is_one) proof.normals.push_back(plane.n1);
+}
+
 std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies) {
     std::set<std::array<int, 2>> covered;
     for (const PairCertificate& pair : certificate.pairs) covered.insert({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});

@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: MIT
 /// A certificate of clearance as data, so that someone else can check it: certificate_checker.hpp does, with nothing in common with the
-/// search that made it. It claims, for each pair of bodies and over all the time asked for,
-///   lower <= min dist(A(t), B(t)) <= upper   of their surfaces, and what is known of their solids: `Solids`,
+/// search that made it. It claims, for each pair of bodies and over all that it is asked for,
+///   lower <= min dist(A, B) <= upper   of their surfaces, and what is known of their solids: `Solids`,
 /// about the meshes and the path of a trajectory (records/trajectory_io.hpp), both of which must be at hand to check it: hashes name them.
-/// With `joints` it claims, too, how far the bodies are from that path where the joints are met at all times: bounds of their distances are
-/// those of the path, wider by joint_charge.
 /// Pairs that it does not list it says nothing of: uncovered_pairs.
 ///
-/// How it proves `lower`. For every path segment there is a tree of cells. A cell is an interval of the segment's parameter s, a piece of
-/// A and a piece of B; the root is [0, 1] and both whole bodies. `splits` lists the cells in preorder, one character each:
-///   t  halved in time: first [s0, m], then [m, s1], m = (s0 + s1)/2
-///   a  piece of A split into its two parts, in their order;   b  the same of B
-///   .  a leaf: `planes` has its proof, in the order of the leaves.
-/// So the leaves cover all time and all pairs of elements by construction, and every s is a dyadic number.
-/// A leaf's proof is two vectors n0, n1 in world axes: with n(u) = (1 - u) n0 + u n1, u = (s - s0)/(s1 - s0),
-///   n(u).(x_a(s) - x_b(s)) >= lower max(|n0|, |n1|) > 0   for all s of the interval and all points x_a, x_b of the two pieces,
+/// Over what. The bodies of a pair move over boxes of k coordinates u:
+///   over a path (`motion`)               a box for each segment, in the order of the path; k = 1, u = s in [0, 1]
+///   as assembled                         one, the start pose (step -1); k = 1, and nothing moves
+///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 4, the coordinates that move one
+///   body
+///                                        against the other (linked_pair), in their ranges. The trajectory's steps count for nothing
+/// With `joints` a certificate over a path claims, too, how far the bodies are from that path where the joints are met at all times: bounds
+/// of their distances are those of the path, wider by joint_charge.
+///
+/// How it proves `lower`. For every box there is a tree of cells. A cell is a part of the box, a piece of A and a piece of B; the root is
+/// the whole box and both whole bodies. `splits` lists the cells in preorder, one character each:
+///   0..3  halved along this coordinate: first [low, m], then [m, high], m = (low + high)/2 as rounded (of a path exact: s is dyadic)
+///   a     piece of A split into its two parts, in their order;   b  the same of B
+///   .     a leaf whose proof is one vector;   :  a leaf whose proof is 2^k vectors, one for each corner of its part of the box, bit j of
+///         the corner's number set where coordinate j is high; `normals` has them, in the order of the leaves
+/// So the leaves cover the box and all pairs of elements by construction.
+/// A leaf's proof is that vector, or those, in world axes: with n(u) the one, or what interpolates them linearly in each coordinate,
+///   n(u).(x_a(u) - x_b(u)) >= lower max |n| > 0   for all u of the cell and all points x_a, x_b of the two pieces,
 /// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
-/// room of at least 4 times the search's own bound of its rounding (PairSegment::slack), and 1/16 of the tolerance, for a checker's
-/// rounding and for its own way of bounding curves. Leaves are merged and vectors rounded as far as this room and this checker allow
-/// (certificate_thinning.hpp).
-/// `upper` is the distance of two points of the bodies at one instant.
+/// room of at least 4 times the search's own bound of its rounding (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for
+/// a checker's rounding and for its own way of bounding curves. Over a path leaves are merged and vectors rounded as far as this room and
+/// this checker allow (certificate_thinning.hpp).
+/// `upper` is the distance of two points of the bodies at one place of one box.
 ///
 /// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered
 ///   triangle i: i;   mesh.edges[i]: T + i;   vertex i: T + E + i;   T = number of triangles, E = number of all edges of the mesh.
@@ -37,21 +45,22 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/certificate/ideal_joints.hpp"
+#include "fettle/core/certificate/linkage.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 
 namespace fettle::core::certificate {
 
-struct LeafPlane {
-    Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();  ///< about as long as 1
-};
-
-/// Of one path segment: see the top of the file.
-struct SegmentProof {
+/// Of one box: see the top of the file.
+struct BoxProof {
     std::string splits;
-    std::vector<LeafPlane> planes;
+    std::vector<Vector3> normals;  ///< about as long as 1
 };
 
-using PairProof = std::vector<SegmentProof>;
+/// A leaf's vectors where there is one coordinate: at its low and its high end.
+struct LeafPlane {
+    Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
+};
+void add_leaf(BoxProof& proof, const LeafPlane& plane);  ///< with one vector if both are the same
 
 enum class Primitive { vertex, edge, triangle };
 
@@ -80,10 +89,10 @@ struct PairCertificate {
     int a = 0, b = 0;
     double lower = 0, upper = 0;  ///< [m]
     Solids solids = Solids::unproven;
-    int step = -1, segment = 0;  ///< when `upper` is attained; step -1: at the start pose
-    double s = 0;
+    int step = -1, segment = 0;  ///< the box where `upper` is attained; step -1: that of the start pose, or of the joints' ranges
+    std::vector<double> at;      ///< and where in it: its coordinates
     CertifiedPoint point_a, point_b;
-    PairProof segments;  ///< in the order of the path; one for the start pose as assembled; none at all if lower is 0
+    std::vector<BoxProof> boxes;  ///< one for each; none at all if lower is 0
 };
 
 struct BodyPieces {
@@ -98,14 +107,17 @@ struct ExportedFile {
     double rounding = 0;  ///< how far a vertex of the file may be from that of the trajectory [m]: every bound is wider by 2 of it there
 };
 
+inline constexpr int certificate_version = 3;  ///< what is written
+
 struct Certificate {
-    int version = 2;
-    std::uint64_t geometry_hash = 0;  ///< of the bodies (records/trajectory_io.hpp)
-    std::uint64_t path_hash = 0;      ///< of the trajectory (same)
-    double length_unit = 1;           ///< of the scene [m]: what its lengths are shown in
-    std::string source;               ///< the file whose bodies these are, as it was named; empty: none
-    bool motion = false;              ///< over the trajectory; false: at its first poses
-    std::vector<BodyPieces> bodies;   ///< one per body of the model; empty lists for those of no pair
+    int version = certificate_version;
+    std::uint64_t geometry_hash = 0;   ///< of the bodies (records/trajectory_io.hpp)
+    std::uint64_t path_hash = 0;       ///< of the trajectory (same)
+    double length_unit = 1;            ///< of the scene [m]: what its lengths are shown in
+    std::string source;                ///< the file whose bodies these are, as it was named; empty: none
+    bool motion = false;               ///< over the trajectory; false: at its first poses, or from there on over the joints' ranges
+    std::optional<Linkage> linkage{};  ///< of one over ranges of joints
+    std::vector<BodyPieces> bodies;    ///< one per body of the model; empty lists for those of no pair
     std::vector<PairCertificate> pairs;
     std::vector<ExportedFile> exports{};
     /// That hold the bodies at all times, and how far from the path; nothing: the bounds are of the path as stored, and of nothing else.
@@ -118,12 +130,15 @@ struct Certificate {
 /// Pairs of `bodies` bodies that the certificate says nothing of, a < b.
 std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies);
 
-/// One JSON object (*.certificate.json), lengths in metres, with the names used here; every number reads back to the same bits.
-///   fettle_certificate 2, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
+/// One JSON object (*.certificate.json), SI, with the names used here; every number reads back to the same bits.
+///   fettle_certificate 3, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
 ///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp), path_as_stored (optional, is_of_path),
-///   pairs [{a, b, lower, upper, solids, step, segment, s, point_a {kind, index, weight}, point_b, segments [{splits, planes}]}]
-/// `planes` is flat, leaf after leaf: n0x n0y n0z of leaves with n1 = n0, which `splits` writes `.`, and n0x n0y n0z n1x n1y n1z of the
-/// others, which it writes `:`. Written whole or not at all.
+///   over ranges of joints coordinates [{start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}] and
+///   links [{parent, screws [{coordinate, point, axis, turn, slide}]}],
+///   pairs [{a, b, lower, upper, solids, step, segment, at, point_a {kind, index, weight}, point_b, boxes [{splits, normals}]}], `normals`
+///   flat. Written whole or not at all.
+/// Read, too, are the two formats before it: fettle_certificate 2, of a path (`segments` [{splits, planes}] for `boxes`, `t` for `0`, `s`
+/// for `at`), and fettle_range_certificate 1 (a pair's one `splits` and `normals` beside its bounds).
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 /// The same as one of a set of files.
 [[nodiscard]] base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const Certificate& certificate);

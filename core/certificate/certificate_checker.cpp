@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
@@ -11,11 +12,13 @@
 #include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
 #include "fettle/core/certificate/joint_prover.hpp"
+#include "fettle/core/certificate/range_prover.hpp"
 
 namespace fettle::core::certificate {
 namespace {
 
 constexpr std::size_t most_faults = 1000;
+constexpr std::size_t trees_at_once = 4096;
 constexpr int leaf_halvings = 24;
 
 class Checker {
@@ -24,29 +27,44 @@ public:
         : certificate_(certificate), model_(model), trajectory_(trajectory) {}
 
     CertificateReport run() {
-        if (certificate_.version != 2) fault("/fettle_certificate", "version 2 is what this program checks");
-        check_hashes();
-        if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
-        if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
+        check_frame();
         if (!report_.accepted()) return report_;
         check_deviations();
         find_places();
         bodies_.resize(model_.bodies.size());
         solids_.resize(model_.bodies.size());
-        for (std::size_t i = 0; i < certificate_.pairs.size(); ++i) {
-            const PairCertificate& pair = certificate_.pairs[i];
-            const std::string where = "/pairs/" + std::to_string(i);
-            if (check_pair(pair, where) && check_segments(pair, where + "/segments/")) check_solids(pair, where + "/solids");
-        }
+        for (std::size_t first = 0; first < certificate_.pairs.size();) first = check_some(first);
         return report_;
     }
 
 private:
+    struct Cell {
+        CoordinateBox box;
+        int a = 0, b = 0;
+    };
+
     // False: how a check ends that finds one. The list has an end, so that its length tells nothing.
     bool fault(const std::string& where, const std::string& message) { return add(report_, {where, message}), false; }
 
     static void add(CertificateReport& report, CertificateFault fault) {
         if (report.faults.size() < most_faults) report.faults.push_back(std::move(fault));
+    }
+
+    void merge(CertificateReport&& part) {
+        report_.leaves += part.leaves;
+        report_.pieces += part.pieces;
+        for (CertificateFault& found : part.faults) add(report_, std::move(found));
+    }
+
+    void check_frame() {
+        if (certificate_.version != certificate_version)
+            fault("/fettle_certificate", "version " + std::to_string(certificate_version) + " is what this program checks");
+        check_hashes();
+        if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
+        if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
+        if (!certificate_.linkage) return;
+        if (certificate_.motion || certificate_.joints) fault("/motion", "over ranges of joints there is no path, and no joints along one");
+        for (const base::Error& e : check_linkage(*certificate_.linkage, model_.bodies.size())) fault(e.where, e.message);
     }
 
     void check_hashes() {
@@ -55,7 +73,8 @@ private:
             report_.stale = true;
         }
         if (certificate_.path_hash != records::path_hash(trajectory_)) {
-            fault("/path_hash", "stale: the certificate is about another path");
+            fault("/path_hash", certificate_.linkage ? "stale: the certificate is about other start poses"
+                                                     : "stale: the certificate is about another path");
             report_.stale = true;
         }
     }
@@ -77,39 +96,49 @@ private:
                 fault("/joints/deviations/" + std::to_string(i), "joints may have the body farther from the path than is claimed");
     }
 
-    const SolidMesh& solid(int body) {
-        std::optional<SolidMesh>& known = solids_[static_cast<std::size_t>(body)];
-        if (!known) known = solid_of(model_.bodies[static_cast<std::size_t>(body)]);
-        return *known;
-    }
-
-    // Decided here, then compared: the lower bound is proven by now.
-    void check_solids(const PairCertificate& pair, const std::string& where) {
-        if (pair.solids == Solids::overlap) {
-            fault(where, "the solids overlap: there is no clearance to certify");
-            return;
-        }
-        const SolidMesh &a = solid(pair.a), &b = solid(pair.b);
-        PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
-        if (ask_for_path(a, b)) start.path = places_;
-        if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);
-        const Solids found = solids_of(a, b, start, pair.lower);
-        if (found == Solids::overlap) {
-            fault(where, "one body lies inside the other's material");
-            return;
-        }
-        if (pair.solids == Solids::unproven || pair.solids == found) return;
-        fault(where, std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
-                         (found == Solids::not_closed   ? "which cannot be verified: a body is not closed"
-                          : found == Solids::unverified ? "which cannot be verified: a body is not closed, and the other may lie inside it"
-                                                        : std::string("but it is ") + to_string(found)));
-    }
-
     void find_places() {
-        places_.clear();
         if (!certificate_.motion) places_.push_back({});
         for (int t = 0; certificate_.motion && t < static_cast<int>(trajectory_.steps.size()); ++t)
             for (int k = 0; k < stepper::segment_count(trajectory_, t); ++k) places_.push_back({t, k});
+    }
+
+    const PairCertificate& pair(std::size_t i) const { return certificate_.pairs[i]; }
+    static std::string name(std::size_t i) { return "/pairs/" + std::to_string(i); }
+    const geometry::Mesh& mesh(int body) const { return model_.bodies[static_cast<std::size_t>(body)].mesh; }
+    const std::vector<Part>& parts(int body) const { return bodies_[static_cast<std::size_t>(body)]->parts(); }
+
+    std::size_t trees_of(const PairCertificate& pair) const { return pair.lower > 0 ? places_.size() : 0; }
+
+    // The pairs from `first` on, as many as give all threads work. @return behind the last of them
+    std::size_t check_some(std::size_t first) {
+        std::vector<std::size_t> sound, proven;         // pairs
+        std::vector<std::array<std::size_t, 2>> trees;  // of a pair, of a place
+        std::size_t last = first;
+        for (; last < certificate_.pairs.size() && trees.size() < trees_at_once; ++last) {
+            if (!check_pair(pair(last), name(last))) continue;
+            sound.push_back(last);
+            for (std::size_t place = 0; place < trees_of(pair(last)); ++place) trees.push_back({last, place});
+        }
+        if (report_.faults.size() == most_faults) return last;  // no more can be told
+        std::vector<CertificateReport> reports(trees.size());
+        base::parallel_for(static_cast<int>(trees.size()), 1, [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            const std::size_t of = trees[k][0], place = trees[k][1];
+            with_prover(pair(of), place, [&](auto& prover) {
+                reports[k] = check_tree(pair(of), pair(of).boxes[place], prover, name(of) + "/boxes/" + std::to_string(place));
+            });
+        });
+        auto next = reports.begin();
+        for (const std::size_t i : sound) {
+            bool all = true;
+            for (std::size_t k = 0; k < trees_of(pair(i)); ++k, ++next) {
+                all = all && next->accepted();
+                merge(std::move(*next));
+            }
+            if (all) proven.push_back(i);
+        }
+        check_solids(proven);
+        return last;
     }
 
     bool is_body(int body) const { return body >= 0 && body < static_cast<int>(model_.bodies.size()); }
@@ -119,35 +148,25 @@ private:
         if (!is_body(pair.a) || !is_body(pair.b) || pair.a == pair.b) return fault(where, "a pair of two bodies of the model is wanted");
         if (!(pair.lower >= 0) || !(pair.upper >= pair.lower) || !std::isfinite(pair.upper))
             return fault(where, "bounds with 0 <= lower <= upper are wanted");
+        if (certificate_.linkage) {
+            const LinkedPair linked = linked_pair(*certificate_.linkage, pair.a, pair.b);
+            if (linked.coordinates.size() > static_cast<std::size_t>(most_coordinates) ||
+                std::max(linked.a.size(), linked.b.size()) > static_cast<std::size_t>(most_screws))
+                return fault(where, "more joints between the two than this program checks");
+        }
         if (!check_upper(pair, where)) return false;
         if (pair.lower == 0) return true;  // nothing to prove
-        if (pair.segments.size() != places_.size())
-            return fault(where + "/segments", std::to_string(places_.size()) + " proofs are wanted, one per segment of the path");
+        if (pair.boxes.size() != places_.size())
+            return fault(where + "/boxes", std::to_string(places_.size()) + " proofs are wanted, one for each box: " +
+                                               (certificate_.linkage ? "the ranges" : "a segment of the path"));
         return prepare(pair.a, where) && prepare(pair.b, where);
-    }
-
-    // All of a pair, on the threads; what is reported is in the order of the path. Is all of it proven?
-    bool check_segments(const PairCertificate& pair, const std::string& where) {
-        if (pair.lower == 0) return true;
-        if (report_.faults.size() == most_faults) return false;  // no more can be told
-        std::vector<CertificateReport> reports(places_.size());
-        base::parallel_for(static_cast<int>(places_.size()), 1, [&](int i) {
-            reports[static_cast<std::size_t>(i)] = check_segment(pair, static_cast<std::size_t>(i), where + std::to_string(i));
-        });
-        for (CertificateReport& part : reports) {
-            report_.leaves += part.leaves;
-            report_.pieces += part.pieces;
-            for (CertificateFault& found : part.faults) add(report_, std::move(found));
-        }
-        return std::all_of(reports.begin(), reports.end(), [](const CertificateReport& part) { return part.accepted(); });
     }
 
     // The body's parts, once; false if its lists are wrong.
     bool prepare(int index, const std::string& where) {
         std::optional<CertifiedBody>& body = bodies_[static_cast<std::size_t>(index)];
         if (!body) {
-            auto made =
-                certified_body(certificate_.bodies[static_cast<std::size_t>(index)], model_.bodies[static_cast<std::size_t>(index)].mesh);
+            auto made = certified_body(certificate_.bodies[static_cast<std::size_t>(index)], mesh(index));
             for (const base::Error& e : made.errors()) fault("/bodies/" + std::to_string(index) + e.where, e.message);
             body.emplace(made ? std::move(made).value() : CertifiedBody());
         }
@@ -155,79 +174,147 @@ private:
         return !body->parts().empty();
     }
 
-    BodyPath path(std::size_t place, int body) const { return body_path(trajectory_, places_[place].step, places_[place].segment, body); }
+    // What moves the pair's bodies over one of its boxes.
+    template <class Use>
+    void with_prover(const PairCertificate& pair, std::size_t place, const Use& use) const {
+        if (certificate_.linkage) {
+            const auto start = [&](int body) { return trajectory_.poses.front()[static_cast<std::size_t>(body)]; };
+            RangeProver prover(*certificate_.linkage, linked_pair(*certificate_.linkage, pair.a, pair.b), start(pair.a), start(pair.b));
+            use(prover);
+        } else {
+            const auto path = [&](int body) { return body_path(trajectory_, places_[place].step, places_[place].segment, body); };
+            PathProver prover(path(pair.a), path(pair.b));
+            use(prover);
+        }
+    }
 
-    CertificateReport check_segment(const PairCertificate& pair, std::size_t place, const std::string& where) const {
-        struct Cell {
-            Span span;
-            int a, b;
-        };
+    bool check_upper(const PairCertificate& pair, const std::string& where) {
+        const auto is_its = [&](const Place& place) { return place.step == pair.step && place.segment == pair.segment; };
+        const auto found = std::find_if(places_.begin(), places_.end(), is_its);
+        if (found == places_.end()) return fault(where, "the witness is at no time of the path");
+        Interval3 X_a, X_b;
+        if (!point_of(mesh(pair.a), pair.point_a, X_a) || !point_of(mesh(pair.b), pair.point_b, X_b))
+            return fault(where, "the witness's points are not of the bodies");
+        bool is_attained = false;
+        with_prover(pair, static_cast<std::size_t>(found - places_.begin()), [&](auto& prover) {
+            const auto at = place_in(prover.box(), prover.coordinates(), pair.at);
+            if (!at) {
+                fault(where + "/at", "the witness's instant or configuration is not in the box");
+                return;
+            }
+            const Interval distance = prover.distance_at(X_a, X_b, *at);
+            if (!(distance.high <= pair.upper))
+                fault(where + "/upper", "the witness's points are farther apart");
+            else if (!(pair.upper - distance.low <= prover.witness_room(X_a, X_b)))
+                fault(where + "/upper", "the witness's points are closer: the bound is not attained");
+            else
+                is_attained = true;
+        });
+        return is_attained;
+    }
+
+    static std::optional<Coordinates> place_in(const CoordinateBox& box, int count, const std::vector<double>& at) {
+        if (at.size() != static_cast<std::size_t>(count)) return std::nullopt;
+        Coordinates out{};
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            if (!(at[k] >= box.low[k] && at[k] <= box.high[k])) return std::nullopt;
+            out[k] = at[k];
+        }
+        return out;
+    }
+
+    template <class Prover>
+    CertificateReport check_tree(const PairCertificate& pair, const BoxProof& proof, Prover& prover, const std::string& where) const {
         CertificateReport report;
-        const auto ended = [&](const std::string& message) { return add(report, {where, message}), report; };
-        const SegmentProof& proof = pair.segments[place];
-        const std::vector<Part>&parts_a = bodies_[static_cast<std::size_t>(pair.a)]->parts(),
-              &parts_b = bodies_[static_cast<std::size_t>(pair.b)]->parts();
-        LeafProver prover(path(place, pair.a), path(place, pair.b));
-        std::vector<Cell> pending{{{0, 1}, 0, 0}};
-        std::size_t leaf = 0;
+        const auto ended = [&](const std::string& message) { return add(report, {where, message}), std::move(report); };
+        const std::vector<Part>&parts_a = parts(pair.a), &parts_b = parts(pair.b);
+        const std::span<const Vector3> normals(proof.normals);
+        std::vector<Cell> pending{{prover.box(), 0, 0}};
+        std::size_t used = 0;
+        long leaf = 0;
         for (const char kind : proof.splits) {
             if (pending.empty()) return ended("more cells than the tree has room for");
             const Cell cell = pending.back();
             pending.pop_back();
-            const Part &a = parts_a[cell.a], &b = parts_b[cell.b];
-            const double middle = 0.5 * (cell.span.start + cell.span.end);
-            if (kind == '.') {
-                if (leaf >= proof.planes.size()) return ended("the plane of leaf " + std::to_string(leaf) + " is missing");
-                const long pieces = prover.prove(a.region, b.region, cell.span, proof.planes[leaf], pair.lower, leaf_halvings);
+            const Part &a = parts_a[static_cast<std::size_t>(cell.a)], &b = parts_b[static_cast<std::size_t>(cell.b)];
+            if (kind == '.' || kind == ':') {
+                const std::size_t count = kind == '.' ? 1 : std::size_t{1} << prover.coordinates();
+                if (used + count > normals.size()) return ended("the vectors of leaf " + std::to_string(leaf) + " are missing");
+                const long pieces = prover.prove(a.region, b.region, cell.box, normals.subspan(used, count), pair.lower, leaf_halvings);
+                used += count;
                 report.pieces += pieces;
-                report.leaves += pieces > 0;
-                if (pieces == 0) add(report, {where + ", leaf " + std::to_string(leaf), "its plane does not prove the lower bound"});
+                report.leaves += pieces > 0 ? 1 : 0;
+                if (pieces == 0) add(report, {where + ", leaf " + std::to_string(leaf), "its vectors do not prove the lower bound"});
                 if (report.faults.size() == most_faults) return report;
                 ++leaf;
-            } else if (kind == 'a' && a.left >= 0) {
-                pending.push_back({cell.span, a.right, cell.b});
-                pending.push_back({cell.span, a.left, cell.b});
-            } else if (kind == 'b' && b.left >= 0) {
-                pending.push_back({cell.span, cell.a, b.right});
-                pending.push_back({cell.span, cell.a, b.left});
-            } else if (kind == 't' && middle - cell.span.start > 0 && middle - cell.span.start == cell.span.end - middle) {
-                pending.push_back({{middle, cell.span.end}, cell.a, cell.b});
-                pending.push_back({{cell.span.start, middle}, cell.a, cell.b});
-            } else {
+            } else if (!split(kind, cell, a, b, prover.coordinates(), pending)) {
                 return ended(std::string("a cell cannot be split by `") + kind + "`");
             }
         }
-        if (!pending.empty()) return ended("cells are missing: part of the segment is not covered");
-        if (leaf < proof.planes.size()) return ended("more planes than leaves");
+        if (!pending.empty()) return ended("cells are missing: part of the box is not covered");
+        if (used < normals.size()) return ended("more vectors than leaves");
         return report;
     }
 
-    bool check_upper(const PairCertificate& pair, const std::string& where) {
-        const Place place{pair.step, pair.segment};
-        const auto is_place = [&](const Place& p) { return p.step == place.step && p.segment == place.segment; };
-        const auto found = std::find_if(places_.begin(), places_.end(), is_place);
-        if (found == places_.end() || !(pair.s >= 0 && pair.s <= 1)) return fault(where, "the witness's instant is not on the path");
-        Interval3 X_a, X_b;
-        const auto mesh = [&](int body) -> const geometry::Mesh& { return model_.bodies[static_cast<std::size_t>(body)].mesh; };
-        if (!point_of(mesh(pair.a), pair.point_a, X_a) || !point_of(mesh(pair.b), pair.point_b, X_b))
-            return fault(where, "the witness's points are not of the bodies");
-        const auto index = static_cast<std::size_t>(found - places_.begin());
-        const BodyPath a = path(index, pair.a), b = path(index, pair.b);
-        const Interval distance = distance_at(a, b, X_a, X_b, pair.s);
-        if (!(distance.high <= pair.upper)) return fault(where + "/upper", "the witness's points are farther apart");
-        const double size =
-            norm_bound(X_a) + norm_bound(X_b) + norm_bound(a.place) + norm_bound(b.place) + norm_bound(a.drift) + norm_bound(b.drift);
-        const double turned = 1 + norm_bound(a.theta) + norm_bound(b.theta) + a.speed + b.speed;
-        if (!(pair.upper - distance.low <= 1e-11 * size * turned + 1e-300))
-            return fault(where + "/upper", "the witness's points are closer: the bound is not attained");
+    // The two parts of a cell, the first on top; false if it cannot be split so.
+    static bool split(char kind, const Cell& cell, const Part& a, const Part& b, int coordinates, std::vector<Cell>& pending) {
+        Cell first = cell, second = cell;
+        if (kind == 'a' && a.left >= 0) {
+            first.a = a.left;
+            second.a = a.right;
+        } else if (kind == 'b' && b.left >= 0) {
+            first.b = b.left;
+            second.b = b.right;
+        } else if (kind >= '0' && kind < '0' + coordinates) {
+            const auto k = static_cast<std::size_t>(kind - '0');
+            const double middle = 0.5 * (cell.box.low[k] + cell.box.high[k]);
+            if (!(cell.box.low[k] < middle && middle < cell.box.high[k])) return false;
+            first.box.high[k] = second.box.low[k] = middle;
+        } else {
+            return false;
+        }
+        pending.push_back(second);
+        pending.push_back(first);
         return true;
+    }
+
+    // Decided here, then compared: the lower bounds are proven by now.
+    void check_solids(const std::vector<std::size_t>& proven) {
+        for (const std::size_t i : proven)
+            for (const int body : {pair(i).a, pair(i).b}) {
+                std::optional<SolidMesh>& solid = solids_[static_cast<std::size_t>(body)];
+                if (!solid) solid = solid_of(model_.bodies[static_cast<std::size_t>(body)]);
+            }
+        std::vector<CertificateReport> reports(proven.size());
+        base::parallel_for(static_cast<int>(proven.size()), 1, [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            reports[k] = solids_report(pair(proven[k]), name(proven[k]) + "/solids");
+        });
+        for (CertificateReport& each : reports) merge(std::move(each));
+    }
+
+    CertificateReport solids_report(const PairCertificate& pair, const std::string& where) const {
+        CertificateReport report;
+        const auto ended = [&](const std::string& message) { return add(report, {where, message}), std::move(report); };
+        if (pair.solids == Solids::overlap) return ended("the solids overlap: there is no clearance to certify");
+        const SolidMesh &a = *solids_[static_cast<std::size_t>(pair.a)], &b = *solids_[static_cast<std::size_t>(pair.b)];
+        PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
+        if (!certificate_.linkage && ask_for_path(a, b)) start.path = places_;
+        if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);
+        const Solids found = solids_of(a, b, start, pair.lower);
+        if (found == Solids::overlap) return ended("one body lies inside the other's material");
+        if (pair.solids == Solids::unproven || pair.solids == found) return report;
+        return ended(std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
+                     (found == Solids::not_closed   ? "which cannot be verified: a body is not closed"
+                      : found == Solids::unverified ? "which cannot be verified: a body is not closed, and the other may lie inside it"
+                                                    : std::string("but it is ") + to_string(found)));
     }
 
     const Certificate& certificate_;
     const model::Model& model_;
     const stepper::Trajectory& trajectory_;
     bool joints_are_sound_ = false;  // as data: the charges can be asked for
-    std::vector<Place> places_;
+    std::vector<Place> places_;      // of the boxes
     std::vector<std::optional<CertifiedBody>> bodies_;
     std::vector<std::optional<SolidMesh>> solids_;
     CertificateReport report_;

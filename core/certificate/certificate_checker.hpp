@@ -7,8 +7,11 @@
 /// - meshes and path are those that the certificate names, by their hashes (else it is stale); the elements listed for a body include every
 /// triangle, every edge of no triangle and
 ///   every vertex of no edge; each piece is split into two that together are it;
-/// - each segment of the path has a tree of cells whose leaves cover all time and all pairs of elements (halves of intervals are exact);
-/// - each leaf's plane proves the claimed lower bound: see LeafProver::prove in interval_motion.hpp;
+/// - over ranges of joints the linkage is one (check_linkage); the start lies in the ranges, so that one configuration decides for all of
+///   them how solids lie (whether the joints are a scene's is for whoever has the scene to compare: clearance/joint_ranges.hpp);
+/// - each box (a segment of the path; the ranges) has a tree of cells whose leaves cover all of it and all pairs of elements;
+/// - each leaf's vectors prove the claimed lower bound: PathProver in interval_motion.hpp, RangeProver in range_prover.hpp, two proofs that
+///   have nothing in common but intervals;
 /// - what is claimed of the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): of a body
 ///   inside another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
 /// - there is a pair;
@@ -17,11 +20,11 @@
 /// - the upper bound is attained by its witness: not below the distance there, nor above it by more than rounding.
 /// The cost is linear in the certificate: a few microseconds a leaf, on all threads. A false leaf ends at its first piece without proof.
 ///
-/// Why every certificate of ours is accepted, not only those that were tried. The search proves of each leaf, with the recorded plane and
-/// rounding charged, n(u).(x_a - x_b) >= lower + room in real numbers, for the corners of the two pieces' elements, which are what the
-/// checker looks at too. (Leaves that were merged or rounded after that, certificate_thinning.hpp, are accepted because this checker was
-/// asked.) The room that a claim leaves is at least 8 slack, the search's bound of its own rounding (segment_bound.hpp): with u = 2^-53, P
-/// the sum of the bodies' |q| and |q'|, r a body's radius, w its turn during the segment,
+/// Why every certificate of ours over a path is accepted, not only those that were tried. The search proves of each leaf, with the recorded
+/// plane and rounding charged, n(u).(x_a - x_b) >= lower + room in real numbers, for the corners of the two pieces' elements, which are
+/// what the checker looks at too. (Leaves that were merged or rounded after that, certificate_thinning.hpp, are accepted because this
+/// checker was asked.) The room that a claim leaves is at least 8 slack, the search's bound of its own rounding (segment_bound.hpp): with u
+/// = 2^-53, P the sum of the bodies' |q| and |q'|, r a body's radius, w its turn during the segment,
 ///   slack >= the sum over the bodies of (208 + 48 (|theta0| + w)) 2u r,   + 24u P.
 /// What remains to be shown is that the checker loses less than the room. It halves a leaf k times, k <= 24.
 /// - Rounding. An operation on intervals moves an end by at most 4u of the result. Rotations, functionals and their products with corners
@@ -48,7 +51,7 @@
 namespace fettle::core::certificate {
 
 struct CertificateFault {
-    std::string where;  ///< "/pairs/3/segments/17, leaf 5"
+    std::string where;  ///< "/pairs/3/boxes/17, leaf 5"
     std::string message;
 };
 
@@ -60,7 +63,7 @@ struct CertificateReport {
     bool accepted() const { return faults.empty(); }
 };
 
-/// Never trusts the certificate: any contents lead to a report. Contract: the trajectory is the model's.
+/// Never trusts the certificate: any contents lead to a report. Contract: the trajectory is the model's; its first poses are the start.
 CertificateReport check_certificate(const Certificate& certificate, const model::Model& model, const stepper::Trajectory& trajectory);
 
 inline CertificateReport check_certificate(const Certificate& certificate, const records::StoredTrajectory& stored) {

@@ -12,9 +12,10 @@ namespace fettle::core::certificate {
 
 /// Two leaves of one cell become one where a plane of theirs proves it, and normals are rounded to as few decimals as will do: everything
 /// without halving time. What cannot be proven so stays as it is.
+/// @param proof           of a segment of a path
 /// @param path_a, path_b  the bodies' paths over the segment (interval_motion.hpp)
 /// @param distance        that every leaf proves [m]: a little room above the claim
-SegmentProof thinned(const SegmentProof& proof, const CertifiedBody& a, const CertifiedBody& b, const BodyPath& path_a,
-                     const BodyPath& path_b, double distance);
+BoxProof thinned(const BoxProof& proof, const CertifiedBody& a, const CertifiedBody& b, const BodyPath& path_a, const BodyPath& path_b,
+                 double distance);
 
 }  // namespace fettle::core::certificate

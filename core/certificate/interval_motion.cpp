@@ -185,7 +185,7 @@ IntervalPose pose_at(const BodyPath& path, double s) {
     return pose;
 }
 
-struct LeafProver::Claim {
+struct PathProver::Claim {
     double middle = 0;
     Plane n;
     Interval3 n0, n1;
@@ -194,7 +194,7 @@ struct LeafProver::Claim {
     bool is_steady = false;
 };
 
-const LeafProver::Instant& LeafProver::at(double s) {
+const PathProver::Instant& PathProver::at(double s) {
     const auto known = instants_.find(s);
     if (known != instants_.end()) return known->second;
     if (instants_.size() > 4096) instants_.clear();
@@ -202,7 +202,7 @@ const LeafProver::Instant& LeafProver::at(double s) {
     return instants_.emplace(s, Instant{pose_at(a_, s), pose_at(b_, s), place}).first->second;
 }
 
-bool LeafProver::is_proven(const Claim& claim, const Region& a, const Region& b, bool by_boxes) {
+bool PathProver::is_proven(const Claim& claim, const Region& a, const Region& b, bool by_boxes) {
     const bool box_a = by_boxes && a.points.size() > few_points, box_b = by_boxes && b.points.size() > few_points;
     const Instant& instant = at(claim.middle);
     const Interval3 drift = a_.drift - b_.drift;
@@ -231,7 +231,13 @@ bool LeafProver::is_proven(const Claim& claim, const Region& a, const Region& b,
                                                   std::min(rest_b, rest_along(b_, b, n.half, claim.length, claim.n0, claim.n1)));
 }
 
-long LeafProver::prove(const Region& a, const Region& b, const Span& span, const LeafPlane& plane, double lower, int halvings) {
+long PathProver::prove(const Region& a, const Region& b, const CoordinateBox& part, std::span<const Vector3> normals, double lower,
+                       int halvings) {
+    if (normals.size() != 1 && normals.size() != 2) return 0;
+    return prove_span(a, b, {part.low[0], part.high[0]}, {normals.front(), normals.back()}, lower, halvings);
+}
+
+long PathProver::prove_span(const Region& a, const Region& b, const Span& span, const LeafPlane& plane, double lower, int halvings) {
     Claim claim;
     claim.middle = 0.5 * (span.start + span.end);
     const double half = claim.middle - span.start;
@@ -251,17 +257,27 @@ long LeafProver::prove(const Region& a, const Region& b, const Span& span, const
     if ((many && is_proven(claim, a, b, true)) || is_proven(claim, a, b, false)) return 1;
     if (halvings == 0) return 0;
     const Vector3 between = 0.5 * plane.n0 + 0.5 * plane.n1;
-    const long first = prove(a, b, {span.start, claim.middle}, {plane.n0, between}, lower, halvings - 1);
+    const long first = prove_span(a, b, {span.start, claim.middle}, {plane.n0, between}, lower, halvings - 1);
     if (first == 0) return 0;
-    const long second = prove(a, b, {claim.middle, span.end}, {between, plane.n1}, lower, halvings - 1);
+    const long second = prove_span(a, b, {claim.middle, span.end}, {between, plane.n1}, lower, halvings - 1);
     return second == 0 ? 0 : first + second;
 }
 
-Interval distance_at(const BodyPath& a, const BodyPath& b, const Interval3& X_a, const Interval3& X_b, double s) {
-    const IntervalPose pose_a = pose_at(a, s), pose_b = pose_at(b, s);
-    const Interval3 between = (a.place - b.place) + Interval(s) * (a.drift - b.drift);
+Interval PathProver::distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at) const {
+    const double s = at[0];
+    const IntervalPose pose_a = pose_at(a_, s), pose_b = pose_at(b_, s);
+    const Interval3 between = (a_.place - b_.place) + Interval(s) * (a_.drift - b_.drift);
     const Interval3 d = times(pose_a.rotation, X_a) - times(pose_b.rotation, X_b) + between;
     return sqrt(square(d[0]) + square(d[1]) + square(d[2]));
+}
+
+double PathProver::witness_room(const Interval3& X_a, const Interval3& X_b) const {
+    double size = norm_bound(X_a) + norm_bound(X_b), turned = 1;
+    for (const BodyPath* path : {&a_, &b_}) {
+        size += norm_bound(path->place) + norm_bound(path->drift);
+        turned += norm_bound(path->theta) + path->speed;
+    }
+    return 1e-11 * size * turned + 1e-300;
 }
 
 }  // namespace fettle::core::certificate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The certificate checker's own mathematics: rigid motion and the bound of a leaf in interval arithmetic. Used by
-/// what checks and by what both ask alike (disjoint_solids.hpp); nothing here is used by the search for distances.
+/// The certificate checker's own mathematics of a path: rigid motion and the bound of a leaf in interval arithmetic; of ranges of joints:
+/// range_prover.hpp. Used by what checks and by what both ask alike (disjoint_solids.hpp); nothing here is used by the search for
+/// distances.
 ///
 /// Motion. R(s) = exp([theta]) B, theta = theta0 + s w, B the stored base as it is. R' = [omega] R with, x = |theta|,
 ///   omega = w + b k + c theta x k,   k = theta x w = theta0 x w (constant),   b = (1 - cos x)/x^2,   c = (x - sin x)/x^3,
@@ -82,14 +83,24 @@ struct Span {
     double start = 0, end = 1;
 };
 
-/// Two bodies on one segment. Keeps poses: leaves share few intervals of time.
-class LeafProver {
+/// Two bodies on one segment: a box of one coordinate, s in [0, 1]. Keeps poses: leaves share few intervals of time.
+class PathProver {
 public:
-    LeafProver(const BodyPath& a, const BodyPath& b) : a_(a), b_(b) {}
+    PathProver(const BodyPath& a, const BodyPath& b) : a_(a), b_(b) {}
 
-    /// In how many pieces of the span is n(u).(x_a - x_b) >= lower |n(u)| > 0 proven for all of it and of the regions? 0: it is not.
-    /// @param halvings  how often pieces may be halved, the span itself first
-    long prove(const Region& a, const Region& b, const Span& span, const LeafPlane& plane, double lower, int halvings);
+    static constexpr int coordinates() { return 1; }
+    static CoordinateBox box() { return {{0}, {1}}; }
+
+    /// In how many parts of a part of the box is n(u).(x_a - x_b) >= lower max|n| > 0 proven, for all of it and of the regions? 0: it is
+    /// not.
+    /// @param normals   one, or one for each end
+    /// @param halvings  how often parts may be halved, `part` itself first
+    long prove(const Region& a, const Region& b, const CoordinateBox& part, std::span<const Vector3> normals, double lower, int halvings);
+
+    /// Of two points of the bodies, at a place of the box.
+    Interval distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at) const;
+    /// How far a bound that these two points attain may be above their distance, for rounding.
+    double witness_room(const Interval3& X_a, const Interval3& X_b) const;
 
 private:
     struct Instant {
@@ -99,12 +110,10 @@ private:
     struct Claim;
     const Instant& at(double s);
     bool is_proven(const Claim& claim, const Region& a, const Region& b, bool by_boxes);
+    long prove_span(const Region& a, const Region& b, const Span& span, const LeafPlane& plane, double lower, int halvings);
 
     BodyPath a_, b_;
     std::map<double, Instant> instants_;
 };
-
-/// Interval of the distance at s of two points: sums of weight x corner over the sum of weights.
-Interval distance_at(const BodyPath& a, const BodyPath& b, const Interval3& X_a, const Interval3& X_b, double s);
 
 }  // namespace fettle::core::certificate

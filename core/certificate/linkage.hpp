@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Bodies joined as trees, as data: what a certificate over ranges of joints (range_certificate.hpp) speaks of. Made from a model by
+/// Bodies joined as trees, as data: what a certificate over ranges of joints (certificate.hpp) speaks of. Made from a model by
 /// clearance/joint_ranges.hpp.
 ///
 /// A configuration is a value u_k of each coordinate in its range [low, high]. Each body hangs on its parent, or on the world, by screws;
@@ -9,6 +9,7 @@
 /// z is about as long as 1; the formula takes it as it is, so that a configuration is defined exactly.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,13 @@ struct Linkage {
 /// More screws between two bodies than this are not dealt with, nor more coordinates.
 inline constexpr int most_screws = 16;
 inline constexpr int most_coordinates = 4;
+
+using Coordinates = std::array<double, most_coordinates>;  ///< those beyond a box's own are 0
+
+/// What two bodies are moved over: of a path's segment one coordinate in [0, 1], of a linked pair its own.
+struct CoordinateBox {
+    Coordinates low{}, high{};
+};
 
 /// Two bodies of a linkage: what moves one against the other. Screws that both hang on, and what they move together, is left out.
 struct LinkedPair {

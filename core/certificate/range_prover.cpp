@@ -55,9 +55,15 @@ double least_along(const Interval3& f, const Region& region, bool by_box) {
 
 }  // namespace
 
-RangeProver::RangeProver(const LinkedPair& pair, const std::vector<double>& starts, const kinematics::Pose& start_a,
-                         const kinematics::Pose& start_b)
-    : a_(side_of(pair.a, pair.coordinates, starts, start_a)), b_(side_of(pair.b, pair.coordinates, starts, start_b)) {
+RangeProver::RangeProver(const Linkage& linkage, const LinkedPair& pair, const kinematics::Pose& start_a, const kinematics::Pose& start_b)
+    : a_(side_of(linkage, pair, pair.a, start_a)),
+      b_(side_of(linkage, pair, pair.b, start_b)),
+      count_(static_cast<int>(pair.coordinates.size())) {
+    for (std::size_t k = 0; k < pair.coordinates.size(); ++k) {
+        const LinkageCoordinate& c = linkage.coordinates[static_cast<std::size_t>(pair.coordinates[k])];
+        box_.low[k] = c.low;
+        box_.high[k] = c.high;
+    }
     for (const Side* side : {&a_, &b_}) {
         magnitude_ += side->start.position.norm() + side->start.rotation.norm();
         for (std::size_t j = 0; j < side->screws.size(); ++j) {
@@ -67,11 +73,12 @@ RangeProver::RangeProver(const LinkedPair& pair, const std::vector<double>& star
     }
 }
 
-RangeProver::Side RangeProver::side_of(const std::vector<Screw>& screws, const std::vector<int>& coordinates,
-                                       const std::vector<double>& starts, const kinematics::Pose& start) {
+RangeProver::Side RangeProver::side_of(const Linkage& linkage, const LinkedPair& pair, const std::vector<Screw>& screws,
+                                       const kinematics::Pose& start) {
     Side side{screws, {}, {}, start, {}};
     for (std::size_t j = 0; j < screws.size(); ++j) {
-        side.starts.push_back(starts[static_cast<std::size_t>(coordinates[static_cast<std::size_t>(screws[j].coordinate)])]);
+        const int coordinate = pair.coordinates[static_cast<std::size_t>(screws[j].coordinate)];
+        side.starts.push_back(linkage.coordinates[static_cast<std::size_t>(coordinate)].start);
         Interval tilt = 0;
         for (std::size_t i = 0; i < j; ++i)
             if (screws[i].turn != 0)
@@ -96,7 +103,7 @@ const RangeProver::Placement& RangeProver::move(Side& side, std::size_t screw, d
 }
 
 // The body by the screws from `first` on.
-RangeProver::Placement RangeProver::after(Side& side, std::size_t first, const std::vector<double>& at) {
+RangeProver::Placement RangeProver::after(Side& side, std::size_t first, const Coordinates& at) {
     Placement out;
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j)
@@ -110,10 +117,10 @@ RangeProver::Placement RangeProver::after(Side& side, std::size_t first, const s
 }
 
 // r_j over the box: upper bounds.
-std::vector<double> RangeProver::radii(Side& side, const Region& region, const RangeBox& box) {
+std::vector<double> RangeProver::radii(Side& side, const Region& region, const CoordinateBox& box) {
     const std::size_t count = side.screws.size();
-    std::vector<double> center;
-    for (std::size_t k = 0; k < box.low.size(); ++k) center.push_back(0.5 * (box.low[k] + box.high[k]));
+    Coordinates center{};
+    for (std::size_t k = 0; k < center.size(); ++k) center[k] = 0.5 * (box.low[k] + box.high[k]);
     std::vector<double> out(count);
     Interval moved = 0;
     for (std::size_t j = count; j-- > 0;) {
@@ -139,7 +146,8 @@ std::vector<double> RangeProver::radii(Side& side, const Region& region, const R
     return out;
 }
 
-void RangeProver::add_losses(Side& side, const Region& region, const RangeBox& box, const std::vector<Vector3>& normals, Losses& losses) {
+void RangeProver::add_losses(Side& side, const Region& region, const CoordinateBox& box, std::span<const Vector3> normals,
+                             Losses& losses) const {
     const std::vector<double> r = radii(side, region, box);
     double length = 0;
     for (const Vector3& n : normals) length = std::max(length, norm_bound(exactly(n)));
@@ -163,18 +171,18 @@ void RangeProver::add_losses(Side& side, const Region& region, const RangeBox& b
     }
 }
 
-RangeProver::Losses RangeProver::losses(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals) {
-    Losses out{std::vector<double>(box.low.size(), 0.0), 0};
+RangeProver::Losses RangeProver::losses(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals) {
+    Losses out;
     add_losses(a_, a, box, normals, out);
     add_losses(b_, b, box, normals, out);
     return out;
 }
 
 // Is n.(x_a - x_b) at least that at every corner of the box?
-bool RangeProver::is_above(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double wanted) {
-    const std::size_t n = box.low.size();
+bool RangeProver::is_above(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals, double wanted) {
+    const auto n = static_cast<std::size_t>(count_);
     const bool many_a = a.points.size() > few_region_points, many_b = b.points.size() > few_region_points;
-    std::vector<double> at(n);
+    Coordinates at{};
     for (std::size_t c = 0; c < std::size_t{1} << n; ++c) {
         for (std::size_t k = 0; k < n; ++k) at[k] = (c >> k & 1) != 0 ? box.high[k] : box.low[k];
         const Interval3 normal = exactly(normals[normals.size() == 1 ? 0 : c]);
@@ -191,9 +199,9 @@ bool RangeProver::is_above(const Region& a, const Region& b, const RangeBox& box
     return true;
 }
 
-long RangeProver::prove(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double lower,
+long RangeProver::prove(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals, double lower,
                         int halvings) {
-    const std::size_t n = box.low.size(), corners = std::size_t{1} << n;
+    const std::size_t corners = std::size_t{1} << count_;
     if (normals.size() != 1 && normals.size() != corners) return 0;
     if (!(magnitude_ < base::largest_magnitude && a.radius < base::largest_magnitude && b.radius < base::largest_magnitude)) return 0;
     double length = 0;
@@ -205,13 +213,13 @@ long RangeProver::prove(const Region& a, const Region& b, const RangeBox& box, c
     const Losses lost = losses(a, b, box, normals);
     const double wanted = (Interval(lower) * Interval(length) + Interval(lost.total)).high;
     if (is_above(a, b, box, normals, wanted)) return 1;
-    if (halvings == 0 || n == 0) return 0;
+    if (halvings == 0 || count_ == 0) return 0;
     const auto k = static_cast<std::size_t>(std::max_element(lost.along.begin(), lost.along.end()) - lost.along.begin());
     const double middle = 0.5 * (box.low[k] + box.high[k]);
     if (!(lost.along[k] > 0) || !(box.low[k] < middle && middle < box.high[k])) return 0;
-    RangeBox first = box, second = box;
+    CoordinateBox first = box, second = box;
     first.high[k] = second.low[k] = middle;
-    std::vector<Vector3> of_first = normals, of_second = normals;
+    std::vector<Vector3> of_first(normals.begin(), normals.end()), of_second = of_first;
     for (std::size_t c = 0; normals.size() > 1 && c < corners; ++c) {
         const std::size_t pair = c ^ std::size_t{1} << k;
         const Vector3 between = 0.5 * normals[c] + 0.5 * normals[pair];
@@ -223,10 +231,17 @@ long RangeProver::prove(const Region& a, const Region& b, const RangeBox& box, c
     return others == 0 ? 0 : parts + others;
 }
 
-Interval RangeProver::distance_at(const Interval3& X_a, const Interval3& X_b, const std::vector<double>& at) {
+Interval RangeProver::distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at) {
     const Placement a = after(a_, 0, at), b = after(b_, 0, at);
     const Interval3 d = (times(a.rotation, X_a) - times(b.rotation, X_b)) + (a.place - b.place);
     return sqrt(square(d[0]) + square(d[1]) + square(d[2]));
+}
+
+double RangeProver::witness_room(const Interval3& X_a, const Interval3& X_b) const {
+    double turned = 1;
+    for (std::size_t k = 0; k < box_.low.size(); ++k) turned += std::abs(box_.high[k] - box_.low[k]);
+    const double size = norm_bound(X_a) + norm_bound(X_b) + magnitude_;
+    return 1e-11 * size * turned * (1 + magnitude_) + 1e-300;
 }
 
 }  // namespace fettle::core::certificate

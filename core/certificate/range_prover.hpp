@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The checker's mathematics of ranges of joints, in interval arithmetic; used by range_checker.cpp alone, nothing of it by the search.
+/// The checker's mathematics of ranges of joints, in interval arithmetic; used by certificate_checker.cpp alone, nothing of it by the
+/// search.
 ///
 /// A leaf: box of half widths w about c, vectors n_i at its 2^n corners, n(u) what interpolates them linearly in each coordinate,
 /// d = x_a - x_b, g(u) = n(u).d(u). What interpolates g's own values at the corners is off by at most the sum over the coordinates k of
@@ -18,6 +19,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <utility>
 
 #include "fettle/core/certificate/certified_body.hpp"
@@ -26,28 +28,17 @@
 
 namespace fettle::core::certificate {
 
-/// A box of a pair's own coordinates.
-struct RangeBox {
-    std::vector<double> low, high;
-};
-
-/// Two bodies that move by screws.
+/// Two bodies that move by screws, over the ranges of their coordinates. Its functions are those of PathProver (interval_motion.hpp).
 class RangeProver {
 public:
-    /// @param starts  of all of the linkage's coordinates
-    RangeProver(const LinkedPair& pair, const std::vector<double>& starts, const kinematics::Pose& start_a,
-                const kinematics::Pose& start_b);
+    /// Contract: at most most_coordinates; `pair` is of the linkage, which is checked.
+    RangeProver(const Linkage& linkage, const LinkedPair& pair, const kinematics::Pose& start_a, const kinematics::Pose& start_b);
 
-    /// In how many parts of the box is n(u).(x_a - x_b) >= lower max|n| > 0 proven, for all of it and of the regions? 0: it is not.
-    /// @param normals  one, or one per corner
-    /// @param halvings how often parts may be halved
-    long prove(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double lower, int halvings);
-
-    /// Interval of the distance of two points at a configuration.
-    Interval distance_at(const Interval3& X_a, const Interval3& X_b, const std::vector<double>& at);
-
-    /// Upper bound of all numbers, as BodyPath::magnitude.
-    double magnitude() const { return magnitude_; }
+    int coordinates() const { return count_; }
+    const CoordinateBox& box() const { return box_; }
+    long prove(const Region& a, const Region& b, const CoordinateBox& part, std::span<const Vector3> normals, double lower, int halvings);
+    Interval distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at);
+    double witness_room(const Interval3& X_a, const Interval3& X_b) const;
 
 private:
     struct Placement {
@@ -62,21 +53,22 @@ private:
         std::map<std::pair<std::size_t, double>, Placement> moves;  // of a screw at a value
     };
     struct Losses {
-        std::vector<double> along;  // e_k
+        Coordinates along{};  // e_k
         double total = 0;
     };
 
-    static Side side_of(const std::vector<Screw>& screws, const std::vector<int>& coordinates, const std::vector<double>& starts,
-                        const kinematics::Pose& start);
+    static Side side_of(const Linkage& linkage, const LinkedPair& pair, const std::vector<Screw>& screws, const kinematics::Pose& start);
     static const Placement& move(Side& side, std::size_t screw, double value);
-    static Placement after(Side& side, std::size_t first, const std::vector<double>& at);
-    static std::vector<double> radii(Side& side, const Region& region, const RangeBox& box);
-    void add_losses(Side& side, const Region& region, const RangeBox& box, const std::vector<Vector3>& normals, Losses& losses);
-    bool is_above(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals, double wanted);
-    Losses losses(const Region& a, const Region& b, const RangeBox& box, const std::vector<Vector3>& normals);
+    static Placement after(Side& side, std::size_t first, const Coordinates& at);
+    static std::vector<double> radii(Side& side, const Region& region, const CoordinateBox& box);
+    void add_losses(Side& side, const Region& region, const CoordinateBox& box, std::span<const Vector3> normals, Losses& losses) const;
+    bool is_above(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals, double wanted);
+    Losses losses(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals);
 
     Side a_, b_;
-    double magnitude_ = 0;
+    int count_ = 0;  // of coordinates
+    CoordinateBox box_;
+    double magnitude_ = 0;  // upper bound of all numbers, as BodyPath::magnitude
 };
 
 }  // namespace fettle::core::certificate

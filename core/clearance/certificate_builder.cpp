@@ -87,13 +87,13 @@ void complete_certificate(const PairMotion& pair, const SearchResult& found, cer
     certificate.upper = found.upper + 4 * pair.segments[nearest.segment].slack;  // for the checker's own rounding
     certificate.step = witness.step;
     certificate.segment = witness.segment;
-    certificate.s = witness.s;
+    certificate.at = {witness.s};
     const ElementPairDistance& found_pair = nearest.pair;
     certificate.point_a =
         certified_witness(pair.a, nearest.element_a, found_pair.intersecting, {found_pair.kind_a, found_pair.corner_a}, on_a);
     certificate.point_b =
         certified_witness(pair.b, nearest.element_b, found_pair.intersecting, {found_pair.kind_b, found_pair.corner_b}, on_b);
-    if (!(found.lower > 0)) certificate.segments.clear();
+    if (!(found.lower > 0)) certificate.boxes.clear();
 }
 
 std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Certificate& certificate, const model::Model& model) {
@@ -109,9 +109,9 @@ std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Cert
 
 void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
                       certificate::PairCertificate& certificate) {
-    base::parallel_for(static_cast<int>(certificate.segments.size()), 1, [&](int i) {
+    base::parallel_for(static_cast<int>(certificate.boxes.size()), 1, [&](int i) {
         const PairSegment& segment = pair.segments[static_cast<std::size_t>(i)];
-        certificate::SegmentProof& proof = certificate.segments[static_cast<std::size_t>(i)];
+        certificate::BoxProof& proof = certificate.boxes[static_cast<std::size_t>(i)];
         const auto path = [&](int body) { return certificate::body_path(pair.trajectory, segment.step, segment.segment, body); };
         proof = certificate::thinned(proof, a, b, path(certificate.a), path(certificate.b), certificate.lower + room);
     });

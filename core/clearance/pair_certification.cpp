@@ -50,7 +50,7 @@ SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& op
         return search_pair(pair.a, pair.b, pair.segments, search);
     }
     search.tolerance *= 0.75;
-    search.proof = &record->certificate.segments;
+    search.proof = &record->certificate.boxes;
     SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
     const double room = checking_room(options, pair);
     found.lower = std::max(0.0, found.lower - room);
@@ -85,7 +85,7 @@ public:
         if (record_) record_->certificate.solids = result_.intersecting ? Solids::unproven : result_.solids;
         tell_bounds();
         if (result_.is_clash()) describe_clash();
-        judge(contact_distance);
+        judge(result_, request_, contact_distance, crosses_);
         if (options_.margin_curve) result_.margin = margin_curve(pair_, found_, search_);
         return std::move(result_);
     }
@@ -198,7 +198,7 @@ private:
         result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b, pair_start(), found_.lower);
         if (!record_ || result_.solids != Solids::overlap) return;
         record_->certificate.lower = 0;
-        record_->certificate.segments.clear();
+        record_->certificate.boxes.clear();
     }
 
     struct Instant {
@@ -279,38 +279,6 @@ private:
         if (const auto at = deepest()) result_.overlap = overlap_at(*at, cell_budget());
     }
 
-    void judge(double contact_distance) {
-        const bool told = result_.lower > 0 && certificate::are_apart(result_.solids);
-        if (result_.is_clash()) {
-            result_.status = PairStatus::violated;
-        } else if (result_.touch) {
-            result_.status = request_.may_touch                            ? PairStatus::contact
-                             : crosses_ || result_.upper < result_.minimum ? PairStatus::violated
-                                                                           : PairStatus::undecided;
-        } else if (result_.minimum > 0) {
-            result_.status = told && result_.lower >= result_.minimum ? PairStatus::clear
-                             : result_.upper < result_.minimum        ? PairStatus::violated
-                                                                      : PairStatus::undecided;
-        } else if (!told) {
-            result_.status = PairStatus::undecided;
-        } else if (!(result_.upper >= contact_distance)) {
-            result_.status = PairStatus::contact;
-        } else {
-            result_.status = result_.complete || result_.lower >= contact_distance ? PairStatus::clear : PairStatus::undecided;
-        }
-        if (result_.status != PairStatus::undecided) return;
-        result_.reason = result_.touch       ? "they touch: neither a gap nor a clash"
-                         : !result_.complete ? "the search was cut short, by a stop or its budget"
-                         : request_.may_touch && !(result_.lower > 0)
-                             ? "they may touch, but it is not proven that they are nowhere deeper in each other than that"
-                         : !(result_.lower > 0)
-                             ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
-                         : !told ? why_not_apart(result_.solids)
-                         : result_.upper - result_.minimum <= 64 * most_slack(pair_) + checking_room(options_, pair_)
-                             ? "the minimum lies within rounding of the distance"
-                             : "the minimum lies between the bounds, and the search for a closer one was cut short by its budget";
-    }
-
     const PairMotion& pair_;
     const PairRequest& request_;
     const ClearanceOptions& options_;
@@ -335,6 +303,36 @@ std::optional<double> proven_apart(const PairMotion& pair, double reach, const C
     const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
     if (!(found.lower >= reach)) return std::nullopt;
     return found.lower;
+}
+
+void judge(PairClearance& pair, const PairRequest& request, double contact_distance, bool crosses) {
+    const bool told = pair.lower > 0 && certificate::are_apart(pair.solids);
+    if (pair.is_clash()) {
+        pair.status = PairStatus::violated;
+    } else if (pair.touch) {
+        pair.status = request.may_touch                      ? PairStatus::contact
+                      : crosses || pair.upper < pair.minimum ? PairStatus::violated
+                                                             : PairStatus::undecided;
+    } else if (pair.minimum > 0) {
+        pair.status = told && pair.lower >= pair.minimum ? PairStatus::clear
+                      : pair.upper < pair.minimum        ? PairStatus::violated
+                                                         : PairStatus::undecided;
+    } else if (!told) {
+        pair.status = PairStatus::undecided;
+    } else if (!(pair.upper >= contact_distance)) {
+        pair.status = PairStatus::contact;
+    } else {
+        pair.status = pair.complete || pair.lower >= contact_distance ? PairStatus::clear : PairStatus::undecided;
+    }
+    if (pair.status != PairStatus::undecided) return;
+    pair.reason = pair.touch       ? "they touch: neither a gap nor a clash"
+                  : !pair.complete ? "the search was cut short, by a stop or its budget"
+                  : request.may_touch && !(pair.lower > 0)
+                      ? "they may touch, but it is not proven that they are nowhere deeper in each other than that"
+                  : !(pair.lower > 0)
+                      ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
+                  : !told ? why_not_apart(pair.solids)
+                          : "the minimum lies between the bounds, as near to the distance as rounding or the budget of the search lets it be told";
 }
 
 PairClearance unmeasured(const PairRequest& request, const std::string& reason) {

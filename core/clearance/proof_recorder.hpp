@@ -16,7 +16,7 @@ public:
 
     /// The cell of a whole segment; -1 for all cells if off.
     int root(int segment) const { return on_ ? segment : -1; }
-    /// 't', 'a' or 'b': the two new cells, in order.
+    /// By '0' (time), 'a' or 'b': the two new cells, in order.
     std::pair<int, int> split(int cell, char kind) {
         if (!on_) return {-1, -1};
         const int first = static_cast<int>(cells_.size());
@@ -31,7 +31,7 @@ public:
     /// What was set; not if off.
     certificate::LeafPlane plane(int cell) const { return on_ ? cells_[static_cast<std::size_t>(cell)].plane : certificate::LeafPlane{}; }
     /// One proof per segment.
-    void write(certificate::PairProof& proof) const {
+    void write(std::vector<certificate::BoxProof>& proof) const {
         const std::size_t segments = segment_count();
         proof.assign(segments, {});
         for (std::size_t i = 0; i < segments; ++i) write_cells(i, proof[i]);
@@ -49,16 +49,16 @@ private:
             if (cell.split != '.') count -= 2;
         return count;
     }
-    void write_cells(std::size_t root, certificate::SegmentProof& proof) const {
+    void write_cells(std::size_t root, certificate::BoxProof& proof) const {
         std::vector<std::size_t> pending{root};
         while (!pending.empty()) {
             const Cell& cell = cells_[pending.back()];
             pending.pop_back();
-            proof.splits += cell.split;
             if (cell.split == '.') {
-                proof.planes.push_back(cell.plane);
+                add_leaf(proof, cell.plane);
                 continue;
             }
+            proof.splits += cell.split;
             pending.push_back(static_cast<std::size_t>(cell.first_child) + 1);
             pending.push_back(static_cast<std::size_t>(cell.first_child));
         }

@@ -30,13 +30,11 @@
 
 namespace fettle::core::clearance {
 
+using certificate::CoordinateBox;
+using certificate::Coordinates;
 using certificate::most_coordinates;
 using certificate::most_screws;
-using Coordinates = std::array<double, most_coordinates>;  ///< of a pair; those beyond its own are 0
 
-struct CoordinateBox {
-    Coordinates low{}, high{};
-};
 Coordinates middle_of(const CoordinateBox& box);
 
 /// A body that moves by screws, outermost first.

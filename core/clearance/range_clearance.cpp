@@ -13,6 +13,7 @@
 #include "fettle/core/clearance/body_motions.hpp"
 #include "fettle/core/clearance/certificate_builder.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/pair_certification.hpp"
 #include "fettle/core/clearance/range_search.hpp"
 
 namespace fettle::core::clearance {
@@ -83,26 +84,13 @@ private:
     void start_record() {
         std::vector<const PieceTree*> trees;
         for (const BodyShape& shape : shapes_) trees.push_back(shape.tree.get());
-        const certificate::Certificate frame = start_certificate(model_, start_, trees, false, 0);
-        certificate::RangeCertificate& out = *options_.certificate;
-        out = {};
-        out.geometry_hash = frame.geometry_hash;
-        out.path_hash = frame.path_hash;
-        out.length_unit = frame.length_unit;
-        out.bodies = frame.bodies;
-        out.linkage = ranges_.linkage;
-        out.pairs.resize(pairs_.size());
-        for (auto& pair : out.pairs) pair.point_a.index = -1;
+        *options_.certificate = start_certificate(model_, start_, trees, false, pairs_.size());
+        options_.certificate->linkage = ranges_.linkage;
     }
 
     RangeClearance certified(std::size_t i) const {
         const PairRequest& request = pairs_[i];
-        RangeClearance out;
-        out.a = request.a;
-        out.b = request.b;
-        out.minimum = request.minimum;
-        out.upper = infinity;
-        out.complete = false;
+        RangeClearance out{unmeasured({request.a, request.b, request.minimum}, ""), 0, {}, {}, 0};
         const certificate::LinkedPair linked = linked_pair(ranges_.linkage, request.a, request.b);
         out.coordinates = linked.coordinates;
         for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[static_cast<std::size_t>(k)].start);
@@ -148,16 +136,16 @@ private:
         out.bounds = found.bounds;
         if (found.nearest.element_a >= 0) {
             for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
-            out.witness = range_witness(pair, found.nearest);
+            out.witness = out.witnesses.front() = range_witness(pair, found.nearest);
         }
         if (options_.certificate != nullptr) record(pair, found, search, out, options_.certificate->pairs[index]);
         decide_solids(out);
         if (options_.certificate != nullptr) options_.certificate->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
-        judge(out);
+        judge(out, {out.a, out.b, out.minimum}, 0, false);
     }
 
     void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, RangeClearance& out,
-                certificate::RangePairCertificate& record) const {
+                certificate::PairCertificate& record) const {
         record.a = out.a;
         record.b = out.b;
         record.at = out.at;
@@ -166,8 +154,10 @@ private:
         const double above = found.lower - (out.minimum < found.lower ? out.minimum : 0);  // a claim keeps what was decided, if it can
         room = std::max(8 * pair.slack, std::min(room, 0.5 * above));
         out.lower = found.lower > room ? found.lower - room : 0;
-        if (out.lower > 0) record.proof = prove_ranges(pair, out.lower + 0.5 * room, search);
-        if (record.proof.splits.empty()) out.lower = 0;
+        certificate::BoxProof proof;
+        if (out.lower > 0) proof = prove_ranges(pair, out.lower + 0.5 * room, search);
+        if (proof.splits.empty()) out.lower = 0;
+        if (out.lower > 0) record.boxes = {std::move(proof)};
         record.lower = out.lower;
         record.upper = found.upper + 4 * pair.slack;  // for the checker's own rounding
         const auto point = [&](const PieceTree& tree, const ScrewedBody& body, int element, Primitive kind, int corner, const Vector3& x) {
@@ -187,22 +177,6 @@ private:
                                             *shapes_[static_cast<std::size_t>(out.b)].solid, {start_, -1, 0, out.a, out.b}, out.lower);
         if (out.solids != Solids::overlap) return;
         out.lower = out.upper = 0;
-    }
-
-    static void judge(RangeClearance& out) {
-        const bool told = out.lower > 0 && certificate::are_apart(out.solids);
-        if (out.is_clash() || (out.minimum > 0 && out.upper < out.minimum)) {
-            out.status = PairStatus::violated;
-        } else if (told && out.lower >= out.minimum) {
-            out.status = PairStatus::clear;
-        } else {
-            out.status = PairStatus::undecided;
-            out.reason = !out.complete      ? "the search was cut short, by a stop or its budget"
-                         : !(out.lower > 0) ? "the surfaces come within rounding of each other: neither that they cross nor that they "
-                                              "stay apart is proven"
-                         : !told            ? why_not_apart(out.solids)
-                                            : "the minimum lies between the bounds: a smaller tolerance tells";
-        }
     }
 
     const model::Model& model_;

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
 
@@ -19,29 +19,19 @@ struct RangeClearanceOptions {
     long max_bounds = 4'000'000;  ///< per pair of bodies; beyond it: undecided with true bounds
     std::function<void(int done, int of)> on_pair;
     std::function<bool()> should_stop;
-    certificate::RangeCertificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
+    certificate::Certificate* certificate = nullptr;  ///< optional: the proofs are recorded here; `lower` is what they claim
 };
 
 /// Where nothing is asked for: 10 um, or 1% of the least minimum that is required; with more than two coordinates 1% of the bodies' radii.
 RangeClearanceOptions usual_options(const std::vector<PairRequest>& pairs);
 
-/// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
-struct RangeClearance {
-    int a = 0, b = 0;
-    double minimum = 0;
-    double lower = 0, upper = 0;  ///< [m]
-    double tolerance = 0;         ///< that was asked for, of this pair
-    PairStatus status = PairStatus::undecided;
-    Witness witness;               ///< attains `upper`; step -1; in the world, with what moves both bodies at its start
+/// A verdict as over a path (pair_clearance.hpp), judged by the same function. The witness attains `upper`, in the world, with what moves
+/// both bodies at its start; its step is -1. Nothing is told of overlap, touch, times, nodes and margins: these are of a path.
+struct RangeClearance : PairClearance {
+    double tolerance = 0;          ///< that was asked for, of this pair
     std::vector<int> coordinates;  ///< of the linkage: those that move one body against the other
     std::vector<double> at;        ///< their values at the witness
-    bool complete = true;          ///< false: budget or should_stop ended the search before the tolerance was reached
-    bool intersecting = false;     ///< the surfaces pass through each other there
-    Solids solids = Solids::unproven;
-    std::string reason;  ///< why it is undecided; empty: it is not
-    long bounds = 0;     ///< computed
-
-    bool is_clash() const { return intersecting || solids == Solids::overlap; }
+    long bounds = 0;               ///< computed
 };
 
 /// Bounds for each pair asked for, in their order; PairRequest::far counts for nothing.

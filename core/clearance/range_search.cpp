@@ -293,9 +293,9 @@ private:
 
 RangeSearchResult search_ranges(const ScrewedPair& pair, const RangeSearchOptions& options) { return RangeSearch(pair, options).run(); }
 
-certificate::RangeProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options) {
+certificate::BoxProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options) {
     CellBounds cells(pair);
-    certificate::RangeProof proof;
+    certificate::BoxProof proof;
     std::vector<RangeCell> pending{cells.root()};
     while (!pending.empty()) {
         RangeCell cell = pending.back();

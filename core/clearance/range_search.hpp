@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/clearance/range_bound.hpp"
 
 namespace fettle::core::clearance {
@@ -37,8 +37,8 @@ struct RangeSearchResult {
 
 RangeSearchResult search_ranges(const ScrewedPair& pair, const RangeSearchOptions& options);
 
-/// The tree of cells that proves `distance` > 0 (range_certificate.hpp), by the same bounds. Contract: at most what a search has proven.
+/// The tree of cells that proves `distance` > 0 (certificate.hpp), by the same bounds. Contract: at most what a search has proven.
 /// Empty where a stop or the budget ended it.
-certificate::RangeProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options);
+certificate::BoxProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options);
 
 }  // namespace fettle::core::clearance

@@ -21,11 +21,11 @@ struct SearchOptions {
     double enough = std::numeric_limits<double>::infinity();    ///< a lower bound of this much ends the search, whatever the gap [m]
     double refuted = -std::numeric_limits<double>::infinity();  ///< an upper bound below this ends the search, whatever the gap [m]
     bool nodes_only = false;                                    ///< at the ends of the segments instead of over them
-    bool seek_intersection = false;           ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
-    std::optional<Encounter> seed;            ///< of the same bodies: its distance is the first upper bound
-    bool exact_witness = true;                ///< `nearest` are the nearest elements at their instant, if that is found soon
-    bool sample_nodes = false;                ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
-    certificate::PairProof* proof = nullptr;  ///< the tree of entries is recorded here, one proof per segment
+    bool seek_intersection = false;  ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
+    std::optional<Encounter> seed;   ///< of the same bodies: its distance is the first upper bound
+    bool exact_witness = true;       ///< `nearest` are the nearest elements at their instant, if that is found soon
+    bool sample_nodes = false;       ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
+    std::vector<certificate::BoxProof>* proof = nullptr;  ///< the tree of entries is recorded here, one proof per segment
 };
 
 struct SearchResult {

@@ -291,7 +291,7 @@ void SegmentSearch::measure_elements(const Entry& entry) {
 void SegmentSearch::halve(const Entry& entry) {
     if (intervals_[entry.interval].first_half < 0) make_halves(entry.interval);
     const Interval interval = intervals_[entry.interval];
-    const auto [first, second] = recorder_.split(entry.cell, 't');
+    const auto [first, second] = recorder_.split(entry.cell, '0');
     if (entry.beside) {
         Entry half = entry;
         const Vector3 n = hull_direction(interval.segment, interval.middle);

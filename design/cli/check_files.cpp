@@ -143,6 +143,12 @@ CheckOutcome to_check(core::clearance::PairStatus status) {
     return status == PairStatus::undecided ? CheckOutcome::undecided : CheckOutcome::passed;
 }
 
+int exit_code(core::clearance::PairStatus status) {
+    using core::clearance::PairStatus;
+    if (status == PairStatus::violated) return exit_violated;
+    return status == PairStatus::undecided ? exit_undecided : exit_done;
+}
+
 Check not_judged(const std::string& why, const std::string& file) {
     return {"every pair is judged", CheckOutcome::undecided, "not judged", why, file};
 }

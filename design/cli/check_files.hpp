@@ -31,6 +31,7 @@ struct Check {
 
 /// Of a pair of bodies; "contact" is not judged.
 CheckOutcome to_check(core::clearance::PairStatus status);
+int exit_code(core::clearance::PairStatus status);
 
 /// That not every pair was judged, or not to the end, and why.
 Check not_judged(const std::string& why, const std::string& file);

@@ -6,7 +6,6 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/certificate/range_certificate.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -89,11 +88,6 @@ Result<Lengths> read_lengths(const ClearanceArguments& options) {
     return lengths;
 }
 
-int exit_code(PairStatus status) {
-    if (status == PairStatus::violated) return exit_violated;
-    return status == PairStatus::undecided ? exit_undecided : exit_done;
-}
-
 // Those that are not judged: a clash of theirs is found, and they become rows of the report for it.
 std::vector<core::clearance::PairClearance> clashes_of_left_out(const Subject& subject, core::clearance::ClearanceOptions certify,
                                                                 PairSelection& selection) {
@@ -151,7 +145,7 @@ Errors write_proof(const std::string& path, core::certificate::Certificate& cert
 
 // Where nothing is proven, the certificate of an earlier run must not stay, nor its trajectory, unless that is what was judged.
 Errors take_away_proof(const std::string& path, const Subject& subject) {
-    if (!core::certificate::is_certificate_file(path) && !core::certificate::is_range_certificate_file(path)) return {};
+    if (!core::certificate::is_certificate_file(path)) return {};
     core::files::FilesTogether files;
     files.take_away(path);
     const std::string beside = certificate_trajectory(path);

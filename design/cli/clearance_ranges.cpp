@@ -324,7 +324,7 @@ std::vector<Check> range_checks(const RangeReport& report, const JointRanges& ra
     return checks;
 }
 
-Errors write_range_proof(const RangeQuestion& question, core::certificate::RangeCertificate& certificate, const LoadedModel& loaded) {
+Errors write_range_proof(const RangeQuestion& question, core::certificate::Certificate& certificate, const LoadedModel& loaded) {
     certificate.source = name_from_certificate(question.certificate, question.path);
     core::files::FilesTogether files;
     Errors errors = core::records::add_trajectory(files, certificate_trajectory(question.certificate),
@@ -362,7 +362,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
     }
     certify.on_pair = [&](int done, int of) { console.progress("certifying", done, of); };
     certify.should_stop = interrupted;
-    core::certificate::RangeCertificate certificate;
+    core::certificate::Certificate certificate;
     if (!question.certificate.empty()) certify.certificate = &certificate;
     const std::vector<RangeClearance> results = certify_ranges(loaded->model, *ranges, requests, certify);
     RangeReport report = make_range_report(loaded->model, *ranges, *selection, results);
@@ -387,7 +387,7 @@ int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, C
     for (Check& check : range_checks(report, *ranges, answers::unit_name(loaded->model.length_unit), question.path))
         console.found(std::move(check));
     console.result(json, text);
-    return report.status == PairStatus::violated ? exit_violated : report.status == PairStatus::undecided ? exit_undecided : exit_done;
+    return exit_code(report.status);
 }
 
 }  // namespace fettle::design::cli

@@ -9,7 +9,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/certificate/range_certificate.hpp"
+#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -119,7 +119,7 @@ reading::Programs programs_of(const CommonOptions& common) {
 FileKind file_kind(const std::string& path) {
     if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
     if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
-    if (core::certificate::is_certificate_file(path) || core::certificate::is_range_certificate_file(path)) return FileKind::certificate;
+    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
     return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;
 }
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/certificate/range_checker.hpp"
+#include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
 #include "fettle/core/clearance/jointed_clearance.hpp"
@@ -24,7 +24,9 @@ namespace fettle::design::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::certificate::Certificate;
 using core::certificate::Solids;
+using core::clearance::PairStatus;
 using core::model::Model;
 
 struct Claim {
@@ -34,55 +36,26 @@ struct Claim {
     bool is_of_bodies = true;  // false: of the path as stored, and it is not known whether joints have the bodies elsewhere between nodes
 };
 
-// What both kinds of certificate come to.
 struct Checked {
+    core::certificate::Certificate certificate;
     core::certificate::CertificateReport report;
-    std::uint64_t geometry_hash = 0, path_hash = 0;
-    double length_unit = 1;
-    std::string source;
-    bool motion = false;
-    std::optional<core::certificate::Linkage> linkage;     // of one over ranges of joints
-    std::optional<core::certificate::IdealJoints> joints;  // met at all times, beside the path
-    bool is_of_path = false;                               // and said to be of that
     std::vector<Claim> claims;
-    std::vector<std::array<int, 2>> uncovered;
-    std::vector<core::certificate::ExportedFile> exports;
 };
 
-template <class Certificate>
-Checked checked(const Certificate& certificate, const Model& model, core::certificate::CertificateReport report) {
-    Checked out;
-    out.report = std::move(report);
-    out.geometry_hash = certificate.geometry_hash;
-    out.path_hash = certificate.path_hash;
-    out.length_unit = certificate.length_unit;
-    out.source = certificate.source;
-    for (const auto& pair : certificate.pairs) out.claims.push_back({pair.a, pair.b, pair.lower, pair.upper, pair.solids});
-    out.uncovered = uncovered_pairs(certificate, static_cast<int>(model.bodies.size()));
-    return out;
-}
-
 Result<Checked> read_and_check(const std::string& path, const core::records::StoredTrajectory& stored) {
-    if (core::certificate::is_range_certificate_file(path)) {
-        const auto certificate = core::certificate::read_range_certificate(path);
-        if (!certificate) return certificate.errors();
-        Checked out = checked(*certificate, stored.model, core::certificate::check_range_certificate(*certificate, stored));
-        out.linkage = certificate->linkage;
-        return out;
-    }
-    const auto certificate = core::certificate::read_certificate(path);
+    auto certificate = core::certificate::read_certificate(path);
     if (!certificate) return certificate.errors();
-    Checked out = checked(*certificate, stored.model, core::certificate::check_certificate(*certificate, stored));
-    out.motion = certificate->motion;
-    out.exports = certificate->exports;
-    out.joints = certificate->joints;
-    out.is_of_path = certificate->is_of_path;
-    if (!out.joints) return out;
-    for (Claim& claim : out.claims) {
-        const double charge = joint_charge(*out.joints, claim.a, claim.b);
-        claim.lower = std::max(0.0, claim.lower - charge);
-        claim.upper += charge;
-        if (!(claim.lower > 0) && claim.solids == Solids::disjoint) claim.solids = Solids::unproven;
+    Checked out{std::move(certificate).value(), {}, {}};
+    out.report = core::certificate::check_certificate(out.certificate, stored);
+    for (const auto& pair : out.certificate.pairs) {
+        Claim claim{pair.a, pair.b, pair.lower, pair.upper, pair.solids};
+        if (const auto& joints = out.certificate.joints) {
+            const double charge = joint_charge(*joints, claim.a, claim.b);
+            claim.lower = std::max(0.0, claim.lower - charge);
+            claim.upper += charge;
+            if (!(claim.lower > 0) && claim.solids == Solids::disjoint) claim.solids = Solids::unproven;
+        }
+        out.claims.push_back(claim);
     }
     return out;
 }
@@ -98,8 +71,8 @@ bool moves(const core::stepper::Trajectory& trajectory, int body) {
 
 // A certificate of a motion that neither has joints nor says that the path as stored is what it is of: what its bounds of moving bodies
 // are worth is known only where the source has no joints.
-void doubt_bounds(Checked& certificate, const core::stepper::Trajectory& trajectory) {
-    for (Claim& claim : certificate.claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
+void doubt_bounds(std::vector<Claim>& claims, const core::stepper::Trajectory& trajectory) {
+    for (Claim& claim : claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
 }
 
 Json name_of(const Model& model, int body) {
@@ -107,23 +80,33 @@ Json name_of(const Model& model, int body) {
     return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
 }
 
-// "clear", "violated" or "undecided", of a pair whose claims are proven.
-const char* verdict(const Claim& pair, double minimum) {
-    if (!pair.is_of_bodies) return "undecided";
-    if (pair.lower >= minimum && pair.lower > 0 && are_apart(pair.solids)) return "clear";
-    return pair.upper < minimum ? "violated" : "undecided";
+// Clear, violated or undecided, of a pair whose claims are proven.
+PairStatus verdict(const Claim& pair, double minimum) {
+    if (!pair.is_of_bodies) return PairStatus::undecided;
+    if (pair.lower >= minimum && pair.lower > 0 && are_apart(pair.solids)) return PairStatus::clear;
+    return pair.upper < minimum ? PairStatus::violated : PairStatus::undecided;
+}
+
+PairStatus worst_of(const std::vector<Claim>& claims, double minimum) {
+    PairStatus worst = PairStatus::clear;
+    for (const Claim& pair : claims) {
+        const PairStatus status = verdict(pair, minimum);
+        if (status == PairStatus::violated) return status;
+        if (status == PairStatus::undecided) worst = status;
+    }
+    return worst;
 }
 
 // What a certificate claims, by name.
-Json claims_json(const Checked& certificate, const Model& model, const std::optional<double>& minimum) {
+Json claims_json(const std::vector<Claim>& claims, const Model& model, const std::optional<double>& minimum) {
     Json list = Json::array();
-    for (const Claim& pair : certificate.claims) {
+    for (const Claim& pair : claims) {
         list.push_back({{"a", name_of(model, pair.a)},
                         {"b", name_of(model, pair.b)},
                         {"lower", pair.lower},
                         {"upper", pair.upper},
                         {"solids", to_string(pair.solids)}});
-        if (minimum) list.back()["status"] = verdict(pair, *minimum);
+        if (minimum) list.back()["status"] = to_string(verdict(pair, *minimum));
     }
     return list;
 }
@@ -138,12 +121,12 @@ std::string claim_text(const Claim& pair, const RoundedLengths& lengths) {
            lengths.unit() + "; " + core::clearance::words(pair.solids);
 }
 
-std::string claims_text(const Checked& certificate, const Model& model, const std::optional<double>& minimum) {
-    const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
+std::string claims_text(const Checked& checked, const Model& model, const std::optional<double>& minimum) {
+    const RoundedLengths lengths(answers::unit_name(checked.certificate.length_unit));
     std::string text;
-    for (const Claim& pair : certificate.claims)
+    for (const Claim& pair : checked.claims)
         text += "  " + claim_name(pair, model) + "  " + claim_text(pair, lengths) +
-                (minimum ? std::string(": ") + verdict(pair, *minimum) : "") + "\n";
+                (minimum ? std::string(": ") + to_string(verdict(pair, *minimum)) : "") + "\n";
     return text;
 }
 
@@ -154,10 +137,9 @@ Check check_of(const Claim& pair, const std::string& name, const RoundedLengths&
                const std::string& file) {
     Check check{name, CheckOutcome::passed, "proven", claim_text(pair, lengths), file};
     if (minimum) {
-        check.rule = verdict(pair, *minimum);
-        check.outcome = check.rule == "violated" ? CheckOutcome::failed
-                        : check.rule == "clear"  ? CheckOutcome::passed
-                                                 : CheckOutcome::undecided;
+        const PairStatus status = verdict(pair, *minimum);
+        check.rule = to_string(status);
+        check.outcome = to_check(status);
         check.message += "; required " + formatted("%.6g ", *minimum / lengths.metres()) + lengths.unit();
     } else if (!pair.is_of_bodies || !are_apart(pair.solids)) {
         check.rule = "undecided";
@@ -174,7 +156,7 @@ struct SourceCheck {
     bool has_joints = true;  // as far as is known
 };
 
-SourceCheck check_source(const Checked& certificate, const std::string& path, const CommonOptions& common) {
+SourceCheck check_source(const Certificate& certificate, const std::string& path, const CommonOptions& common) {
     if (certificate.source.empty()) return {};
     const std::filesystem::path source = file_of_certificate(path, certificate.source);
     const std::string untold = ": whether its meshes have changed since cannot be told";
@@ -211,7 +193,7 @@ struct ExportCheck {
     std::vector<std::string> notes;
 };
 
-ExportCheck check_exports(const Checked& certificate, const std::string& path) {
+ExportCheck check_exports(const Certificate& certificate, const std::string& path) {
     ExportCheck check;
     for (const core::certificate::ExportedFile& exported : certificate.exports) {
         const std::filesystem::path file = file_of_certificate(path, exported.file);
@@ -251,18 +233,17 @@ struct Answer {
     }
 };
 
-std::string worst_of(const Json& claims) {
-    std::string worst = "clear";
-    for (const Json& pair : claims) {
-        const std::string status = pair["status"];
-        if (status == "violated" || (status == "undecided" && worst == "clear")) worst = status;
-    }
-    return worst;
+const char* about(const Certificate& certificate) {
+    if (certificate.linkage) return "over all positions of the joints";
+    if (!certificate.motion) return "as assembled";
+    if (certificate.joints) return "over the motion, of joints met at all times";
+    return certificate.is_of_path ? "over the motion, of the path as stored" : "over the motion";
 }
 
-void check(Checked& certificate, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
+void check(Checked& checked, const core::records::StoredTrajectory& stored, const CertificateQuestion& question,
            const std::optional<double>& minimum, const CommonOptions& common, Answer& answer) {
-    const core::certificate::CertificateReport& report = certificate.report;
+    const Certificate& certificate = checked.certificate;
+    const core::certificate::CertificateReport& report = checked.report;
     for (const auto& fault : report.faults) answer.add_fault(fault.where, fault.message);
     answer.stale = report.stale;
     const SourceCheck source = check_source(certificate, question.path, common);
@@ -271,7 +252,7 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
         answer.add_fault("/source", source.note);
     }
     const bool is_doubtful = certificate.motion && !certificate.joints && !certificate.is_of_path && source.has_joints;
-    if (is_doubtful) doubt_bounds(certificate, stored.trajectory);
+    if (is_doubtful) doubt_bounds(checked.claims, stored.trajectory);
     const ExportCheck exports = check_exports(certificate, question.path);
     for (const std::string& stale : exports.stale) {
         answer.stale = true;
@@ -281,10 +262,10 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
     const bool accepted = answer.faults.empty();
     answer.json["leaves"] = report.leaves;
     answer.json["motion"] = certificate.motion;
-    answer.json["pairs"] = claims_json(certificate, stored.model, accepted ? minimum : std::nullopt);
+    answer.json["pairs"] = claims_json(checked.claims, stored.model, accepted ? minimum : std::nullopt);
     answer.json["uncovered"] = Json::array();
     std::string uncovered;
-    for (const auto& [a, b] : certificate.uncovered) {
+    for (const auto& [a, b] : uncovered_pairs(certificate, static_cast<int>(stored.model.bodies.size()))) {
         const std::string name = stored.model.bodies[static_cast<size_t>(a)].name + ":" + stored.model.bodies[static_cast<size_t>(b)].name;
         answer.json["uncovered"].push_back(name);
         uncovered += (uncovered.empty() ? "" : ", ") + name;
@@ -298,29 +279,24 @@ void check(Checked& certificate, const core::records::StoredTrajectory& stored, 
             "where joints hold them; make it anew");
     if (!accepted) return;
     answer.code = exit_done;
-    answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves,
-                             certificate.linkage                            ? "over all positions of the joints"
-                             : certificate.joints                           ? "over the motion, of joints met at all times"
-                             : certificate.motion && certificate.is_of_path ? "over the motion, of the path as stored"
-                             : certificate.motion                           ? "over the motion"
-                                                                            : "as assembled") +
-                   claims_text(certificate, stored.model, minimum);
+    answer.text += formatted("every claim is proven, in %ld pieces, %s:\n", report.leaves, about(certificate)) +
+                   claims_text(checked, stored.model, minimum);
     if (!uncovered.empty()) answer.text += "not covered: " + uncovered + "\n";
     for (const Json& note : answer.json["notes"]) answer.text += "note: " + note.get<std::string>() + "\n";
     if (!minimum) return;
-    const std::string worst = worst_of(answer.json["pairs"]);
+    const PairStatus worst = worst_of(checked.claims, *minimum);
     answer.json["minimum"] = *minimum;
-    answer.json["judgement"] = worst;
-    answer.text += "at a minimum of " + question.minimum + ": " + worst + "\n";
-    answer.code = worst == "violated" ? exit_violated : worst == "undecided" ? exit_undecided : exit_done;
+    answer.json["judgement"] = to_string(worst);
+    answer.text += "at a minimum of " + question.minimum + ": " + to_string(worst) + "\n";
+    answer.code = exit_code(worst);
 }
 
 // Of an accepted certificate.
-void tell_claims(const Checked& certificate, const Model& model, const std::optional<double>& minimum, const std::string& file,
+void tell_claims(const Checked& checked, const Model& model, const std::optional<double>& minimum, const std::string& file,
                  Console& console) {
     console.found({file, CheckOutcome::passed, "accepted", "every claim is proven", file});
-    const RoundedLengths lengths(answers::unit_name(certificate.length_unit));
-    for (const Claim& pair : certificate.claims) console.found(check_of(pair, claim_name(pair, model), lengths, minimum, file));
+    const RoundedLengths lengths(answers::unit_name(checked.certificate.length_unit));
+    for (const Claim& pair : checked.claims) console.found(check_of(pair, claim_name(pair, model), lengths, minimum, file));
 }
 
 void tell_remarks(const Json& json, const std::string& file, Console& console) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/certificate/range_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/design/python/arguments.hpp"
@@ -17,7 +16,6 @@ namespace fettle::design::python {
 namespace py = pybind11;
 using core::base::Dimension;
 using core::certificate::Certificate;
-using core::certificate::RangeCertificate;
 using core::clearance::ClearanceOptions;
 using core::clearance::JointRanges;
 using core::clearance::PairClearance;
@@ -149,26 +147,10 @@ void bind_ranges(py::module_& module) {
         "joint_ranges",
         [](const Model& model) { return std::make_shared<JointRanges>(value_or_raise(core::clearance::joint_ranges(model))); },
         py::arg("model"), "The JointRanges of a model. Raises Error for balls, planar joints, loops, and coordinates without limits.");
-    py::class_<RangeCertificate, std::shared_ptr<RangeCertificate>>(module, "RangeCertificate",
-                                                                    "The proof of clearances over ranges of joints as data.")
-        .def(py::init<>())
-        .def(
-            "write",
-            [](const RangeCertificate& self, const Path& path) { raise_if_any(core::certificate::write_range_certificate(path, self)); },
-            py::arg("path"))
-        .def_static(
-            "read", [](const Path& path) { return value_or_raise(core::certificate::read_range_certificate(path)); }, py::arg("path"))
-        .def(
-            "check",
-            [](const RangeCertificate& self, const Model& model) {
-                const py::gil_scoped_release unlocked;
-                return core::certificate::check_range_certificate(self, model, core::clearance::as_assembled(model));
-            },
-            py::arg("model"), "Checked by code that shares nothing with the search: a CertificateReport.");
     module.def(
         "certify_ranges",
         [](const Model& model, const py::object& pairs, const py::object& minimum, const py::object& tolerance,
-           const std::shared_ptr<JointRanges>& ranges, const std::shared_ptr<RangeCertificate>& certificate, const py::object& progress) {
+           const std::shared_ptr<JointRanges>& ranges, const std::shared_ptr<Certificate>& certificate, const py::object& progress) {
             const std::vector<PairRequest> wanted = pairs_from(pairs, model, minimum);
             RangeClearanceOptions options = core::clearance::usual_options(wanted);
             if (!tolerance.is_none()) {
@@ -209,7 +191,8 @@ std::shared_ptr<Trajectory> or_as_assembled(const std::shared_ptr<Trajectory>& t
 }  // namespace
 
 void bind_clearance(py::module_& module) {
-    py::class_<Certificate, std::shared_ptr<Certificate>>(module, "Certificate", "The proof of clearances as data.")
+    py::class_<Certificate, std::shared_ptr<Certificate>>(
+        module, "Certificate", "The proof of clearances as data: over a path, as assembled, or over ranges of joints.")
         .def(py::init<>())
         .def_readonly("motion", &Certificate::motion)
         .def(
@@ -219,12 +202,15 @@ void bind_clearance(py::module_& module) {
             "read", [](const Path& path) { return value_or_raise(core::certificate::read_certificate(path)); }, py::arg("path"))
         .def(
             "check",
-            [](const Certificate& self, const Model& model, const Trajectory& trajectory) {
-                check_same_bodies(trajectory, model);
+            [](const Certificate& self, const Model& model, const std::shared_ptr<Trajectory>& trajectory) {
+                const std::shared_ptr<Trajectory> path = or_as_assembled(trajectory, model);
+                check_same_bodies(*path, model);
                 const py::gil_scoped_release unlocked;
-                return core::certificate::check_certificate(self, model, trajectory);
+                return core::certificate::check_certificate(self, model, *path);
             },
-            py::arg("model"), py::arg("trajectory"), "Checked by code that shares nothing with the search: a CertificateReport.");
+            py::arg("model"), py::arg("trajectory") = py::none(),
+            "Checked by code that shares nothing with the search: a CertificateReport. trajectory: None is the start, for what is as "
+            "assembled or over ranges of joints.");
     module.def(
         "certify_clearance",
         [](const Model& model, const std::shared_ptr<Trajectory>& trajectory, const py::object& pairs, const py::object& minimum,

@@ -10,8 +10,6 @@
 #include <string>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/certificate/range_certificate.hpp"
-#include "fettle/core/certificate/range_checker.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/geometry/mesh_judgement.hpp"
@@ -153,14 +151,11 @@ void read_certificate(std::string_view bytes) {
     const auto certificate = core::certificate::read_certificate(scratch().write("a.certificate.json", bytes));
     if (!certificate) return;
     auto fitting = *certificate;  // a changed hash would end the check at once
-    fitting.geometry_hash = core::records::geometry_hash(sample("path").model);
-    (void)core::certificate::check_certificate(fitting, sample("path"));
+    const core::records::StoredTrajectory& about = sample(fitting.linkage ? "start" : "path");
+    fitting.geometry_hash = core::records::geometry_hash(about.model);
+    fitting.path_hash = core::records::path_hash(about.trajectory);
+    (void)core::certificate::check_certificate(fitting, about);
     (void)uncovered_pairs(fitting, 2);
-}
-
-void read_range_certificate(std::string_view bytes) {
-    const auto certificate = core::certificate::read_range_certificate(scratch().write("r.certificate.json", bytes));
-    if (certificate) (void)core::certificate::check_range_certificate(*certificate, sample("start"));
 }
 
 void read_poses_as(const char* name, std::string_view bytes) {
@@ -219,7 +214,6 @@ const std::vector<Reader>& readers() {
         {"design", read_design},
         {"trajectory", read_trajectory},
         {"certificate", read_certificate},
-        {"range_certificate", read_range_certificate},
         {"poses", [](std::string_view bytes) { read_poses_as("a.csv", bytes); }},
         {"poses_json", [](std::string_view bytes) { read_poses_as("a.poses.json", bytes); }},
         {"urdf", read_urdf},

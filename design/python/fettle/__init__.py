@@ -27,7 +27,6 @@ from ._fettle import (
     Model as Model,
     OpaqueQuantity as OpaqueQuantity,
     OpaqueShape as OpaqueShape,
-    RangeCertificate as RangeCertificate,
     Simulated as Simulated,
     ThreadLimit as ThreadLimit,
     Trajectory as Trajectory,

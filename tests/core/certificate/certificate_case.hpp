@@ -2,6 +2,8 @@
 /// A small moving pair with its certificate, for the tests of certificates.
 #pragma once
 
+#include <span>
+
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 
@@ -17,6 +19,25 @@ struct Case {
 };
 
 inline double uniform(std::mt19937& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+
+// The leaves of a proof over boxes of k coordinates: where each stands in `splits`, and which of the vectors are its.
+struct LeafPlace {
+    std::size_t at = 0, first = 0, count = 0;
+};
+inline std::vector<LeafPlace> leaves_of(const core::certificate::BoxProof& proof, std::size_t k) {
+    std::vector<LeafPlace> leaves;
+    std::size_t used = 0;
+    for (std::size_t at = 0; at < proof.splits.size(); ++at) {
+        const char kind = proof.splits[at];
+        if (kind != '.' && kind != ':') continue;
+        leaves.push_back({at, used, kind == '.' ? 1 : std::size_t{1} << k});
+        used += leaves.back().count;
+    }
+    return leaves;
+}
+inline std::span<Vector3> normals_of(core::certificate::BoxProof& proof, const LeafPlace& leaf) {
+    return std::span(proof.normals).subspan(leaf.first, leaf.count);
+}
 
 // Two solids side by side, wandering and turning for a few steps of one or two segments.
 inline Case random_case(std::mt19937& random, double size, int steps, double tolerance) {

@@ -27,15 +27,20 @@ Real distance_at(const Case& c, int step, int segment, Real s) {
 // A kind of damage. True: the claim is now false, or its proof is gone.
 using Damage = std::function<bool(Case&, std::mt19937&)>;
 
-SegmentProof& any_proof(Case& c, std::mt19937& random) {
-    auto& segments = c.certificate.pairs[0].segments;
-    return segments[random() % segments.size()];
+BoxProof& any_proof(Case& c, std::mt19937& random) {
+    auto& boxes = c.certificate.pairs[0].boxes;
+    return boxes[random() % boxes.size()];
+}
+
+LeafPlace any_leaf(const BoxProof& proof, std::mt19937& random) {
+    const auto leaves = leaves_of(proof, 1);
+    return leaves[random() % leaves.size()];
 }
 
 // After moving what the certificate is about: false if the witness's instant shows less than the claimed bound.
 bool claim_is_false(const Case& c) {
     const PairCertificate& pair = c.certificate.pairs[0];
-    return distance_at(c, pair.step, pair.segment, pair.s) < pair.lower * (1 - 1e-9);
+    return distance_at(c, pair.step, pair.segment, pair.at[0]) < pair.lower * (1 - 1e-9);
 }
 
 Vector3 from_b_to_a(const Case& c) { return (c.results[0].witness.point_a - c.results[0].witness.point_b).normalized(); }
@@ -72,11 +77,11 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
         {"witness elsewhere in time",
          [](Case& c, std::mt19937& r) {
              PairCertificate& p = c.certificate.pairs[0];
-             p.s = uniform(r, 0, 1);
+             p.at[0] = uniform(r, 0, 1);
              // A false claim only if the same points are elsewhere then; the least distance of the bodies tells on one side.
-             return distance_at(c, p.step, p.segment, p.s) > p.upper * (1 + 1e-6);
+             return distance_at(c, p.step, p.segment, p.at[0]) > p.upper * (1 + 1e-6);
          }},
-        {"witness outside of time", [](Case& c, std::mt19937& r) { return c.certificate.pairs[0].s = (r() % 2 ? 1.5 : -0.5), true; }},
+        {"witness outside of time", [](Case& c, std::mt19937& r) { return c.certificate.pairs[0].at[0] = (r() % 2 ? 1.5 : -0.5), true; }},
         {"witness of no step", [](Case& c, std::mt19937& r) { return c.certificate.pairs[0].step = r() % 2 ? -1 : 1000, true; }},
         {"witness of no segment", [](Case& c, std::mt19937& r) { return c.certificate.pairs[0].segment = r() % 2 ? -1 : 7, true; }},
         {"witness of no primitive",
@@ -98,7 +103,7 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
              const auto& x = c.model.bodies[body].mesh.vertices;
              CertifiedPoint& point = body == 0 ? p.point_a : p.point_b;
              point = {Primitive::vertex, static_cast<int>(r() % x.cols()), {1, 0, 0}};
-             const auto pose = kinematics::pose_at(core::stepper::path_segment(c.trajectory, p.step, p.segment, body), p.s);
+             const auto pose = kinematics::pose_at(core::stepper::path_segment(c.trajectory, p.step, p.segment, body), p.at[0]);
              const Vector3 old = body == 0 ? c.results[0].witness.point_a : c.results[0].witness.point_b;
              const Vector3 other = body == 0 ? c.results[0].witness.point_b : c.results[0].witness.point_a;
              const Vector3 now = kinematics::world_position(pose, x.col(point.index));
@@ -106,69 +111,64 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
          }},
         {"plane reversed",
          [](Case& c, std::mt19937& r) {
-             auto& planes = any_proof(c, r).planes;
-             LeafPlane& plane = planes[r() % planes.size()];
+             BoxProof& proof = any_proof(c, r);
+             const auto normals = normals_of(proof, any_leaf(proof, r));
              const auto which = r() % 3;
-             if (which != 1) plane.n0 = -plane.n0;
-             if (which != 0) plane.n1 = -plane.n1;
+             if (which != 1) normals.front() *= -1;
+             if (which != 0 && (which == 1 || normals.size() > 1)) normals.back() *= -1;
              return true;
          }},
         {"plane without direction",
          [](Case& c, std::mt19937& r) {
-             auto& planes = any_proof(c, r).planes;
-             LeafPlane& plane = planes[r() % planes.size()];
+             BoxProof& proof = any_proof(c, r);
              const std::array<double, 4> values{0, std::nan(""), 1e300, std::numeric_limits<double>::infinity()};
-             plane.n0 = plane.n1 = Vector3::Constant(values[r() % 4]);
+             const double value = values[r() % 4];
+             for (Vector3& n : normals_of(proof, any_leaf(proof, r))) n.setConstant(value);
              return true;
          }},
         {"plane missing",
          [](Case& c, std::mt19937& r) {
-             auto& planes = any_proof(c, r).planes;
-             planes.erase(planes.begin() + static_cast<long>(r() % planes.size()));
+             auto& normals = any_proof(c, r).normals;
+             normals.erase(normals.begin() + static_cast<long>(r() % normals.size()));
              return true;
          }},
-        {"plane too many",
-         [](Case& c, std::mt19937& r) {
-             return any_proof(c, r).planes.push_back({Vector3::UnitX(), Vector3::UnitX()}), true;
-         }},
+        {"plane too many", [](Case& c, std::mt19937& r) { return any_proof(c, r).normals.push_back(Vector3::UnitX()), true; }},
         {"leaf missing",
          [](Case& c, std::mt19937& r) {
-             SegmentProof& proof = any_proof(c, r);
-             const std::size_t leaf = r() % proof.planes.size();
-             std::size_t at = 0;
-             for (std::size_t seen = 0; at < proof.splits.size(); ++at)
-                 if (proof.splits[at] == '.' && seen++ == leaf) break;
-             proof.splits.erase(at, 1);
-             proof.planes.erase(proof.planes.begin() + static_cast<long>(leaf));
+             BoxProof& proof = any_proof(c, r);
+             const LeafPlace leaf = any_leaf(proof, r);
+             proof.splits.erase(leaf.at, 1);
+             const auto first = proof.normals.begin() + static_cast<long>(leaf.first);
+             proof.normals.erase(first, first + static_cast<long>(leaf.count));
              return true;
          }},
         {"leaf too many",
          [](Case& c, std::mt19937& r) {
-             SegmentProof& proof = any_proof(c, r);
+             BoxProof& proof = any_proof(c, r);
              proof.splits += '.';
-             proof.planes.push_back(proof.planes.back());
+             proof.normals.push_back(proof.normals.back());
              return true;
          }},
         {"leaf split for nothing",
          [](Case& c, std::mt19937& r) {
-             SegmentProof& proof = any_proof(c, r);
-             const auto at = proof.splits.find('.');
-             return proof.splits[at] = "tabx"[r() % 4], true;
+             BoxProof& proof = any_proof(c, r);
+             const auto at = proof.splits.find_first_of(".:");
+             return proof.splits[at] = "0ab1x"[r() % 5], true;
          }},
         {"tree cut short",
          [](Case& c, std::mt19937& r) {
-             SegmentProof& proof = any_proof(c, r);
+             BoxProof& proof = any_proof(c, r);
              return proof.splits.resize(r() % proof.splits.size()), true;
          }},
         {"segment missing",
          [](Case& c, std::mt19937& r) {
-             auto& segments = c.certificate.pairs[0].segments;
-             return segments.erase(segments.begin() + static_cast<long>(r() % segments.size())), true;
+             auto& boxes = c.certificate.pairs[0].boxes;
+             return boxes.erase(boxes.begin() + static_cast<long>(r() % boxes.size())), true;
          }},
         {"segment too many",
          [](Case& c, std::mt19937&) {
-             auto& segments = c.certificate.pairs[0].segments;
-             return segments.push_back(segments.back()), true;
+             auto& boxes = c.certificate.pairs[0].boxes;
+             return boxes.push_back(boxes.back()), true;
          }},
         {"element missing",
          [](Case& c, std::mt19937& r) {
@@ -197,10 +197,18 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
         {"disjoint without a bound",
          [](Case& c, std::mt19937&) {
              c.certificate.pairs[0].lower = 0;
-             c.certificate.pairs[0].segments.clear();
+             c.certificate.pairs[0].boxes.clear();
              return true;
          }},
-        {"version", [](Case& c, std::mt19937& r) { return c.certificate.version = 3 + static_cast<int>(r() % 5), true; }},
+        {"version",
+         [](Case& c, std::mt19937& r) { return c.certificate.version = certificate_version + 1 + static_cast<int>(r() % 5), true; }},
+        {"said to be over ranges of joints",
+         [](Case& c, std::mt19937&) {
+             c.certificate.linkage.emplace().bodies.resize(2);
+             return true;
+         }},
+        {"witness of more coordinates", [](Case& c, std::mt19937&) { return c.certificate.pairs[0].at.push_back(0), true; }},
+        {"witness without a coordinate", [](Case& c, std::mt19937&) { return c.certificate.pairs[0].at.clear(), true; }},
         {"other bodies",
          [](Case& c, std::mt19937& r) {
              return c.certificate.pairs[0].b = static_cast<int>(r() % 3) - 1 == 1 ? 2 : static_cast<int>(r() % 2) * -1, true;
@@ -297,7 +305,7 @@ TEST_CASE("Pairs at fault are not looked at further, however many faults there a
     CHECK(check_certificate(c.certificate, c.model, c.trajectory).faults.size() == 1000);
     PairCertificate nowhere = good;  // of a path that is none
     nowhere.lower = 0;
-    nowhere.segments.clear();
+    nowhere.boxes.clear();
     c.certificate.pairs.assign(1001, nowhere);
     c.trajectory.steps.clear();
     c.trajectory.poses.resize(1);

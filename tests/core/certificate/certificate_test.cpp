@@ -30,8 +30,10 @@ Case proven_case(std::mt19937& random) {
 TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
     std::mt19937 random(3);
     Case c = proven_case(random);
-    for (SegmentProof& segment : c.certificate.pairs[0].segments)  // some leaves whose plane turns, and others
-        for (std::size_t k = 0; k < segment.planes.size(); k += 2) segment.planes[k].n1 *= 1 - 1e-15;
+    for (BoxProof& box : c.certificate.pairs[0].boxes)  // some leaves whose plane turns, and others
+        for (const LeafPlace& leaf : leaves_of(BoxProof(box), 1)) {
+            if (leaf.count > 1) normals_of(box, leaf).back() *= 1 - 1e-15;
+        }
     const tests::support::TemporaryFolder folder;
     const std::string path = folder.file("a.certificate.json");
     REQUIRE(write_certificate(path, c.certificate).empty());
@@ -41,16 +43,42 @@ TEST_CASE("A certificate survives a file bit for bit", "[clearance]") {
     CHECK(read->geometry_hash == c.certificate.geometry_hash);
     CHECK(read->motion == c.certificate.motion);
     const PairCertificate &x = read->pairs.at(0), &y = c.certificate.pairs.at(0);
-    CHECK((x.lower == y.lower && x.upper == y.upper && x.s == y.s && x.point_a.weight == y.point_a.weight &&
+    CHECK((x.lower == y.lower && x.upper == y.upper && x.at == y.at && x.point_a.weight == y.point_a.weight &&
            x.point_b.index == y.point_b.index));
-    REQUIRE(x.segments.size() == y.segments.size());
-    for (std::size_t i = 0; i < x.segments.size(); ++i) {
-        CHECK(x.segments[i].splits == y.segments[i].splits);
-        REQUIRE(x.segments[i].planes.size() == y.segments[i].planes.size());
-        for (std::size_t k = 0; k < x.segments[i].planes.size(); ++k)
-            CHECK((x.segments[i].planes[k].n0 == y.segments[i].planes[k].n0 && x.segments[i].planes[k].n1 == y.segments[i].planes[k].n1));
+    REQUIRE(x.boxes.size() == y.boxes.size());
+    for (std::size_t i = 0; i < x.boxes.size(); ++i) {
+        CHECK(x.boxes[i].splits == y.boxes[i].splits);
+        CHECK(x.boxes[i].normals == y.boxes[i].normals);
     }
     CHECK(check_certificate(*read, c.model, c.trajectory).accepted());
+}
+
+TEST_CASE("Certificates of earlier versions are read, hold as they did, and are written as those of today", "[clearance]") {
+    const std::filesystem::path corpus = std::filesystem::path(FETTLE_SOURCE_DIR) / "tests/fuzz/corpus";
+    const tests::support::TemporaryFolder folder;
+    const std::string file = folder.file("now.certificate.json");
+    for (const auto& [name, about] : {std::pair<const char*, const char*>{"path_version_2", "path"}, {"ranges_version_1", "start"}}) {
+        CAPTURE(name);
+        const auto stored = core::records::read_trajectory((corpus / "trajectory" / (about + std::string(".json"))).string());
+        const auto old = read_certificate(corpus / "certificate" / (name + std::string(".json")));
+        REQUIRE((stored && old));
+        CHECK(is_certificate_file(corpus / "certificate" / (name + std::string(".json"))));
+        CHECK(old->version == certificate_version);
+        CHECK(old->linkage.has_value() == (std::string(about) == "start"));
+        const CertificateReport report = check_certificate(*old, *stored);
+        for (const auto& fault : report.faults) UNSCOPED_INFO(fault.where << ": " << fault.message);
+        CHECK(report.accepted());
+        CHECK(report.leaves > 0);
+        REQUIRE(write_certificate(file, *old).empty());
+        const auto now = read_certificate(file);
+        REQUIRE(now);
+        CHECK(now->linkage == old->linkage);
+        CHECK(now->pairs[0].at == old->pairs[0].at);
+        REQUIRE(now->pairs[0].boxes.size() == old->pairs[0].boxes.size());
+        CHECK(now->pairs[0].boxes[0].splits == old->pairs[0].boxes[0].splits);
+        CHECK(now->pairs[0].boxes[0].normals == old->pairs[0].boxes[0].normals);
+        CHECK(check_certificate(*now, *stored).leaves == report.leaves);
+    }
 }
 
 TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove", "[clearance]") {
@@ -65,23 +93,29 @@ TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove
         std::size_t index = 0;
         for (int t = 0; t < static_cast<int>(c.trajectory.steps.size()); ++t) {
             for (int k = 0; k < core::stepper::segment_count(c.trajectory, t); ++k) {
-                SegmentProof& proof = pair.segments[index++];
-                SegmentProof wasteful;
-                std::size_t leaf = 0;
+                BoxProof& proof = pair.boxes[index++];
+                BoxProof wasteful;
+                const auto leaves = leaves_of(proof, 1);
+                before += 4 * leaves.size();
+                std::size_t next = 0;
                 for (const char kind : proof.splits) {
-                    wasteful.splits += kind == '.' ? "tt..t.." : std::string(1, kind);
-                    if (kind != '.') continue;
-                    const LeafPlane plane = proof.planes[leaf++];
-                    const Vector3 turn = 0.25 * (plane.n1 - plane.n0);
-                    for (int part = 0; part < 4; ++part) wasteful.planes.push_back({plane.n0 + part * turn, plane.n0 + (part + 1) * turn});
+                    if (kind != '.' && kind != ':') {
+                        wasteful.splits += kind;
+                        continue;
+                    }
+                    const auto normals = normals_of(proof, leaves[next++]);
+                    const Vector3 n0 = normals.front(), turn = 0.25 * (normals.back() - n0);
+                    for (int part = 0; part < 4; ++part) {
+                        if (part % 2 == 0) wasteful.splits += part == 0 ? "00" : "0";
+                        add_leaf(wasteful, {n0 + part * turn, n0 + (part + 1) * turn});
+                    }
                 }
                 CAPTURE(i, t, k);
                 const BodyPath path_a = body_path(c.trajectory, t, k, pair.a), path_b = body_path(c.trajectory, t, k, pair.b);
-                const SegmentProof same = thinned(wasteful, *a, *b, path_a, path_b, pair.lower + 100);
-                CHECK((same.splits == wasteful.splits && same.planes[0].n0 == wasteful.planes[0].n0));
-                const SegmentProof thin = thinned(wasteful, *a, *b, path_a, path_b, pair.lower);
-                before += wasteful.planes.size();
-                after += thin.planes.size();
+                const BoxProof same = thinned(wasteful, *a, *b, path_a, path_b, pair.lower + 100);
+                CHECK((same.splits == wasteful.splits && same.normals[0] == wasteful.normals[0]));
+                const BoxProof thin = thinned(wasteful, *a, *b, path_a, path_b, pair.lower);
+                after += leaves_of(thin, 1).size();
                 proof = thin;
             }
         }
@@ -169,10 +203,11 @@ TEST_CASE("What the checker proves of a leaf is what sampling in extended precis
             for (const Real middle = at; const int i : {-6, -5, -4, -3, -2, -1, 1, 2, 3, 4, 5, 6}) sample(middle + i * step / 6);
         const double bound = static_cast<double>(least), n_max = std::max(plane.n0.norm(), plane.n1.norm());
         CAPTURE(trial, size, turn, h, bound);
-        LeafProver prover(path_a, path_b);
-        CHECK(prover.prove(a, b, {s0, s0 + h}, plane, bound + 1e-12 * size, 6) == 0);
+        PathProver prover(path_a, path_b);
+        const std::array<Vector3, 2> normals{plane.n0, plane.n1};
+        CHECK(prover.prove(a, b, {{s0}, {s0 + h}}, normals, bound + 1e-12 * size, 6) == 0);
         const double claim = static_cast<double>(least_unscaled) / n_max;
-        CHECK(prover.prove(a, b, {s0, s0 + h}, plane, claim - 1e-11 * size, 24) > 0);  // what is true with a little room is proven
+        CHECK(prover.prove(a, b, {{s0}, {s0 + h}}, normals, claim - 1e-11 * size, 24) > 0);  // what is true with a little room is proven
     }
 }
 

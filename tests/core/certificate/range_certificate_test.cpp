@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Certificates over ranges of joints: ours are accepted, damaged ones rejected, every one; written and read back.
-#include "fettle/core/certificate/range_certificate.hpp"
-
 #include <functional>
 
-#include "fettle/core/certificate/range_checker.hpp"
+#include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_bound.hpp"
 #include "fettle/tests/core/clearance/random_trees.hpp"
@@ -20,9 +18,9 @@ namespace {
 struct RangeCase {
     Tree tree;
     stepper::Trajectory start;
-    RangeCertificate certificate;
+    Certificate certificate;
     RangeClearance found;
-    CertificateReport check() const { return check_range_certificate(certificate, tree.model, start); }
+    CertificateReport check() const { return check_certificate(certificate, tree.model, start); }
 };
 
 // Of a random tree whose pair does not clash and has coordinates.
@@ -48,14 +46,14 @@ double uniform(std::mt19937& random, double low, double high) { return std::unif
 // What the claim is about, moved: false if no sample shows a lesser distance.
 bool claim_is_false(RangeCase& c, std::mt19937& random) {
     // The oracle goes by the scene; the certificate's own linkage decides here.
-    const RangePairCertificate& pair = c.certificate.pairs[0];
-    const LinkedPair linked = linked_pair(c.certificate.linkage, pair.a, pair.b);
+    const PairCertificate& pair = c.certificate.pairs[0];
+    const LinkedPair linked = linked_pair(*c.certificate.linkage, pair.a, pair.b);
     const auto shape = [&](int body) {
         const model::Body& b = c.tree.model.bodies[static_cast<std::size_t>(body)];
         return make_piece_tree(b.mesh, *b.hierarchy);
     };
     const PieceTree a = shape(pair.a), b = shape(pair.b);
-    const ScrewedPair moved = screwed_pair(a, b, c.certificate.linkage, linked, c.start.poses[0][static_cast<std::size_t>(pair.a)],
+    const ScrewedPair moved = screwed_pair(a, b, *c.certificate.linkage, linked, c.start.poses[0][static_cast<std::size_t>(pair.a)],
                                            c.start.poses[0][static_cast<std::size_t>(pair.b)]);
     for (int i = 0; i < 40; ++i) {
         Coordinates at{};
@@ -107,8 +105,19 @@ const std::vector<std::pair<const char*, Damage>>& damages_of_claims() {
         {"hash", [](RangeCase& c, std::mt19937& r) { return c.certificate.geometry_hash ^= std::uint64_t{1} << (r() % 64), true; }},
         {"hash of the start",
          [](RangeCase& c, std::mt19937& r) { return c.certificate.path_hash ^= std::uint64_t{1} << (r() % 64), true; }},
+        {"said to be over a path", [](RangeCase& c, std::mt19937&) { return c.certificate.motion = true, true; }},
+        {"witness of no box",
+         [](RangeCase& c, std::mt19937& r) {
+             auto& p = c.certificate.pairs[0];
+             return (r() % 2 ? p.step : p.segment) = 1, true;
+         }},
+        {"a proof too many",
+         [](RangeCase& c, std::mt19937&) {
+             auto& boxes = c.certificate.pairs[0].boxes;
+             return boxes.push_back(boxes.front()), true;
+         }},
         {"no pair", [](RangeCase& c, std::mt19937&) { return c.certificate.pairs.clear(), true; }},
-        {"version", [](RangeCase& c, std::mt19937&) { return c.certificate.version = 2, true; }},
+        {"version", [](RangeCase& c, std::mt19937&) { return c.certificate.version = certificate_version - 1, true; }},
         {"solids claimed otherwise",
          [](RangeCase& c, std::mt19937& r) {
              return c.certificate.pairs[0].solids = r() % 2 ? Solids::overlap : Solids::not_closed, true;
@@ -124,75 +133,75 @@ const std::vector<std::pair<const char*, Damage>>& damages_of_proofs() {
     static const std::vector<std::pair<const char*, Damage>> list{
         {"vector turned over",
          [](RangeCase& c, std::mt19937& r) {
-             auto& n = c.certificate.pairs[0].proof.normals;
+             auto& n = c.certificate.pairs[0].boxes[0].normals;
              n[r() % n.size()] *= -1;
              return true;
          }},
         {"vector of no length",
          [](RangeCase& c, std::mt19937& r) {
-             auto& n = c.certificate.pairs[0].proof.normals;
-             n[r() % n.size()] *= c.certificate.pairs[0].proof.splits.find(':') == std::string::npos ? 0 : std::nan("");
+             auto& n = c.certificate.pairs[0].boxes[0].normals;
+             n[r() % n.size()] *= c.certificate.pairs[0].boxes[0].splits.find(':') == std::string::npos ? 0 : std::nan("");
              return true;
          }},
-        {"vector missing", [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].proof.normals.pop_back(), true; }},
+        {"vector missing", [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].boxes[0].normals.pop_back(), true; }},
         {"vector too many",
-         [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].proof.normals.push_back(Vector3::UnitX()), true; }},
+         [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].boxes[0].normals.push_back(Vector3::UnitX()), true; }},
         {"tree cut short",
          [](RangeCase& c, std::mt19937& r) {
-             auto& splits = c.certificate.pairs[0].proof.splits;
+             auto& splits = c.certificate.pairs[0].boxes[0].splits;
              return splits.resize(r() % splits.size()), true;
          }},
         {"leaf split for nothing",
          [](RangeCase& c, std::mt19937& r) {
-             auto& splits = c.certificate.pairs[0].proof.splits;
+             auto& splits = c.certificate.pairs[0].boxes[0].splits;
              return splits[splits.find_last_of(".:")] = "0ab9x"[r() % 5], true;
          }},
         {"leaf too many",
          [](RangeCase& c, std::mt19937&) {
-             auto& proof = c.certificate.pairs[0].proof;
+             auto& proof = c.certificate.pairs[0].boxes[0];
              proof.splits += '.';
              return proof.normals.push_back(proof.normals.back()), true;
          }},
-        {"a bound without a proof", [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].proof = {}, true; }},
+        {"a bound without a proof", [](RangeCase& c, std::mt19937&) { return c.certificate.pairs[0].boxes = {}, true; }},
         {"range wider",
          [](RangeCase& c, std::mt19937& r) {
-             const LinkedPair linked = linked_pair(c.certificate.linkage, c.tree.a, c.tree.b);
+             const LinkedPair linked = linked_pair(*c.certificate.linkage, c.tree.a, c.tree.b);
              auto& coordinate =
-                 c.certificate.linkage.coordinates[static_cast<std::size_t>(linked.coordinates[r() % linked.coordinates.size()])];
+                 c.certificate.linkage->coordinates[static_cast<std::size_t>(linked.coordinates[r() % linked.coordinates.size()])];
              (r() % 2 ? coordinate.high : coordinate.low) += r() % 2 ? 0.5 : -0.5;
              if (!(coordinate.low <= coordinate.start && coordinate.start <= coordinate.high)) return true;
              return claim_is_false(c, r);
          }},
-        {"range not a number", [](RangeCase& c, std::mt19937&) { return c.certificate.linkage.coordinates[0].high = std::nan(""), true; }},
+        {"range not a number", [](RangeCase& c, std::mt19937&) { return c.certificate.linkage->coordinates[0].high = std::nan(""), true; }},
         {"screw moved",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage.bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
              if (screws.empty()) return false;
              screws[0].point += tests::clearance::random_vector(r, std::pow(10, uniform(r, -3, 0)));
              return claim_is_false(c, r);
          }},
         {"screw turned about",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage.bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
              if (screws.empty()) return false;
              screws[0].axis = tests::clearance::random_vector(r, 1);
              return claim_is_false(c, r);
          }},
         {"screw of no coordinate",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage.bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
              if (screws.empty()) return false;
              return screws[0].coordinate = r() % 2 ? -1 : 77, true;
          }},
         {"axis too long",
          [](RangeCase& c, std::mt19937&) {
-             auto& screws = c.certificate.linkage.bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
              if (screws.empty()) return false;
              return screws[0].axis *= 1.1, true;
          }},
         {"parents in a ring",
          [](RangeCase& c, std::mt19937&) {
-             auto& bodies = c.certificate.linkage.bodies;
+             auto& bodies = c.certificate.linkage->bodies;
              return bodies[static_cast<std::size_t>(c.tree.b)].parent = c.tree.b, true;
          }},
         {"body moved closer",
@@ -246,17 +255,16 @@ TEST_CASE("range certificates: written and read back, bit for bit", "[ranges]") 
     const RangeCase c = certified_case(random, 2);
     const tests::support::TemporaryFolder folder;
     const std::string file = folder.file("fit.certificate.json");
-    REQUIRE(write_range_certificate(file, c.certificate).empty());
-    CHECK(is_range_certificate_file(file));
-    CHECK(!is_certificate_file(file));
-    const auto read = read_range_certificate(file);
+    REQUIRE(write_certificate(file, c.certificate).empty());
+    CHECK(is_certificate_file(file));
+    const auto read = read_certificate(file);
     REQUIRE(read);
     CHECK(read->linkage == c.certificate.linkage);
     CHECK(read->pairs[0].lower == c.certificate.pairs[0].lower);
     CHECK(read->pairs[0].at == c.certificate.pairs[0].at);
-    CHECK(read->pairs[0].proof.splits == c.certificate.pairs[0].proof.splits);
-    CHECK(read->pairs[0].proof.normals == c.certificate.pairs[0].proof.normals);
-    CHECK(check_range_certificate(*read, c.tree.model, c.start).accepted());
+    CHECK(read->pairs[0].boxes[0].splits == c.certificate.pairs[0].boxes[0].splits);
+    CHECK(read->pairs[0].boxes[0].normals == c.certificate.pairs[0].boxes[0].normals);
+    CHECK(check_certificate(*read, c.tree.model, c.start).accepted());
 }
 
 TEST_CASE("range certificates: 100 of ours accepted, 1,000 damaged ones rejected", "[ranges][slow]") {

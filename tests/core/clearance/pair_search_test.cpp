@@ -295,7 +295,7 @@ TEST_CASE("Bodies beside each other need no search of all pairs of their parts",
     SearchOptions options;
     options.tolerance = 1e-8;
     const SearchResult together = search_pair(a.search(), b.search(), segments, options);
-    certificate::PairProof proof;
+    std::vector<certificate::BoxProof> proof;
     options.proof = &proof;
     const SearchResult recorded = search_pair(a.search(), b.search(), segments, options);
     for (const SearchResult& result : {together, recorded}) {

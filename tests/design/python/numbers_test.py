@@ -210,12 +210,12 @@ def test_paths_of_any_kind(tmp_path, kind):
     trajectory = fettle.simulate(model, steps=2).trajectory
     fettle.write_trajectory(at("a.trajectory.json"), trajectory, model, at("a.scene.json"))
     assert fettle.read_trajectory(at("a.trajectory.json"))[0] == trajectory
-    certificate, ranges = fettle.Certificate(), fettle.RangeCertificate()
+    certificate, ranges = fettle.Certificate(), fettle.Certificate()
     fettle.certify_clearance(model, certificate=certificate)
     certificate.write(at("a.certificate.json"))
     assert fettle.Certificate.read(at("a.certificate.json")).check(model, fettle.as_assembled(model)).accepted
     ranges.write(at("b.certificate.json"))
-    assert fettle.RangeCertificate.read(at("b.certificate.json"))
+    assert fettle.Certificate.read(at("b.certificate.json"))
     (stl,) = fettle.export_files(at("."), "stl", model, stem="two")
     assert len(fettle.read_mesh(kind(stl), unit="mm").triangles) == 24
     short = tmp_path / "short.design.json"

@@ -159,7 +159,7 @@ def test_clearance_over_the_ranges_of_joints(tmp_path):
     (hinge,) = ranges.coordinates
     assert hinge.joints[0].joint == "hinge" and hinge.joints[0].is_angle and not hinge.is_whole_turn
     assert (hinge.low, hinge.high) == pytest.approx((-np.pi / 3, np.pi / 3)) and ranges.held == []
-    certificate, done = fettle.RangeCertificate(), []
+    certificate, done = fettle.Certificate(), []
     found = fettle.certify_ranges(
         model, [("post", "bar", "1mm")], ranges=ranges, certificate=certificate, progress=lambda *at: done.append(at)
     )
@@ -173,7 +173,7 @@ def test_clearance_over_the_ranges_of_joints(tmp_path):
     pose = fettle.pose_at_witness(model, ranges, pair, "bar")
     assert pose.position == pytest.approx([0.01, 0.02 * np.sqrt(0.75), 0], abs=1e-4)
     certificate.write(tmp_path / "arm.certificate.json")
-    assert fettle.RangeCertificate.read(tmp_path / "arm.certificate.json").check(model).accepted
+    assert fettle.Certificate.read(tmp_path / "arm.certificate.json").check(model).accepted
     (violated,) = fettle.certify_ranges(model, minimum="15mm", tolerance="1um")
     assert violated.status == "violated" and violated.tolerance == 1e-6
     with pytest.raises(fettle.Error, match="no joint"):
