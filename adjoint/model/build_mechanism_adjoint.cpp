@@ -21,7 +21,7 @@ Vector3 normalised_adjoint(const Vector3& n, double length, const Vector3& bar) 
 class MechanismAdjoint {
 public:
     MechanismAdjoint(const core::scene::Scene& scene, const core::model::Model& model, const MechanismGradient& gradient,
-                     WrittenStartGradient& start)
+                     WrittenStartGradient& start, core::scene::Mechanism& bar)
         : scene_(scene.mechanism),
           mechanism_(model.mechanism),
           gradient_(gradient),
@@ -29,19 +29,14 @@ public:
           start_(start),
           written_(model.mechanism.written.poses),
           frames_(placed(model.mechanism.set.frames, written_)),
-          value_bar_(model.mechanism.set.measures.size(), 0.0) {
-        out_.joints.resize(scene_.joints.size());
-        out_.springs.resize(scene_.springs.size());
-        out_.loads.resize(scene_.loads.size());
-        for (const core::scene::Motor& motor : scene_.motors) out_.motors.push_back({0, std::vector<double>(motor.curve.values.size(), 0)});
-    }
+          value_bar_(model.mechanism.set.measures.size(), 0.0),
+          out_(bar) {}
 
-    SceneMechanismGradient run() {
+    void run() {
         for (std::size_t k = 0; k < mechanism_.terms.size(); ++k) reverse_term(k);
         for (std::size_t i = 0; i < mechanism_.rows.size(); ++i) reverse_row(i);
         reverse_values();
         for (std::size_t k = 0; k < mechanism_.ends.size(); ++k) reverse_ends(k);
-        return std::move(out_);
     }
 
 private:
@@ -50,24 +45,24 @@ private:
         return origin.list == Origin::List::joint ? scene_.joints[i].forces : scene_.springs[i].forces;
     }
 
-    EndsGradient& ends_of(const Origin& origin) {
+    core::scene::CoordinateForces& forces_bar(const Origin& origin) {
         const auto i = static_cast<std::size_t>(origin.index);
-        return origin.list == Origin::List::joint ? out_.joints[i] : out_.springs[i];
+        return origin.list == Origin::List::joint ? out_.joints[i].forces : out_.springs[i].forces;
     }
 
     void reverse_term(std::size_t k) {
         const MeasureTerm& term = mechanism_.terms[k];
         const double coefficient = gradient_.term_coefficient[k], reference = gradient_.term_reference[k];
         if (term.kind == LawKind::force) return reverse_force(k);
-        CoordinateForcesGradient& bar = ends_of(term.origin).forces;
+        core::scene::CoordinateForces& bar = forces_bar(term.origin);
         if (term.kind == LawKind::damper) bar.damping += coefficient;
         if (term.kind == LawKind::friction) bar.friction += coefficient;
-        if (term.kind == LawKind::stop) bar.limits[term.sign > 0 ? 0 : 1] += reference;
+        if (term.kind == LawKind::stop) (*bar.limits)[term.sign > 0 ? 0 : 1] += reference;
         if (term.kind != LawKind::spring) return;
         const core::scene::CoordinateForces& from = forces_of(term.origin);
         bar.stiffness += coefficient;
         if (from.rest) {
-            bar.rest += reference;
+            *bar.rest += reference;
             return;
         }
         value_bar_[static_cast<std::size_t>(term.measure)] += reference;  // the start's, less preload/stiffness
@@ -82,10 +77,10 @@ private:
             out_.loads[i].force += gradient_.term_values[k][0] * scene_.loads[i].force.normalized();
             return;
         }
-        add_curve(gradient_.term_values[k], gradient_.term_rate[k], out_.motors[i]);
+        add_curve(gradient_.term_values[k], gradient_.term_rate[k], out_.motors[i].curve);
     }
 
-    static void add_curve(const std::vector<double>& values, double rate, CurveGradient& out) {
+    static void add_curve(const std::vector<double>& values, double rate, core::scene::Curve& out) {
         for (std::size_t k = 0; k < values.size(); ++k) out.values[k] += values[k];
         out.rate += rate;
     }
@@ -98,12 +93,12 @@ private:
         const auto origin = static_cast<std::size_t>(joint.origin.index), first = static_cast<std::size_t>(row.parts[0].measure);
         const double constant = gradient_.row_constant[i];
         if (joint.is_motor) {
-            add_curve(gradient_.row_values[i], gradient_.row_rate[i], out_.motors[origin]);
+            add_curve(gradient_.row_values[i], gradient_.row_rate[i], out_.motors[origin].curve);
             value_bar_[first] += constant;
             return;
         }
         if (row.parts.size() < 2) return;  // 0 = what a joint holds
-        EndsGradient& bar = out_.joints[origin];
+        core::scene::Joint& bar = out_.joints[origin];
         if (joint.kind == JointKind::screw) {
             value_bar_[first] += constant;
             bar.pitch -= gradient_.row_factors[i][1] / (2 * std::numbers::pi);
@@ -187,11 +182,12 @@ private:
         const bool is_joint = origin.list == Origin::List::joint;
         const core::scene::Attachment &from_a = is_joint ? scene_.joints[i].a : scene_.springs[i].a,
                                       &from_b = is_joint ? scene_.joints[i].b : scene_.springs[i].b;
-        EndsGradient& out = ends_of(origin);
-        out.a.point += bar_a.point;
-        out.b.point += bar_b.point;
-        out.a.axis += normalised_adjoint(a.axes.col(2), from_a.axis.norm(), z_bar_a);
-        out.b.axis += normalised_adjoint(mechanism_.set.frames[static_cast<std::size_t>(frame_b)].axes.col(2), from_b.axis.norm(), z_bar_b);
+        core::scene::Attachment &out_a = is_joint ? out_.joints[i].a : out_.springs[i].a,
+                                &out_b = is_joint ? out_.joints[i].b : out_.springs[i].b;
+        out_a.point += bar_a.point;
+        out_b.point += bar_b.point;
+        out_a.axis += normalised_adjoint(a.axes.col(2), from_a.axis.norm(), z_bar_a);
+        out_b.axis += normalised_adjoint(mechanism_.set.frames[static_cast<std::size_t>(frame_b)].axes.col(2), from_b.axis.norm(), z_bar_b);
     }
 
     const core::scene::Mechanism& scene_;
@@ -202,15 +198,14 @@ private:
     const std::vector<Pose>& written_;
     const std::vector<core::measure::PlacedFrame> frames_;  // as written
     std::vector<double> value_bar_;                         // of the measures' values as written
-    SceneMechanismGradient out_;
+    core::scene::Mechanism& out_;
 };
 
 }  // namespace
 
-SceneMechanismGradient build_mechanism_adjoint(const core::scene::Scene& scene, const core::model::Model& model,
-                                               const MechanismGradient& gradient, WrittenStartGradient& start) {
-    if (scene.mechanism.empty()) return {};
-    return MechanismAdjoint(scene, model, gradient, start).run();
+void build_mechanism_adjoint(const core::scene::Scene& scene, const core::model::Model& model, const MechanismGradient& gradient,
+                             WrittenStartGradient& start, core::scene::Mechanism& bar) {
+    if (!scene.mechanism.empty()) MechanismAdjoint(scene, model, gradient, start, bar).run();
 }
 
 }  // namespace fettle::adjoint::model

@@ -8,50 +8,16 @@
 /// TermScales).
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
 #include "fettle/core/scene/scene.hpp"
 
 namespace fettle::adjoint::model {
 
-struct AttachmentGradient {
-    Vector3 point = Vector3::Zero(), axis = Vector3::Zero();  ///< the axis of any length
-};
-
-struct CoordinateForcesGradient {
-    double stiffness = 0, rest = 0, preload = 0, damping = 0, friction = 0;
-    std::array<double, 2> limits{0, 0};
-};
-
-/// Of a joint or spring.
-struct EndsGradient {
-    AttachmentGradient a, b;
-    CoordinateForcesGradient forces;
-    double pitch = 0, ratio = 0;
-};
-
-struct CurveGradient {
-    double rate = 0;
-    std::vector<double> values;
-};
-
-struct PointLoadGradient {
-    Vector3 point = Vector3::Zero(), force = Vector3::Zero();
-};
-
-/// dJ/d(core::scene::Mechanism), list by list.
-struct SceneMechanismGradient {
-    std::vector<EndsGradient> joints, springs;
-    std::vector<CurveGradient> motors;
-    std::vector<PointLoadGradient> loads;
-};
-
 /// @param gradient  of the model, after written_start_adjoint.
 /// @param start     poses as written: added to.
+/// @param bar       adjoint/scene/scene_gradient.hpp, the mechanism's: added into.
 /// Contract: the model was built from the scene; a load whose force is 0 has no frames and no derivative, for the caller to refuse.
-SceneMechanismGradient build_mechanism_adjoint(const core::scene::Scene& scene, const core::model::Model& model,
-                                               const MechanismGradient& gradient, WrittenStartGradient& start);
+void build_mechanism_adjoint(const core::scene::Scene& scene, const core::model::Model& model, const MechanismGradient& gradient,
+                             WrittenStartGradient& start, core::scene::Mechanism& bar);
 
 }  // namespace fettle::adjoint::model

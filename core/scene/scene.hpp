@@ -91,6 +91,7 @@ struct MeshProgram {
     std::string format = "stl";             ///< of the file that it writes: stl, obj, off, ply or 3mf
     double unit = 1;                        ///< of the numbers that it is given and writes [m]
     double time_limit = 300;                ///< [s]
+    bool operator==(const MeshProgram&) const = default;
 };
 
 /// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see ReadOptions in scene_reader.hpp.
@@ -99,6 +100,7 @@ struct ShapeSpec {
     std::map<std::string, double> dimensions;  ///< lengths [m]
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
+    bool operator==(const ShapeSpec&) const = default;
 };
 
 struct Body {
@@ -125,6 +127,8 @@ struct Body {
     Damping damping;                             ///< dynamic only
     std::optional<Vector3> reference_point;      ///< in the file's frame [m]; default see model/model.hpp
     int group = -1;                              ///< bodies of one group (>= 0) never collide
+    /// A rotation vector, world axes, by which a design turns the body about its file frame's origin; `pose` has it already.
+    Vector3 turn = Vector3::Zero();
 };
 
 struct Scene {

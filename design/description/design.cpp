@@ -5,6 +5,20 @@
 
 namespace fettle::design::description {
 
+void describe(const Shape& shape, core::scene::Body& body) {
+    if (!body.shape) body.shape.emplace();
+    for (const ShapeDimension& dimension : shape.dimensions()) body.shape->dimensions[dimension.name] = dimension.value;
+}
+
+core::scene::Scene described_scene(const Design& design) {
+    core::scene::Scene scene = design.scene;
+    for (size_t i = 0; i < scene.bodies.size(); ++i) {
+        const Shape* shape = shape_of(design, static_cast<int>(i));
+        shape != nullptr ? describe(*shape, scene.bodies[i]) : scene.bodies[i].shape.reset();
+    }
+    return scene;
+}
+
 Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape) {
     FETTLE_ASSERT(shape != nullptr, "a part has a shape; a body with a fixed mesh goes into the scene as it is");
     Result<core::geometry::Mesh> drawn = drawn_mesh(*shape);

@@ -8,7 +8,7 @@
 ///     pin.name = "pin";
 ///     add_part(design, pin, shape);                       // the mesh is the shape's as drawn
 ///     design.parameters.push_back({.name = "radius", .value = 5e-3, .lower = 4e-3, .upper = 6e-3,
-///                                  .moves = {{.target = MoveTarget::dimension, .body = 0, .dimension = "radius"}}});
+///                                  .moves = {{"/bodies/pin/shape/dimensions/radius"}}});
 ///     design.objective.push_back({.name = "mass", .quantity = mass});
 #pragma once
 
@@ -55,6 +55,11 @@ struct Design {
 inline const Shape* shape_of(const Design& design, int body) {
     return static_cast<size_t>(body) < design.shapes.size() ? design.shapes[static_cast<size_t>(body)].get() : nullptr;
 }
+
+/// Puts all dimensions as drawn into the body's description of its shape, those left to their defaults too.
+void describe(const Shape& shape, core::scene::Body& body);
+/// The scene with its shapes described, and no others: what parameters can move has a place there.
+core::scene::Scene described_scene(const Design& design);
 
 /// Adds a body with the shape as drawn for its mesh. @return its index, or what keeps the shape from being made.
 Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape);

@@ -6,32 +6,12 @@
 
 namespace fettle::design::description {
 
-bool is_vector(MoveTarget target) {
-    switch (target) {
-        case MoveTarget::position:
-        case MoveTarget::turn:
-        case MoveTarget::velocity:
-        case MoveTarget::angular_velocity:
-        case MoveTarget::force:
-        case MoveTarget::torque:
-        case MoveTarget::gravity:
-        case MoveTarget::point_a:
-        case MoveTarget::point_b:
-        case MoveTarget::axis_a:
-        case MoveTarget::axis_b:
-        case MoveTarget::load_point:
-        case MoveTarget::load_force:
-            return true;
-        default:
-            return false;
-    }
+std::vector<Move> vector_moves(const std::string& place, const Vector3& direction, double scale, const Vector3& offset) {
+    std::vector<Move> moves;
+    for (int k = 0; k < 3; ++k)
+        if (direction[k] != 0) moves.push_back({place + "/" + std::to_string(k), scale * direction[k], offset[k]});
+    return moves;
 }
-
-bool is_of_scene(MoveTarget target) { return target == MoveTarget::gravity || target == MoveTarget::dmin; }
-
-bool is_of_friction(MoveTarget target) { return target >= MoveTarget::body_mu && target <= MoveTarget::default_mu; }
-
-bool is_of_mechanism(MoveTarget target) { return target >= MoveTarget::point_a; }
 
 VectorX values_of(const std::vector<Parameter>& parameters) {
     VectorX p(static_cast<Eigen::Index>(parameters.size()));

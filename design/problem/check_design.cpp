@@ -7,8 +7,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/design/problem/friction_moves.hpp"
-#include "fettle/design/problem/mechanism_moves.hpp"
+#include "fettle/core/scene/place.hpp"
 
 namespace fettle::design::problem {
 
@@ -16,7 +15,6 @@ namespace {
 
 using description::Design;
 using description::Move;
-using description::MoveTarget;
 using description::Parameter;
 using description::Relation;
 using description::Shape;
@@ -105,37 +103,9 @@ private:
         if (!in_order || !std::isfinite(parameter.lower) || !std::isfinite(parameter.upper))
             add(ErrorCode::out_of_range, place(parameter), "its bounds are finite, and its value lies within them");
         for (const Move& move : parameter.moves) {
-            if (is_of_mechanism(move.target)) {
-                const std::string reason = misfit(design_.scene.mechanism, move);
-                if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
-            } else if (is_of_friction(move.target)) {
-                const std::string reason = friction_misfit(design_.scene, move);
-                if (!reason.empty()) add(ErrorCode::inconsistent, place(parameter), reason);
-            } else if (is_of_scene(move.target)) {
-                continue;
-            } else if (!has_body(move.body)) {
-                add(ErrorCode::out_of_range, place(parameter), "it moves body " + std::to_string(move.body) + ", which is not there");
-            } else {
-                check_move(parameter, move);
-            }
+            const Result<core::scene::Place> found = core::scene::find_place(scene_, move.place);
+            for (const Error& error : found.errors()) add(error.code, place(parameter) + ": " + error.where, error.message);
         }
-    }
-
-    void check_move(const Parameter& parameter, const Move& move) {
-        const core::scene::Body& body = design_.scene.bodies[static_cast<size_t>(move.body)];
-        if (move.target == MoveTarget::dimension) {
-            const Shape* shape = description::shape_of(design_, move.body);
-            const bool known = shape != nullptr && std::any_of(shape->dimensions().begin(), shape->dimensions().end(),
-                                                               [&](const auto& d) { return d.name == move.dimension; });
-            if (!known)
-                add(ErrorCode::out_of_range, place(parameter),
-                    "body `" + body.name + "` has no shape with a dimension \"" + move.dimension + "\"");
-        }
-        if (move.target == MoveTarget::density && body.inertial)
-            add(ErrorCode::inconsistent, place(parameter),
-                "the mass of body `" + body.name + "` is given (`inertial`), and follows no density");
-        if (move.target == MoveTarget::motor_rate && (move.dof < 0 || move.dof > 5 || !body.prescribed[static_cast<size_t>(move.dof)]))
-            add(ErrorCode::inconsistent, place(parameter), "body `" + body.name + "` has no motor on that coordinate");
     }
 
     static std::string place(const Relation& relation) { return "relation `" + relation.name + "`"; }
@@ -161,6 +131,7 @@ private:
 
     const Design& design_;
     const core::model::Model& model_;
+    const core::scene::Scene scene_ = description::described_scene(design_);
     Errors errors_;
 };
 

@@ -49,6 +49,14 @@ bool is_finite(const adjoint::TrajectoryGradient& seed) {
     return is_finite_row(seed.multiplier_bar);
 }
 
+// By numbers alone: two designs that say the same are the same.
+Design with_plain_places(Design design) {
+    const core::scene::Scene scene = description::described_scene(design);
+    for (description::Parameter& parameter : design.parameters)
+        for (description::Move& move : parameter.moves) move.place = pointer_to(scene, core::scene::find_place(scene, move.place).value());
+    return design;
+}
+
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
 std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
 
@@ -68,7 +76,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     // Their defaults are functions of the scene's size, which parameters change.
     design.scene.dhat = model->dhat;
     design.scene.velocity_tolerance = model->velocity_tolerance;
-    problem.design_ = std::move(design);
+    problem.design_ = with_plain_places(std::move(design));
     return problem;
 }
 

@@ -60,6 +60,7 @@ public:
     /// Errors: the scene as written cannot be built (its bodies intersect, a mesh is open ...), and what check_design finds.
     static Result<DesignProblem> create(description::Design design);
 
+    /// With places by number (core/scene/place.hpp).
     const description::Design& design() const { return design_; }
     int parameter_count() const { return static_cast<int>(design_.parameters.size()); }
     /// That all designs are simulated with [N/m].

@@ -72,16 +72,8 @@ public:
 
 }  // namespace pybind11::detail
 
-FETTLE_WORDS(fettle::design::description::MoveTarget, "dimension", "position", "density", "motor_rate", "turn", "velocity",
-             "angular_velocity", "force", "torque", "gravity", "dmin", "body_mu", "material_mu", "pair_mu", "default_mu", "point_a",
-             "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit", "pitch",
-             "ratio", "curve_value", "curve_rate", "load_point", "load_force")
-FETTLE_WORDS(fettle::core::model::Origin::List, "joint", "spring", "motor", "load")
-FETTLE_RECORD(fettle::core::model::Origin, "Origin", field("list", &Type::list), field("index", &Type::index))
-FETTLE_RECORD(fettle::design::description::Move, "Move", field("target", &Type::target), field("body", &Type::body),
-              field("dimension", &Type::dimension), field("dof", &Type::dof), field("scale", &Type::scale), field("offset", &Type::offset),
-              field("direction", &Type::direction), field("position_offset", &Type::position_offset), field("part", &Type::part),
-              field("entry", &Type::entry), field("materials", &Type::materials))
+FETTLE_RECORD(fettle::design::description::Move, "Move", field("place", &Type::place), field("scale", &Type::scale),
+              field("offset", &Type::offset))
 FETTLE_RECORD(fettle::design::description::Parameter, "Parameter", field("name", &Type::name), field("value", &Type::value),
               field("lower", &Type::lower), field("upper", &Type::upper), field("unit", &Type::unit), field("moves", &Type::moves))
 FETTLE_RECORD(fettle::design::description::Bounds, "Bounds", field("lower", &Type::lower), field("upper", &Type::upper),

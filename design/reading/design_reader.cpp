@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_reader.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -43,7 +44,7 @@ public:
         const auto unit = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
         if (unit) file_.length_unit = *find_unit(*unit);
         if (!read_scene_file(root.require("scene"))) return all_errors();
-        make_shapes();
+        take_shapes();
         read_simulation(root["simulation"]);
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep};
         design_.parameters = read_parameters(root.require("parameters"), context, design_.shapes, file_.length_unit);
@@ -78,7 +79,7 @@ private:
             return false;
         }
         Result<core::scene::Scene> scene =
-            core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs));
+            core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs, parts_));
         if (!scene) {
             scene_errors_ = scene.errors();
             if (scene_errors_.front().code == ErrorCode::file_not_found && scene_errors_.front().where == file_.scene_path) {
@@ -93,16 +94,18 @@ private:
     }
 
     // A part that the scene has scaled is none that a parameter can move.
-    void make_shapes() {
-        for (const core::scene::Body& body : design_.scene.bodies) {
+    void take_shapes() {
+        for (core::scene::Body& body : design_.scene.bodies) {
             design_.shapes.emplace_back();
-            if (!body.shape) continue;
-            const auto part = shape_of_spec(*body.shape, options_.programs);
-            if (!part) continue;  // the scene's own reading has said so
-            const auto drawn = description::drawn_mesh(**part);
-            if (!drawn || drawn->vertices != body.mesh.vertices) continue;
-            design_.shapes.back() = *part;
-            for (const std::string& remark : (*part)->remarks(description::drawn_values(**part)))
+            const auto is_its_own = [&](const MadePart& part) {
+                return body.shape == part.spec && part.mesh.vertices == body.mesh.vertices;
+            };
+            const auto found = std::find_if(parts_->begin(), parts_->end(), is_its_own);
+            if (found == parts_->end()) continue;
+            const description::Shape& shape = *found->shape;
+            design_.shapes.back() = found->shape;
+            description::describe(shape, body);
+            for (const std::string& remark : shape.remarks(description::drawn_values(shape)))
                 remarks_.push_back("body " + body.name + ": " + remark);
         }
     }
@@ -159,7 +162,8 @@ private:
     DesignFile file_;
     description::Design& design_ = file_.design;
     Errors scene_errors_;
-    std::vector<std::string> remarks_;  // of parts whose derivative is not exact
+    std::shared_ptr<std::vector<MadePart>> parts_ = std::make_shared<std::vector<MadePart>>();  // of the scene
+    std::vector<std::string> remarks_;                                                          // of parts whose derivative is not exact
 };
 
 }  // namespace

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/scene_shapes.hpp"
 
+#include "fettle/design/shapes/generated_part.hpp"
 #include "fettle/design/shapes/mesh_program.hpp"
 
 namespace fettle::design::reading {
 
-Result<std::shared_ptr<const shapes::GeneratedPart>> generated_part(const core::scene::ShapeSpec& spec) {
-    shapes::ShapeOptions options;
-    for (const auto& [name, value] : spec.counts) {
-        if (name != "segments") {
-            return Error{ErrorCode::unknown_key, "counts/" + name, "unknown count \"" + name + "\"; the only one is \"segments\""};
-        }
-        options.segments = value;
-    }
-    return shapes::GeneratedPart::create(spec.generator, spec.dimensions, options);
+namespace {
+
+using MadeShape = Result<std::shared_ptr<const description::Shape>>;
+
+template <class Part>
+MadeShape as_shape(const Result<std::shared_ptr<const Part>>& part) {
+    if (!part) return part.errors();
+    return std::shared_ptr<const description::Shape>(*part);
 }
 
-Result<std::shared_ptr<const description::Shape>> shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
+MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
     if (!spec.program) {
-        const auto part = generated_part(spec);
-        if (!part) return part.errors();
-        return std::shared_ptr<const description::Shape>(*part);
+        shapes::ShapeOptions options;
+        for (const auto& [name, value] : spec.counts) {
+            if (name != "segments")
+                return Error{ErrorCode::unknown_key, "counts/" + name, "unknown count \"" + name + "\"; the only one is \"segments\""};
+            options.segments = value;
+        }
+        return as_shape(shapes::GeneratedPart::create(spec.generator, spec.dimensions, options));
     }
     if (programs == Programs::refused) {
         const std::string name = spec.program->command.empty() ? "" : spec.program->command.front();
@@ -29,18 +33,23 @@ Result<std::shared_ptr<const description::Shape>> shape_of_spec(const core::scen
     }
     std::vector<description::ShapeDimension> dimensions;
     for (const auto& [name, value] : spec.dimensions) dimensions.push_back({name, value});
-    const auto part = shapes::ProgramPart::create(*spec.program, std::move(dimensions));
-    if (!part) return part.errors();
-    return std::shared_ptr<const description::Shape>(*part);
+    return as_shape(shapes::ProgramPart::create(*spec.program, std::move(dimensions)));
 }
 
-core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs, Programs programs) {
+}  // namespace
+
+core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs, Programs programs,
+                                            const std::shared_ptr<std::vector<MadePart>>& made) {
     core::scene::ReadOptions options;
     options.mesh_dirs = mesh_dirs;
-    options.shape_generator = [programs](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
-        const auto part = shape_of_spec(spec, programs);
-        if (!part) return part.errors();
-        return description::drawn_mesh(**part);
+    options.shape_generator = [programs, made](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
+        for (const MadePart& part : *made)
+            if (part.spec == spec) return part.mesh;
+        const auto shape = shape_of_spec(spec, programs);
+        if (!shape) return shape.errors();
+        Result<core::geometry::Mesh> mesh = description::drawn_mesh(**shape);
+        if (mesh) made->push_back({spec, *shape, *mesh});
+        return mesh;
     };
     return options;
 }

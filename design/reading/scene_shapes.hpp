@@ -9,19 +9,25 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/description/shape.hpp"
 
 namespace fettle::design::reading {
 
 /// May a file's parts be made by the programs that it names? Never because the file says so: because the user does.
 enum class Programs { refused, allowed };
 
-/// The part of a generator. The only count is `segments`.
-Result<std::shared_ptr<const shapes::GeneratedPart>> generated_part(const core::scene::ShapeSpec& spec);
-/// The part that a scene asks for. Errors (unsupported): a program where programs are refused.
-Result<std::shared_ptr<const description::Shape>> shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs);
+/// A part that was made while a scene was read. Errors (unsupported): a program where programs are refused, a generator's count other than
+/// `segments`.
+struct MadePart {
+    core::scene::ShapeSpec spec;
+    std::shared_ptr<const description::Shape> shape;
+    core::geometry::Mesh mesh;  ///< as drawn
+};
 
-/// What read_scene needs to make the parts of this program, and where it looks for meshes.
-core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs = {}, Programs programs = Programs::refused);
+/// What read_scene needs to make the parts of this program, and where it looks for meshes. Each part is made once, however many bodies are
+/// like it. For one thread at a time.
+/// @param made  Gets the parts.
+core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs = {}, Programs programs = Programs::refused,
+                                            const std::shared_ptr<std::vector<MadePart>>& made = std::make_shared<std::vector<MadePart>>());
 
 }  // namespace fettle::design::reading

@@ -84,7 +84,6 @@ from .design import (
     Move as Move,
     ObjectiveTerm as ObjectiveTerm,
     OptimiserSettings as OptimiserSettings,
-    Origin as Origin,
     Parameter as Parameter,
     ProgramShape as ProgramShape,
     Quantity as Quantity,

@@ -4,11 +4,11 @@ Shapes and quantities of one's own derive from Shape and Quantity.
 
     design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
     fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
-    design.parameters.append(fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm", [fettle.Move(body="pin", dimension="radius")]))
+    design.parameters.append(fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm", [fettle.Move("/bodies/pin/shape/dimensions/radius")]))
 """
 import dataclasses
 import math
-from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -233,33 +233,14 @@ AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Origin(Record):
-    """A place in one of the scene's lists of joints, springs, motors and loads."""
-
-    list: Literal["joint", "spring", "motor", "load"] = "joint"
-    index: int = -1
-
-
-@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Move(Record):
-    """One target of a parameter: target = scale p + offset, summed over all moves of that target. The library's
-    design/description/parameter.hpp lists the targets."""
+    """A number of the scene that a parameter moves: scale p + offset, summed over all moves of that place. Places are JSON pointers, with
+    bodies, joints, springs, dampers, motors and loads by number or name: "/bodies/pin/shape/dimensions/radius", "/bodies/pin/position/2",
+    "/joints/0/point_a/0", "/motors/drive/speed"; the library's core/scene/place.hpp lists them."""
 
-    #: of a body "dimension", "position", "density", "motor_rate", "turn", "velocity", "angular_velocity", "force",
-    #: "torque"; of the scene "gravity", "dmin"; coefficients of friction "body_mu", "material_mu", "pair_mu", "default_mu"; of `part`
-    #: "point_a", "point_b", "axis_a", "axis_b", "stiffness", "rest", "preload", "damping", "friction", "lower_limit", "upper_limit",
-    #: "pitch", "ratio", "curve_value", "curve_rate", "load_point", "load_force"
-    target: str = "dimension"
-    body: Which = 0
-    dimension: str = ""
-    dof: int = 0  #: motor_rate: 0 .. 5
+    place: str = ""
     scale: float = 1.0
     offset: float = 0.0
-    direction: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of vectors
-    position_offset: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: of vectors
-    part: Origin = dataclasses.field(default_factory=Origin)
-    entry: int = 0  #: curve_value: which
-    materials: List[str] = dataclasses.field(default_factory=list)  #: material_mu: one, pair_mu: two
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -341,7 +322,6 @@ class Design(Record):
         names = [body.name for body in self.scene.bodies]
         made = dataclasses.replace(
             self,
-            parameters=[dataclasses.replace(p, moves=[_numbered(move, names, faults) for move in p.moves]) for p in self.parameters],
             objective=[dataclasses.replace(term, quantity=_numbered(term.quantity, names, faults)) for term in self.objective],
             constraints=[dataclasses.replace(c, quantity=_numbered(c.quantity, names, faults)) for c in self.constraints],
         )
@@ -361,13 +341,13 @@ def _body_number(body: Which, names: Sequence[str], where: str, faults: List[Fau
 
 
 def _numbered(record: Any, names: Sequence[str], faults: List[Fault]) -> Any:
-    """A quantity or move with its bodies by number."""
+    """A quantity with its bodies by number."""
     kind = type(record)
     if kind is Mass:
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record
         return Mass([(_body_number(body, names, "Mass/bodies", faults), of) for body, of in record.bodies])
-    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, ContactLoad, Move):
+    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, ContactLoad):
         return record
     members = {name: getattr(record, name) for name in ("a", "b", "body", "other") if name in kind.__dataclass_fields__}
     numbers = {

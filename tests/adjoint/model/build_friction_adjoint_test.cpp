@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "fettle/adjoint/scene/scene_gradient.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 using core::scene::Scene;
 
 // Two with coefficients of their own, one of them as its material's; two of materials, of which one is in a listed pair; one of neither.
-Scene scene() {
+Scene sliding() {
     Scene out;
     out.friction.mu = 0.2;
     out.friction.materials = {{"steel", 0.5}, {"brass", 0.3}};
@@ -44,25 +45,26 @@ double weighted(const Scene& scene, const FrictionGradient& weights) {
 
 TEST_CASE("the scene's coefficients of friction have the derivatives of what is built from them", "[adjoint][model]") {
     FrictionGradient weights;
-    const int count = static_cast<int>(scene().bodies.size());
+    const int count = static_cast<int>(sliding().bodies.size());
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b) weights[{a, b}] = 1 + 0.3 * a - 0.7 * b;
-    const SceneFrictionGradient gradient = build_friction_adjoint(scene(), weights);
+    Scene gradient = scene::zero_scene_gradient(sliding());
+    build_friction_adjoint(sliding(), weights, gradient);
     const auto difference = [&](const auto& coefficient) {
         constexpr double e = 1e-5;
-        Scene above = scene(), below = scene();
+        Scene above = sliding(), below = sliding();
         coefficient(above) += e;
         coefficient(below) -= e;
         return (weighted(above, weights) - weighted(below, weights)) / (2 * e);
     };
-    CHECK(gradient.mu == Approx(difference([](Scene& s) -> double& { return s.friction.mu; })).epsilon(1e-8));
+    CHECK(gradient.friction.mu == Approx(difference([](Scene& s) -> double& { return s.friction.mu; })).epsilon(1e-8));
     for (const char* name : {"steel", "brass"})
-        CHECK(gradient.materials.at(name) ==
+        CHECK(gradient.friction.materials.at(name) ==
               Approx(difference([&](Scene& s) -> double& { return s.friction.materials[name]; })).epsilon(1e-8));
-    CHECK(gradient.pairs[0] == Approx(difference([](Scene& s) -> double& { return s.friction.pairs[0].mu; })).epsilon(1e-8));
+    CHECK(gradient.friction.pairs[0].mu == Approx(difference([](Scene& s) -> double& { return s.friction.pairs[0].mu; })).epsilon(1e-8));
     for (const std::size_t i : {0U, 3U})
-        CHECK(gradient.bodies[i] == Approx(difference([&](Scene& s) -> double& { return *s.bodies[i].mu; })).epsilon(1e-8));
-    CHECK(gradient.bodies[1] == 0);
+        CHECK(*gradient.bodies[i].mu == Approx(difference([&](Scene& s) -> double& { return *s.bodies[i].mu; })).epsilon(1e-8));
+    CHECK(*gradient.bodies[1].mu == 0);
 }
 
 }  // namespace fettle::adjoint::model::build_friction_adjoint_test

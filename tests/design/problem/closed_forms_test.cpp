@@ -16,7 +16,6 @@ namespace {
 
 using namespace fettle::tests::mechanisms;
 using namespace fettle::design::description;
-using core::model::Origin;
 using core::scene::JointKind;
 
 const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
@@ -73,26 +72,14 @@ private:
     }
 };
 
-Parameter parameter(const std::string& name, double value, Move move) {
+Parameter parameter(const std::string& name, double value, const std::string& place) {
     Parameter p;
     p.name = name;
     p.value = value;
     p.lower = value - 10 * std::abs(value);
     p.upper = value + 10 * std::abs(value);
-    p.moves = {std::move(move)};
+    p.moves = {{place}};
     return p;
-}
-
-Move of(MoveTarget target, Origin::List list, int index) {
-    Move move;
-    move.target = target;
-    move.part = {list, index};
-    return move;
-}
-
-Move along(Move move, const Vector3& direction) {
-    move.direction = direction;
-    return move;
 }
 
 DesignEvaluation evaluated(Design design, const std::vector<std::shared_ptr<const Quantity>>& quantities) {
@@ -158,8 +145,8 @@ TEST_CASE("closed form: the range of a throw in speed and angle", "[throw]") {
         design.scene.bodies[0].reference_point = Vector3(0.05, 0, 0);
         design.scene.bodies[0].pose.position = Vector3(-0.05, 0, 0);
         design.steps = static_cast<int>(std::lround(0.4 / step));
-        design.parameters = {parameter("forwards", speed * std::cos(angle), along({.target = MoveTarget::velocity, .body = 0}, x_axis)),
-                             parameter("upwards", speed * std::sin(angle), along({.target = MoveTarget::velocity, .body = 0}, z_axis))};
+        design.parameters = {parameter("forwards", speed * std::cos(angle), "/bodies/0/linear_velocity/0"),
+                             parameter("upwards", speed * std::sin(angle), "/bodies/0/linear_velocity/2")};
         return evaluated(std::move(design), {std::make_shared<Landing>()});
     };
     const double range = speed * speed * std::sin(2 * angle) / gravity, by_speed = 2 * range / speed,
@@ -191,8 +178,7 @@ TEST_CASE("closed form: a double pendulum keeps its energy, which follows gravit
         design.scene.mechanism.joints = {
             joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis}),
             joint("elbow", JointKind::revolute, {"upper", Vector3(0.3, 0, 0), y_axis}, {"lower", Vector3::Zero(), y_axis})};
-        design.parameters = {parameter("gravity", -gravity, along({.target = MoveTarget::gravity}, z_axis)),
-                             parameter("density", 1000, {.target = MoveTarget::density, .body = 1})};
+        design.parameters = {parameter("gravity", -gravity, "/gravity/2"), parameter("density", 1000, "/bodies/1/density")};
         const auto energy = std::make_shared<quantities::Energy>(quantities::EnergyKind::total, quantities::Over::end);
         return evaluated(std::move(design), {energy});
     };
@@ -229,12 +215,12 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         design.scene.dhat = dhat;
         design.scene.kappa = 0.33 / dhat / dhat;  // turns them round deep within dhat
         design.steps = static_cast<int>(std::lround(1 / h));
-        for (const MoveTarget target : {MoveTarget::position, MoveTarget::velocity})
+        for (const bool is_place : {true, false})
             for (const int body : {0, 1}) {
-                const bool is_place = target == MoveTarget::position;
                 const double value = body == 1 ? 0 : is_place ? -0.4 : 1;
                 design.parameters.push_back(
-                    parameter(std::to_string(design.parameters.size()), value, along({.target = target, .body = body}, x_axis)));
+                    parameter(std::to_string(design.parameters.size()), value,
+                              "/bodies/" + std::to_string(body) + (is_place ? "/position/0" : "/linear_velocity/0")));
                 design.parameters.back().lower = value - 1;
                 design.parameters.back().upper = value + 1;
             }
@@ -265,9 +251,8 @@ TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[join
     slide.forces.stiffness = stiffness;
     slide.forces.rest = -start;
     design.scene.mechanism.joints = {slide};
-    design.parameters = {parameter("stiffness", stiffness, of(MoveTarget::stiffness, Origin::List::joint, 0)),
-                         parameter("density", 1000, {.target = MoveTarget::density, .body = 0}),
-                         parameter("rest", -start, of(MoveTarget::rest, Origin::List::joint, 0))};
+    design.parameters = {parameter("stiffness", stiffness, "/joints/0/stiffness"), parameter("density", 1000, "/bodies/0/density"),
+                         parameter("rest", -start, "/joints/0/rest")};
     const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(0, Vector3::Zero(), x_axis)});
     const double mass = 1000 * 0.2 * 0.02 * 0.02, w = stiffness / mass;
     const Dual x = oscillator(w, h, steps);
@@ -289,8 +274,8 @@ TEST_CASE("closed form: a pendulum of small swings, in gravity and length", "[jo
         joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"rod", Vector3(0.01, 0, length), y_axis})};
     design.scene.bodies[0].pose.rotation = core::kinematics::rotation(Vector3(0, -angle, 0));
     design.scene.bodies[0].pose.position = -(design.scene.bodies[0].pose.rotation * Vector3(0.01, 0, length));
-    Move reach = along(of(MoveTarget::point_b, Origin::List::joint, 0), z_axis);
-    design.parameters = {parameter("gravity", -9.81, along({.target = MoveTarget::gravity}, z_axis)), parameter("length", length, reach)};
+    const std::string reach = "/joints/0/point_b/2";
+    design.parameters = {parameter("gravity", -9.81, "/gravity/2"), parameter("length", length, reach)};
     // Of the direction of the rod's x axis: the swing's angle itself.
     const auto tip = std::make_shared<EndPosition>(0, Vector3(1, 0, 0), z_axis),
                foot = std::make_shared<EndPosition>(0, Vector3::Zero(), z_axis);
@@ -325,8 +310,7 @@ TEST_CASE("closed form: crank torque in load and crank radius", "[joints]") {
         joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
     design.scene.mechanism.loads = {{"push", "", "slider", Vector3::Zero(), Vector3(load, 0, 0)}};
     design.scene.mechanism.motors = {motor("drive", "main", at_rate(2))};
-    design.parameters = {parameter("load", load, along(of(MoveTarget::load_force, Origin::List::load, 0), x_axis)),
-                         parameter("radius", radius, along(of(MoveTarget::point_a, Origin::List::joint, 1), x_axis))};
+    design.parameters = {parameter("load", load, "/loads/0/force/0"), parameter("radius", radius, "/joints/1/point_a/0")};
     using quantities::JointLoad;
     const DesignEvaluation at =
         evaluated(design, {std::make_shared<JointLoad>(JointLoad::Of{quantities::JointLoadKind::effort, "drive"}, quantities::Over::end)});
@@ -353,8 +337,7 @@ TEST_CASE("closed form: a wheel behind a gear, in the ratio and the motor's spee
     gear.ratio = -0.6;
     design.scene.mechanism.joints.push_back(gear);
     design.scene.mechanism.motors = {motor("drive", "one", at_rate(5))};
-    design.parameters = {parameter("ratio", -0.6, of(MoveTarget::ratio, Origin::List::joint, 2)),
-                         parameter("speed", 5, of(MoveTarget::curve_rate, Origin::List::motor, 0))};
+    design.parameters = {parameter("ratio", -0.6, "/joints/2/ratio"), parameter("speed", 5, "/motors/0/speed")};
     const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(1, Vector3(0.1, 0, 0), y_axis)});
     const double angle = 5 * 0.1, turned = -0.6 * angle;
     CHECK(at.constraints[0].value == Approx(0.1 * std::sin(turned)).epsilon(1e-10));
@@ -377,8 +360,8 @@ TEST_CASE("closed form: what a hanging chain's joints carry, in density and grav
                   {k == 0 ? "" : "link " + std::to_string(k - 1), k == 0 ? Vector3(Vector3::Zero()) : Vector3(0.2, 0, 0), y_axis},
                   {"link " + std::to_string(k), Vector3::Zero(), y_axis}));
     for (int k = 0; k < 3; ++k)
-        design.parameters.push_back(parameter("density " + std::to_string(k), 1000, {.target = MoveTarget::density, .body = k}));
-    design.parameters.push_back(parameter("gravity", -9.81, along({.target = MoveTarget::gravity}, z_axis)));
+        design.parameters.push_back(parameter("density " + std::to_string(k), 1000, "/bodies/" + std::to_string(k) + "/density"));
+    design.parameters.push_back(parameter("gravity", -9.81, "/gravity/2"));
     using quantities::JointLoad;
     std::vector<std::shared_ptr<const Quantity>> loads;
     for (int k = 0; k < 3; ++k)
@@ -399,8 +382,7 @@ TEST_CASE("closed form: stopping distance in speed and friction", "[friction]") 
     const auto slid = [&](double h) {
         Design design = block_on_plate(block_mass * gravity, mu, h, static_cast<int>(0.3 / h));
         design.scene.bodies[1].linear_velocity = Vector3(speed, 0, 0);
-        design.parameters = {parameter("speed", speed, along({.target = MoveTarget::velocity, .body = 1}, x_axis)),
-                             parameter("mu", mu, {.target = MoveTarget::default_mu})};
+        design.parameters = {parameter("speed", speed, "/bodies/1/linear_velocity/0"), parameter("mu", mu, "/friction/mu")};
         return evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
     };
     // As the steps are made: v' + a h f0'(v') = v, f0' = 2 u - u^2 at u = v'/eps_v < 1.
@@ -450,10 +432,8 @@ TEST_CASE("closed form: the way down an incline in angle and friction", "[fricti
     for (const double h : {0.01, 0.005}) {
         const int steps = static_cast<int>(std::lround(time / h));
         Design design = block_on_plate(block_mass * gravity * c, mu, h, steps);
-        Move plate = along({.target = MoveTarget::turn, .body = 0}, y_axis), block = plate;
-        block.body = 1;
-        design.parameters = {parameter("angle", angle, plate), parameter("mu", mu, {.target = MoveTarget::default_mu})};
-        design.parameters[0].moves.push_back(block);
+        design.parameters = {parameter("angle", angle, "/bodies/0/turn/1"), parameter("mu", mu, "/friction/mu")};
+        design.parameters[0].moves.push_back({"/bodies/1/turn/1"});
         const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), down)});
         CAPTURE(h);
         const double half = 0.5 * h * h * steps * (steps + 1);  // h^2 (1 + ... + n); t^2/2 as h goes to 0

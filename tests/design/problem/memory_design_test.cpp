@@ -97,7 +97,7 @@ Parameter parameter(const std::string& name, double value, double lower, double 
     return {name, value, lower, upper, *find_unit(unit), std::move(moves)};
 }
 
-Move dimension(int body, const std::string& name) { return {.target = MoveTarget::dimension, .body = body, .dimension = name}; }
+Move dimension(int body, const std::string& name) { return {"/bodies/" + std::to_string(body) + "/shape/dimensions/" + name}; }
 
 // A frustum falls 0.02 mm onto a plate that a motor tilts.
 Design tilted_plate() {
@@ -115,12 +115,10 @@ Design tilted_plate() {
     part.pose.position = Vector3(2e-3, 1e-3, 4.12e-3);
     part.angular_velocity = Vector3(8, 5, 0);
     REQUIRE(add_part(design, part, std::make_shared<Frustum>(8e-3, 5e-3, 8e-3)).value() == 1);
-    design.parameters = {
-        parameter("height", 8e-3, 6e-3, 12e-3,
-                  {dimension(1, "height"),
-                   {.target = MoveTarget::position, .body = 1, .direction = {0, 0, 0.5}, .position_offset = {0, 0, 1.2e-4}}}),
-        parameter("foot", 8e-3, 6e-3, 10e-3, {dimension(1, "foot")}), parameter("top", 5e-3, 2e-3, 9e-3, {dimension(1, "top")}),
-        parameter("speed", 0.7, 0.2, 1, {{.target = MoveTarget::motor_rate, .body = 0, .dof = 4}}, "rad/s")};
+    design.parameters = {parameter("height", 8e-3, 6e-3, 12e-3, {dimension(1, "height"), {"/bodies/part/position/2", 0.5, 1.2e-4}}),
+                         parameter("foot", 8e-3, 6e-3, 10e-3, {dimension(1, "foot")}),
+                         parameter("top", 5e-3, 2e-3, 9e-3, {dimension(1, "top")}),
+                         parameter("speed", 0.7, 0.2, 1, {{"/bodies/0/prescribed/ry/rate"}}, "rad/s")};
     design.objective = {{"height", -1, 1e-3, std::make_shared<MeanHeight>(1)},
                         {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
     Bounds at_least;
@@ -164,7 +162,7 @@ TEST_CASE("a body whose mass is given: neither density nor mesh move it, and gra
         CAPTURE(k, differentiated.gradient[k], least);
         CHECK(least <= 1e-5 * differentiated.gradient.lpNorm<Eigen::Infinity>());
     }
-    design.parameters.push_back(parameter("density", 1000, 500, 2000, {{.target = MoveTarget::density, .body = 1}}, "kg/m^3"));
+    design.parameters.push_back(parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"));
     const auto refused = DesignProblem::create(design);
     REQUIRE_FALSE(refused);
     CHECK(refused.errors().front().message.find("is given") != std::string::npos);
@@ -272,15 +270,12 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
     wall.pose.position = Vector3(40e-3, 0, 0);
     REQUIRE(add_part(made, wall, box(5e-3, 60e-3, 60e-3)));
     made.scene.gravity = read.scene.gravity;
-    made.parameters = {
-        parameter("height", 10e-3, 6e-3, 14e-3,
-                  {dimension(1, "size_z"),
-                   {.target = MoveTarget::position, .body = 1, .direction = {0, 0, 0.5}, .position_offset = {0, 0, 1.2e-4}}}),
-        parameter("width", 20e-3, 15e-3, 30e-3, {dimension(1, "size_x")}),
-        parameter("place", 3e-3, -5e-3, 20e-3, {{.target = MoveTarget::position, .body = 1, .direction = {1, 0, 0}}}),
-        parameter("density", 1000, 500, 2000, {{.target = MoveTarget::density, .body = 1}}, "kg/m^3"),
-        parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")),
-                  {{.target = MoveTarget::motor_rate, .body = 0, .dof = 4}}, "deg/s")};
+    made.parameters = {parameter("height", 10e-3, 6e-3, 14e-3, {dimension(1, "size_z"), {"/bodies/cube/position/2", 0.5, 1.2e-4}}),
+                       parameter("width", 20e-3, 15e-3, 30e-3, {dimension(1, "size_x")}),
+                       parameter("place", 3e-3, -5e-3, 20e-3, {{"/bodies/1/position/0"}}),
+                       parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"),
+                       parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")),
+                                 {{"/bodies/0/prescribed/ry/rate"}}, "deg/s")};
     const double mm = 1e-3;
     using Points = std::vector<Vector3>;
     made.objective = {
@@ -362,10 +357,9 @@ TEST_CASE("of parts that are costly to make the bounds alone and few designs bet
 
 TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {
     Design design = tilted_plate();
-    design.parameters[1].moves[0].dimension = "fot";
+    design.parameters[1].moves[0] = dimension(1, "fot");
     design.parameters[2].lower = 6e-3;
-    design.parameters[3].moves[0].dof = 2;
-    design.parameters[3].moves[0].body = 1;
+    design.parameters[3].moves[0].place = "/bodies/1/prescribed/pz/rate";
     design.objective[0].quantity = nullptr;
     design.objective[1].quantity = std::make_shared<quantities::Mass>(std::vector<quantities::Mass::Of>{{7}});
     design.constraints[0].bounds.upper = 1e-3;

@@ -107,7 +107,7 @@ TEST_CASE("moves of one target add up, and replace what the scene says") {
     CHECK(cube.pose.position.y() == 0.001);  // the scene's
     CHECK(cube.pose.position.z() == Approx(0.00612).epsilon(1e-15));
     CHECK(cube.mesh.vertices.row(2).maxCoeff() == Approx(0.006).epsilon(1e-15));
-    CHECK(moved->changes.size() == 5);
+    CHECK(moved->numbers.size() == 6);
 }
 
 TEST_CASE("a part that cannot be made is an error with its body and dimension") {

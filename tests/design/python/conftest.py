@@ -79,14 +79,14 @@ def tilted_plate(quantity=None, shape=None):
     part.pose.position = [2e-3, 1e-3, 4.12e-3]
     assert fettle.add_part(design, part, shape or Frustum(8e-3, 5e-3, 8e-3)) == 1
     height = [
-        fettle.Move(body=1, dimension="height"),
-        fettle.Move("position", body=1, direction=[0, 0, 0.5], position_offset=[0, 0, 1.2e-4]),
+        fettle.Move("/bodies/1/shape/dimensions/height"),
+        fettle.Move("/bodies/1/position/2", 0.5, 1.2e-4),
     ]
     design.parameters = [
         fettle.Parameter("height", 8e-3, 6e-3, 12e-3, "mm", height),
-        fettle.Parameter("foot", 8e-3, 6e-3, 10e-3, "mm", [fettle.Move(body=1, dimension="foot")]),
-        fettle.Parameter("top", 5e-3, 2e-3, 9e-3, "mm", [fettle.Move(body=1, dimension="top")]),
-        fettle.Parameter("speed", 0.7, 0.2, 1, "rad/s", [fettle.Move("motor_rate", body=0, dof=4)]),
+        fettle.Parameter("foot", 8e-3, 6e-3, 10e-3, "mm", [fettle.Move("/bodies/1/shape/dimensions/foot")]),
+        fettle.Parameter("top", 5e-3, 2e-3, 9e-3, "mm", [fettle.Move("/bodies/1/shape/dimensions/top")]),
+        fettle.Parameter("speed", 0.7, 0.2, 1, "rad/s", [fettle.Move("/bodies/0/prescribed/ry/rate")]),
     ]
     measured = quantity or MeanHeight(1)
     design.objective = [

@@ -136,7 +136,7 @@ def test_designs_name_bodies():
     numbered.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([(1, "volume")]))]
     named.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([("part", "volume")]))]
     for move in [move for parameter in named.parameters for move in parameter.moves]:
-        move.body = ("plate", "part")[move.body]
+        move.place = move.place.replace("/0/", "/plate/", 1).replace("/1/", "/part/", 1)
     found = fettle.DesignProblem(named)
     assert found.design == fettle.DesignProblem(numbered).design
     assert named.constraints[0].quantity.a == "plate"  # what was given stays as it was

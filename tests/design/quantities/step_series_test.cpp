@@ -18,12 +18,11 @@ namespace fettle::design::quantities::step_series_test {
 namespace {
 
 using namespace fettle::tests::mechanisms;
-using core::model::Origin;
 using core::scene::Integrator;
 using core::scene::JointKind;
 using description::Design;
 using description::Move;
-using description::MoveTarget;
+using description::vector_moves;
 using problem::DesignProblem;
 
 const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
@@ -64,46 +63,31 @@ Design slider_crank(Integrator integrator) {
     return design;
 }
 
-void add_parameter(Design& design, Move move) {
+void add_parameter(Design& design, std::vector<Move> moves) {
     description::Parameter p;
     p.name = "p" + std::to_string(design.parameters.size());
     p.lower = -1;
     p.upper = 1;
-    p.moves = {std::move(move)};
+    p.moves = std::move(moves);
     design.parameters.push_back(std::move(p));
 }
 
 // At 0 the design as it is.
 void add_parameters(Design& design) {
-    const auto of = [](MoveTarget target, Origin::List list, int index, double scale, double offset, int entry = 0) {
-        Move move;
-        move.target = target;
-        move.part = {list, index};
-        move.scale = scale;
-        move.offset = offset;
-        move.entry = entry;
-        return move;
-    };
-    const auto along = [](Move move, const Vector3& direction, const Vector3& at) {
-        move.direction = direction;
-        move.position_offset = at;
-        return move;
-    };
-    using List = Origin::List;
-    add_parameter(design, along(of(MoveTarget::point_a, List::joint, 1, 0.01, 0), x_axis, Vector3(0.1, 0, 0)));  // the crank's radius
-    add_parameter(design, along(of(MoveTarget::point_b, List::joint, 3, 0.01, 0), y_axis, Vector3::Zero()));
-    add_parameter(design, along(of(MoveTarget::axis_a, List::joint, 3, 0.1, 0), Vector3(0, 1, 0.5), Vector3::Zero()));
-    add_parameter(design, of(MoveTarget::stiffness, List::spring, 0, 100, 500));
-    add_parameter(design, of(MoveTarget::rest, List::spring, 0, 0.01, 0.03));
-    add_parameter(design, of(MoveTarget::upper_limit, List::spring, 0, 1e-4, 1e-5));
-    add_parameter(design, of(MoveTarget::damping, List::spring, 0, 1, 3));
-    add_parameter(design, along(of(MoveTarget::load_force, List::load, 0, 3, 0), Vector3(1, 1, 0), Vector3(-12, 1, 0)));
-    add_parameter(design, along(of(MoveTarget::load_point, List::load, 0, 0.01, 0), y_axis, Vector3(0, 0.01, 0)));
-    add_parameter(design, of(MoveTarget::curve_value, List::motor, 0, 0.1, 1.4, 3));
-    add_parameter(design, of(MoveTarget::curve_rate, List::motor, 0, 0.1, 0.7));
-    add_parameter(design, {.target = MoveTarget::density, .body = 1, .scale = 300, .offset = 1000});
-    add_parameter(design, {.target = MoveTarget::gravity, .direction = y_axis, .position_offset = Vector3(0, -9.81, 0)});
-    add_parameter(design, {.target = MoveTarget::force, .body = 1, .direction = Vector3(1, 0, 1)});
+    add_parameter(design, vector_moves("/joints/1/point_a", x_axis, 0.01, Vector3(0.1, 0, 0)));  // the crank's radius
+    add_parameter(design, vector_moves("/joints/3/point_b", y_axis, 0.01, Vector3::Zero()));
+    add_parameter(design, vector_moves("/joints/3/axis_a", Vector3(0, 1, 0.5), 0.1, Vector3::Zero()));
+    add_parameter(design, {{"/springs/0/stiffness", 100, 500}});
+    add_parameter(design, {{"/springs/0/rest", 0.01, 0.03}});
+    add_parameter(design, {{"/springs/0/limits/1", 1e-4, 1e-5}});
+    add_parameter(design, {{"/springs/0/damping", 1, 3}});
+    add_parameter(design, vector_moves("/loads/0/force", Vector3(1, 1, 0), 3, Vector3(-12, 1, 0)));
+    add_parameter(design, vector_moves("/loads/0/point", y_axis, 0.01, Vector3(0, 0.01, 0)));
+    add_parameter(design, {{"/motors/0/curve/values/3", 0.1, 1.4}});
+    add_parameter(design, {{"/motors/0/speed", 0.1, 0.7}});
+    add_parameter(design, {{"/bodies/1/density", 300, 1000}});
+    add_parameter(design, vector_moves("/gravity", y_axis, 1, Vector3(0, -9.81, 0)));
+    add_parameter(design, vector_moves("/bodies/1/force", Vector3(1, 0, 1)));
 }
 
 // Two bars that a spring with a damper acts between, another from the world, and a load: what Newmark can have.
@@ -288,36 +272,19 @@ TEST_CASE("joint loads, efforts and energies have the derivatives of their diffe
 
 TEST_CASE("energies of Newmark's steps have the derivatives of their differences", "[joints]") {
     Design design = sprung_bars();
-    const auto of = [](MoveTarget target, Origin::List list, int index, double scale, double offset) {
-        Move move;
-        move.target = target;
-        move.part = {list, index};
-        move.scale = scale;
-        move.offset = offset;
-        return move;
-    };
-    const auto along = [](Move move, const Vector3& direction, const Vector3& at) {
-        move.direction = direction;
-        move.position_offset = at;
-        return move;
-    };
-    using List = Origin::List;
     const core::scene::Body &one = design.scene.bodies[0], &two = design.scene.bodies[1];
-    add_parameter(design, of(MoveTarget::stiffness, List::spring, 0, 3, 7));
-    add_parameter(design, of(MoveTarget::rest, List::spring, 1, 0.1, 0.8));
-    add_parameter(design, of(MoveTarget::damping, List::spring, 0, 0.1, 0.3));
-    add_parameter(design, along(of(MoveTarget::point_b, List::spring, 0, 0.02, 0), y_axis, Vector3::Zero()));
-    add_parameter(design, along(of(MoveTarget::load_force, List::load, 0, 0.1, 0), y_axis, Vector3(0, 0.2, 0)));
-    add_parameter(design, {.target = MoveTarget::density, .body = 1, .scale = 300, .offset = 1000});
-    add_parameter(design, {.target = MoveTarget::gravity, .direction = z_axis, .position_offset = Vector3(0, 0, -0.5)});
-    add_parameter(design, {.target = MoveTarget::turn, .body = 1, .scale = 0.1, .direction = Vector3(1, 2, 0)});
-    add_parameter(design, {.target = MoveTarget::position, .body = 0, .scale = 0.01, .direction = y_axis});
-    add_parameter(design,
-                  {.target = MoveTarget::velocity, .body = 1, .scale = 0.1, .direction = x_axis, .position_offset = two.linear_velocity});
-    add_parameter(
-        design,
-        {.target = MoveTarget::angular_velocity, .body = 0, .direction = Vector3(1, 0, 1), .position_offset = one.angular_velocity});
-    add_parameter(design, {.target = MoveTarget::torque, .body = 1, .scale = 0.003, .direction = z_axis});
+    add_parameter(design, {{"/springs/0/stiffness", 3, 7}});
+    add_parameter(design, {{"/springs/1/rest", 0.1, 0.8}});
+    add_parameter(design, {{"/springs/0/damping", 0.1, 0.3}});
+    add_parameter(design, vector_moves("/springs/0/point_b", y_axis, 0.02, Vector3::Zero()));
+    add_parameter(design, vector_moves("/loads/0/force", y_axis, 0.1, Vector3(0, 0.2, 0)));
+    add_parameter(design, {{"/bodies/1/density", 300, 1000}});
+    add_parameter(design, vector_moves("/gravity", z_axis, 1, Vector3(0, 0, -0.5)));
+    add_parameter(design, vector_moves("/bodies/1/turn", Vector3(1, 2, 0), 0.1));
+    add_parameter(design, vector_moves("/bodies/0/position", y_axis, 0.01));
+    add_parameter(design, vector_moves("/bodies/1/linear_velocity", x_axis, 0.1, two.linear_velocity));
+    add_parameter(design, vector_moves("/bodies/0/angular_velocity", Vector3(1, 0, 1), 1, one.angular_velocity));
+    add_parameter(design, vector_moves("/bodies/1/torque", z_axis, 0.003));
     add_constraints(energies(false, 1, Over::mean), design);
     add_constraints(energies(false, 0, Over::end), design);
     check_derivatives(problem_of(std::move(design)), 1e-6);
@@ -343,14 +310,9 @@ Design turning_lever(bool area_weighted) {
     core::scene::Joint axle = joint("axle", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"lever", Vector3(-0.15, 0, 0), y_axis});
     axle.forces = {3, 0.2, 0, 0.05, 0.03, std::array<double, 2>{-1.0, 0.004}};
     design.scene.mechanism.joints = {axle};
-    add_parameter(design, {.target = MoveTarget::dimension, .body = 0, .dimension = "size_x", .scale = 0.03, .offset = 0.3});
-    add_parameter(design, {.target = MoveTarget::density, .body = 0, .scale = 300, .offset = 1000});
-    Move limit;
-    limit.target = MoveTarget::upper_limit;
-    limit.part = {Origin::List::joint, 0};
-    limit.scale = 1e-3;
-    limit.offset = 0.004;
-    add_parameter(design, limit);
+    add_parameter(design, {{"/bodies/0/shape/dimensions/size_x", 0.03, 0.3}});
+    add_parameter(design, {{"/bodies/0/density", 300, 1000}});
+    add_parameter(design, {{"/joints/0/limits/1", 1e-3, 0.004}});
     return design;
 }
 
@@ -389,14 +351,13 @@ Design falling_blocks(Integrator integrator, double mu = 0) {
     design.scene.friction.eps_v = 0.02;
     design.scene.friction.rounds = 3;
     design.steps = 8;
-    if (mu > 0) add_parameter(design, {.target = MoveTarget::default_mu, .scale = 0.1, .offset = mu});
-    add_parameter(design, {.target = MoveTarget::gravity, .direction = z_axis, .position_offset = Vector3(0.3, 0, -9.81)});
-    add_parameter(design, {.target = MoveTarget::density, .body = 2, .scale = 300, .offset = 1000});
-    add_parameter(design,
-                  {.target = MoveTarget::position, .body = 1, .scale = 1e-4, .direction = z_axis, .position_offset = lower.pose.position});
-    add_parameter(design, {.target = MoveTarget::turn, .body = 2, .scale = 1e-2, .direction = x_axis});
-    add_parameter(design, {.target = MoveTarget::velocity, .body = 1, .scale = 0.01, .direction = Vector3(0, 0.6, 0.8)});
-    add_parameter(design, {.target = MoveTarget::dmin, .scale = 1e-4, .offset = 3e-4});
+    if (mu > 0) add_parameter(design, {{"/friction/mu", 0.1, mu}});
+    add_parameter(design, vector_moves("/gravity", z_axis, 1, Vector3(0.3, 0, -9.81)));
+    add_parameter(design, {{"/bodies/2/density", 300, 1000}});
+    add_parameter(design, vector_moves("/bodies/1/position", z_axis, 1e-4, lower.pose.position));
+    add_parameter(design, vector_moves("/bodies/2/turn", x_axis, 1e-2));
+    add_parameter(design, vector_moves("/bodies/1/linear_velocity", Vector3(0, 0.6, 0.8), 0.01));
+    add_parameter(design, {{"/contact/dmin", 1e-4, 3e-4}});
     using Of = ContactForce::Of;
     const std::vector<std::pair<Of, Over>> asked{{Of{1, 0, z_axis}, Over::mean},
                                                  {Of{2, std::nullopt, Vector3::Zero()}, Over::sum},

@@ -47,7 +47,7 @@ TEST_CASE("a design file is read in SI units") {
     REQUIRE(design.parameters.size() == 5);
     CHECK(design.parameters[0].value == 0.01);
     CHECK(design.parameters[0].moves.size() == 2);
-    CHECK(design.parameters[0].moves[1].position_offset.z() == Approx(0.00012));
+    CHECK(design.parameters[0].moves[1].offset == Approx(0.00012));
     CHECK(design.parameters[3].value == 1000);
     CHECK(design.parameters[4].value == Approx(40 * std::acos(-1.0) / 180));
     CHECK(design.steps == 20);

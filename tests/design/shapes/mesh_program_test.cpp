@@ -3,8 +3,11 @@
 /// script of the shell's, which writes a box.
 #include "fettle/design/shapes/mesh_program.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -19,7 +22,7 @@ using Dimensions = std::vector<description::ShapeDimension>;
 // Writes a tetrahedron with one edge of the length that it is given, in the folder that it runs in it looks for.
 constexpr const char* script =
     "#!/bin/sh\n"
-    "touch \"$(dirname \"$0\")/it_ran\"\n"
+    "echo \"$2\" >> \"$(dirname \"$0\")/it_ran\"\n"
     "case \"$2\" in -*) echo 'a negative length' >&2; exit 4;; esac\n"
     "printf 'OFF\\n4 4 0\\n0 0 0\\n%s 0 0\\n0 10 0\\n0 0 10\\n3 0 2 1\\n3 0 1 3\\n3 1 2 3\\n3 0 3 2\\n' \"$2\" > \"$1\"\n";
 
@@ -31,6 +34,11 @@ struct Shop {
         program = {.command = {"sh", "part.sh", "{out}", "{length}"}, .directory = folder.path.string(), .format = "off", .unit = 1e-3};
     }
     bool ran() const { return std::filesystem::exists(folder.path / "it_ran"); }
+    // How often it made a part of that length.
+    std::ptrdiff_t runs(const std::string& length) const {
+        std::ifstream lines(folder.path / "it_ran");
+        return std::count(std::istream_iterator<std::string>(lines), {}, length);
+    }
 };
 
 const Dimensions length{{"length", 0.0125}};
@@ -119,6 +127,7 @@ TEST_CASE("no program runs from a file alone") {
     INFO((allowed ? "" : allowed.errors()[0].where + ": " + allowed.errors()[0].message));
     REQUIRE(allowed);
     CHECK(shop.ran());
+    CHECK(shop.runs("12.5") == 1);
     CHECK_FALSE(allowed->warnings.empty());  // says how the derivative is found
     const auto problem = problem::DesignProblem::create(allowed->design);
     REQUIRE(problem);
@@ -127,6 +136,21 @@ TEST_CASE("no program runs from a file alone") {
     REQUIRE(at.usable);
     // volume = length * 10 * 10 / 6 mm^3; grams per metre of length
     CHECK(at.gradient[0] == Approx(1000.0 * 1e-4 / 6 * 1000).epsilon(1e-6));
+    CHECK(shop.runs("12.5") == 1);  // read, checked, built and simulated
+}
+
+TEST_CASE("parts that are alike are made once") {
+    const Shop shop;
+    const auto body = [](const std::string& name, const std::string& x) {
+        return "{ \"name\": \"" + name + "\", \"density\": 1000, \"position\": [" + x + R"(, 0, 0], "shape": {
+            "program": ["sh", "part.sh", "{out}", "{length}"], "format": "off", "dimensions": { "length": 12.5 } } })";
+    };
+    const std::string path = shop.folder.write(
+        "a.scene.json", "{ \"fettle_scene\": 1, \"units\": \"mm\", \"bodies\": [" + body("one", "0") + ", " + body("two", "50") + "] }");
+    const auto scene = core::scene::read_scene(path, reading::scene_read_options({}, reading::Programs::allowed));
+    REQUIRE(scene);
+    CHECK(scene->bodies[1].mesh.vertices == scene->bodies[0].mesh.vertices);
+    CHECK(shop.runs("12.5") == 1);
 }
 
 }  // namespace fettle::design::shapes::mesh_program_test

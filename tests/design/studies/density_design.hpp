@@ -70,7 +70,7 @@ inline design::problem::DesignProblem density_problem(int parameters, const std:
                                      .lower = 500,
                                      .upper = 1500,
                                      .unit = *find_unit("kg/m^3"),
-                                     .moves = {{.target = design::description::MoveTarget::density, .body = k}}});
+                                     .moves = {{"/bodies/" + std::to_string(k) + "/density"}}});
     }
     design.objective = {{"objective", 1, 1, quantities.front()}};
     for (size_t q = 1; q < quantities.size(); ++q) {

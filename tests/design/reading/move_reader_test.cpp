@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Moves of joints, springs, motors, loads, gravity, friction and turns as a design file writes them.
-#include "fettle/design/reading/mechanism_move_reader.hpp"
+#include "fettle/design/reading/move_reader.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/tests/design/small_design.hpp"
 
-namespace fettle::design::reading::mechanism_move_reader_test {
+namespace fettle::design::reading::move_reader_test {
 
 namespace {
 
 using namespace fettle::tests::design_support;
-using core::model::Origin;
 using description::Move;
-using description::MoveTarget;
 
 const char* scene = R"({
   "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.1,
@@ -44,13 +42,18 @@ std::string design_of(const std::string& move, const std::string& unit) {
                 { "type": "energy", "of": "total" }] })";
 }
 
-Move read(const std::string& move, const std::string& unit) {
+std::vector<Move> read_all(const std::string& move, const std::string& unit) {
     const DesignFolder folder(design_of(move, unit), scene);
     const auto file = read_design(folder.design());
     if (!file) UNSCOPED_INFO(file.errors()[0].where << ": " << file.errors()[0].message);
     REQUIRE(file);
-    REQUIRE(file->design.parameters[0].moves.size() == 1);
-    return file->design.parameters[0].moves[0];
+    return file->design.parameters[0].moves;
+}
+
+Move read(const std::string& move, const std::string& unit) {
+    const std::vector<Move> moves = read_all(move, unit);
+    REQUIRE(moves.size() == 1);
+    return moves[0];
 }
 
 std::string refused(const std::string& move, const std::string& unit) {
@@ -65,41 +68,35 @@ constexpr double degree = 3.14159265358979323846 / 180;
 }  // namespace
 
 TEST_CASE("moves of a mechanism: what they move, and in which unit") {
-    const Move point = read(R"({ "joint": "hinge", "point_b": [1, 0, 2], "scale": 3, "offset": ["1mm", 0, 4] })", "mm");
-    CHECK(point.target == MoveTarget::point_b);
-    CHECK((point.part.list == Origin::List::joint && point.part.index == 0));
-    CHECK(point.direction == Vector3(1, 0, 2));
-    CHECK(point.scale == 3);
-    CHECK(point.position_offset.isApprox(Vector3(1e-3, 0, 4e-3), 1e-15));
+    const std::vector<Move> point = read_all(R"({ "joint": "hinge", "point_b": [1, 0, 2], "scale": 3, "offset": ["1mm", 0, 4] })", "mm");
+    REQUIRE(point.size() == 2);
+    CHECK((point[0].place == "/joints/0/point_b/0" && point[0].scale == 3 && point[0].offset == Approx(1e-3).epsilon(1e-15)));
+    CHECK((point[1].place == "/joints/0/point_b/2" && point[1].scale == 6 && point[1].offset == Approx(4e-3).epsilon(1e-15)));
     const Move stiffness = read(R"({ "spring": "across", "stiffness": true, "scale": 2, "offset": "1 N/mm" })", "N/m");
-    CHECK(stiffness.target == MoveTarget::stiffness);
-    CHECK((stiffness.part.list == Origin::List::spring && stiffness.part.index == 0));
+    CHECK(stiffness.place == "/springs/0/stiffness");
     CHECK((stiffness.scale == 2 && stiffness.offset == 1000));
-    CHECK(read(R"({ "damper": "dash", "damping": true })", "1").part.index == 1);
+    CHECK(read(R"({ "damper": "dash", "damping": true })", "1").place == "/springs/1/damping");
     // Of a parameter without unit the scale is in the target's: degrees, lengths of the file, SI.
     CHECK(read(R"({ "joint": "hinge", "lower_limit": true })", "1").scale == Approx(degree));
     CHECK(read(R"({ "joint": "slide", "rest": true })", "1").scale == Approx(1e-3));
-    CHECK(read(R"({ "joint": "pinion", "radius": true })", "mm").target == MoveTarget::ratio);
+    CHECK(read(R"({ "joint": "pinion", "radius": true })", "mm").place == "/joints/2/radius");
     CHECK(read(R"({ "joint": "hinge", "preload": true })", "N mm").scale == 1);
-    const Move value = read(R"({ "motor": "push", "value": 1 })", "Nm");
-    CHECK((value.target == MoveTarget::curve_value && value.entry == 1));
-    CHECK(read(R"({ "load": "pull", "force": [0, 1, 0] })", "N").target == MoveTarget::load_force);
-    CHECK(read(R"({ "gravity": [0, 0, -1] })", "m/s^2").target == MoveTarget::gravity);
+    CHECK(read(R"({ "motor": "push", "value": 1 })", "Nm").place == "/motors/0/curve/values/1");
+    CHECK(read(R"({ "load": "pull", "force": [0, 1, 0] })", "N").place == "/loads/0/force/1");
+    CHECK(read(R"({ "gravity": [0, 0, -1] })", "m/s^2").place == "/gravity/2");
     const Move pair = read(R"({ "materials": ["brass", "steel"], "mu": true, "scale": 0.5, "offset": 0.1 })", "1");
-    CHECK((pair.target == MoveTarget::pair_mu && pair.materials == std::vector<std::string>{"brass", "steel"}));
+    CHECK(pair.place == "/friction/pairs/0/mu");
     CHECK((pair.scale == 0.5 && pair.offset == 0.1));
-    CHECK(read(R"({ "material": "steel", "mu": true })", "1").target == MoveTarget::material_mu);
-    const Move own = read(R"({ "body": "rack", "mu": true })", "1");
-    CHECK((own.target == MoveTarget::body_mu && own.body == 1));
-    CHECK(read(R"({ "mu": true })", "1").target == MoveTarget::default_mu);
+    CHECK(read(R"({ "material": "steel", "mu": true })", "1").place == "/materials/steel/mu");
+    CHECK(read(R"({ "body": "rack", "mu": true })", "1").place == "/bodies/1/mu");
+    CHECK(read(R"({ "mu": true })", "1").place == "/friction/mu");
     const Move turn = read(R"({ "body": "rack", "turn": [1, 0, 0] })", "deg");
-    CHECK((turn.target == MoveTarget::turn && turn.body == 1 && turn.scale == 1));
-    CHECK(read(R"({ "body": "arm", "velocity": [1, 0, 0] })", "mm/s").target == MoveTarget::velocity);
+    CHECK((turn.place == "/bodies/1/turn/0" && turn.scale == 1));
+    CHECK(read(R"({ "body": "arm", "velocity": [1, 0, 0] })", "mm/s").place == "/bodies/0/linear_velocity/0");
     const Move dmin = read(R"({ "dmin": true, "scale": 2, "offset": 0.5 })", "mm");
-    CHECK((dmin.target == MoveTarget::dmin && dmin.scale == 2 && dmin.offset == Approx(5e-4)));
+    CHECK((dmin.place == "/contact/dmin" && dmin.scale == 2 && dmin.offset == Approx(5e-4)));
     const Move torque = read(R"({ "body": "rack", "torque": [0, 0, 2], "offset": [0, 0, "3 N mm"] })", "N mm");
-    CHECK((torque.target == MoveTarget::torque && torque.body == 1 && torque.direction == Vector3(0, 0, 2)));
-    CHECK(torque.position_offset.isApprox(Vector3(0, 0, 3e-3), 1e-15));
+    CHECK((torque.place == "/bodies/1/torque/2" && torque.scale == 2 && torque.offset == Approx(3e-3).epsilon(1e-15)));
 }
 
 TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong") {
@@ -122,4 +119,4 @@ TEST_CASE("moves of a mechanism that mean nothing are refused with what is wrong
     }
 }
 
-}  // namespace fettle::design::reading::mechanism_move_reader_test
+}  // namespace fettle::design::reading::move_reader_test

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/friction_moves.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/problem/design_problem.hpp"
 #include "fettle/tests/core/stepper/mechanism_models.hpp"
 
-namespace fettle::design::problem::friction_moves_test {
+namespace fettle::design::problem::moved_friction_test {
 
 namespace {
 
@@ -65,10 +64,8 @@ Design blocks() {
     design.scene.friction.materials = {{"steel", 0.4}};
     design.scene.friction.pairs = {{"wood", "steel", 0.25}};
     design.steps = 8;
-    design.parameters = {coefficient("pair", 0.25, {.target = MoveTarget::pair_mu, .materials = {"steel", "wood"}}),
-                         coefficient("material", 0.4, {.target = MoveTarget::material_mu, .materials = {"steel"}}),
-                         coefficient("body", 0.3, {.target = MoveTarget::body_mu, .body = 3, .scale = 2, .offset = -0.3}),
-                         coefficient("all others", 0.15, {.target = MoveTarget::default_mu})};
+    design.parameters = {coefficient("pair", 0.25, {"/friction/pairs/0/mu"}), coefficient("material", 0.4, {"/materials/steel/mu"}),
+                         coefficient("body", 0.3, {"/bodies/3/mu", 2, -0.3}), coefficient("all others", 0.15, {"/friction/mu"})};
     for (int body = 1; body < 5; ++body) design.constraints.push_back({std::to_string(body), {}, std::make_shared<EndX>(body)});
     return design;
 }
@@ -112,17 +109,15 @@ TEST_CASE("coefficients of friction: of a pair, a material, a body and all other
 }
 
 TEST_CASE("coefficients of friction that are nowhere are told", "[friction]") {
-    const auto reason = [](const Move& move) {
+    const auto reason = [](const std::string& place) {
         Design design = blocks();
-        design.parameters = {coefficient("p", 0.2, move)};
+        design.parameters = {coefficient("p", 0.2, {place})};
         const auto problem = DesignProblem::create(std::move(design));
         return problem ? std::string() : problem.errors()[0].message;
     };
-    CHECK(reason({.target = MoveTarget::material_mu, .materials = {"wood"}}) == "material `wood` has no `mu` in the scene");
-    CHECK(reason({.target = MoveTarget::pair_mu, .materials = {"wood", "brass"}}).find("no pair in the scene's `friction`") !=
-          std::string::npos);
-    CHECK(reason({.target = MoveTarget::pair_mu, .materials = {"wood"}}) == "two materials are wanted");
-    CHECK(reason({.target = MoveTarget::body_mu, .body = 7}) == "there is no body of that number");
+    CHECK(reason("/materials/wood/mu") == "material `wood` has no `mu` in the scene");
+    CHECK(reason("/friction/pairs/1/mu") == "there is no pair of materials of that number");
+    CHECK(reason("/bodies/7/mu") == "there is no body of that number");
 }
 
-}  // namespace fettle::design::problem::friction_moves_test
+}  // namespace fettle::design::problem::moved_friction_test
