@@ -5,6 +5,7 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"

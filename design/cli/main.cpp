@@ -19,6 +19,7 @@
 #include "fettle/design/cli/named_files.hpp"
 #include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/program_memory.hpp"
+#include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/session.hpp"
 
 namespace {

@@ -17,6 +17,13 @@ struct NamedFile {
     bool is_written = false;
 };
 
+/// What a command was given, and where meshes are looked for.
+struct GivenFiles {
+    std::string command;
+    std::vector<NamedFile> named;
+    std::vector<std::string> mesh_dirs;
+};
+
 /// Of the options that were given, those that name files.
 std::vector<NamedFile> named_files_of(const std::string& command, const std::vector<GivenValue>& given);
 

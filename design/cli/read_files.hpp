@@ -12,13 +12,6 @@
 
 namespace fettle::design::cli {
 
-/// What a command was given, and where meshes are looked for.
-struct GivenFiles {
-    std::string command;
-    std::vector<NamedFile> named;
-    std::vector<std::string> mesh_dirs;
-};
-
 /// Through all that is given: each file with, as its option, what names it ("rod.scene.json"). A file that cannot be read names none. Of a
 /// scene or a design every text counts that is a file's name there.
 std::vector<NamedFile> files_read(const GivenFiles& given);

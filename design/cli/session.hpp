@@ -9,7 +9,7 @@
 #include "fettle/design/cli/check_files.hpp"
 #include "fettle/design/cli/command_line.hpp"
 #include "fettle/design/cli/console.hpp"
-#include "fettle/design/cli/read_files.hpp"
+#include "fettle/design/cli/named_files.hpp"
 
 namespace fettle::design::cli {
 
