@@ -8,7 +8,6 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/contact/chord_deviation.hpp"
-#include "fettle/core/contact/conservative_advancement.hpp"
 
 namespace fettle::core::contact {
 
