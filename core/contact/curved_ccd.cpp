@@ -9,7 +9,6 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/contact/chord_deviation.hpp"
-#include "fettle/core/contact/conservative_advancement.hpp"
 
 namespace fettle::core::contact {
 

@@ -8,8 +8,8 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
+#include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {

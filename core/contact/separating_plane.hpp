@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Planes between the two primitives of a pair, and by how much for certain they separate it.
-/// Why that is certain, rounding included: conservative_advancement.hpp.
+/// Why that is certain, rounding included: linear_ccd.hpp.
 ///
 /// All works on the four differences of a vertex of the first primitive and one of the second at once, an array of four per axis: few
 /// square roots and divisions, in a layout that compilers turn into vector instructions (of the same bits).
@@ -21,7 +21,7 @@ Differences differences(PairType type, const PairVertices& x);
 struct RelativeMotion {
     PairType type;
     Differences d, e;  ///< at t = 0, 1
-    Vector3 largest;   ///< of |d|, |e| per axis: D_k of conservative_advancement.hpp
+    Vector3 largest;   ///< of |d|, |e| per axis: D_k of linear_ccd.hpp
     bool usable;       ///< nothing is NaN, nothing above 1e150: squares do not overflow
 
     Differences at(double t) const { return (1 - t) * d + t * e; }

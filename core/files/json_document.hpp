@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// A JSON file as something to read from without surprises: typed reading that collects every fault with its place (file and JSON
 /// pointer), unknown keys refused with the nearest known one, numbers finite, lengths in the file's unit or with a unit of their own.
-/// Used by every reader of JSON here and in design/. Writing is elsewhere; the JSON library stays inside the .cpp.
+/// Used by every reader of JSON here and in design/. Writing is elsewhere; the JSON library (nlohmann) stays inside the .cpp: it knows no
+/// places of values, collects no faults and knows no units, which is what is done by hand here.
 ///
 ///     auto document = JsonDocument::read(path);          // file_not_found, file_unreadable, parse (line and column), not_finite
 ///     if (!document) return document.errors();

@@ -5,6 +5,8 @@
 /// (no -ffast-math). Contract: finite coordinates (a NaN or infinity throws ContractError when the exact stage is reached).
 ///
 /// Used by mesh_validity.hpp and by tests. Distances are distance.hpp.
+/// By hand: CGAL's exact kernel brings GMP and MPFR, and is the judge of these in the tests; Shewchuk's are wrong where numbers underflow
+/// or overflow.
 #pragma once
 
 #include <array>

@@ -147,9 +147,12 @@ Result<double> metres_per_unit(const std::string& path, std::string_view extensi
     const auto text = files::read_file(path);
     if (!text) return text.errors();
     XmlReader xml(*text, path);
-    const bool good = xml.next();
-    if (!good) return xml.errors().empty() ? Errors{{ErrorCode::parse, path, "is no AMF file: it has no XML element"}} : xml.errors();
-    const std::string unit = xml.attribute("unit").value_or("millimeter");
+    std::string unit;
+    xml.read([&] {
+        unit = xml.attribute("unit").value_or("millimeter");
+        xml.stop();
+    });
+    if (!xml.errors().empty()) return xml.errors();
     for (const auto& [name, metres] : {std::pair{"millimeter", 1e-3}, {"inch", 0.0254}, {"feet", 0.3048}, {"meter", 1.0}, {"micron", 1e-6}})
         if (unit == name) return metres;
     return Error{ErrorCode::out_of_range, xml.where(), "the unit `" + unit + "` must be millimeter, inch, feet, meter or micron"};

@@ -41,7 +41,7 @@ std::string mtl_text(const std::vector<MeshPart>& parts);
 
 /// 3MF (core specification 1.3): an object for each part, with its name and colour, in its own frame, and a build item that places it. A
 /// mesh that is no closed surface goes in as a `surface`, which slicers do not fill.
-/// Errors: out_of_range (zip_writer.hpp); mesh_invalid (no part has a triangle).
+/// Errors: mesh_invalid (no part has a triangle).
 Result<std::string> threemf_bytes(const std::vector<MeshPart>& parts);
 
 }  // namespace fettle::core::mesh_files

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Wavefront OBJ: v, f, l, p, o, g; appearance is passed over, free-form surfaces are refused.
+// By hand: assimp, as Debian has it, keeps float32 coordinates and does not say in which line a fault is.
 #include <algorithm>
 #include <array>
 #include <string>

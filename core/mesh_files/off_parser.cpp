@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Object File Format: [ST][C][N]OFF in text. One vertex and one face a line; what follows them on the line (normals, colours) is passed
 // over.
+// By hand: assimp, as Debian has it, keeps float32 coordinates and does not say in which line a fault is.
 #include <string>
 
 #include "fettle/core/files/text_lines.hpp"

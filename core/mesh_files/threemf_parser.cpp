@@ -86,10 +86,10 @@ private:
             const auto text = unpacked("_rels/.rels");
             if (!text) return text.errors();
             XmlReader xml(*text, where_ + "/_rels/.rels");
-            while (xml.next()) {
-                if (!xml.opens() || xml.name() != "Relationship") continue;
+            xml.read([&] {
+                if (!xml.opens() || xml.name() != "Relationship") return;
                 if (xml.attribute("Type").value_or("").ends_with("/3dmodel")) found = part_name(xml.attribute("Target").value_or(""));
-            }
+            });
             if (!xml.errors().empty()) return xml.errors();
         }
         if (!archive_.has(found)) return Error{ErrorCode::parse, where_, "is not a 3MF file (it has no model part)"};
@@ -114,8 +114,9 @@ private:
         XmlReader xml(*text, where_ + "/" + part);
         Object* object = nullptr;
         bool seen_model = false;
-        while (errors_.empty() && xml.next()) {
-            if (!xml.opens()) continue;
+        xml.read([&] {
+            if (!errors_.empty()) return xml.stop();
+            if (!xml.opens()) return;
             const std::string_view name = xml.name();
             if (!seen_model && name != "model") xml.fail(ErrorCode::parse, "the first element is not a 3MF <model>");
             if (name == "model" && !std::exchange(seen_model, true)) read_model(xml);
@@ -123,10 +124,10 @@ private:
             if (name == "vertex" && object != nullptr) object->vertices.push_back(vertex(xml));
             if (name == "triangle" && object != nullptr) object->triangles.push_back(triangle(xml));
             if (name == "component" && object != nullptr) object->components.push_back(component(xml, part));
-            if (name != "item" || !is_root) continue;
+            if (name != "item" || !is_root) return;
             build_.push_back(component(xml, part));
             if (build_.size() > most_items) xml.fail(ErrorCode::out_of_range, "the build has more than 10,000 items; export in parts");
-        }
+        });
         if (!seen_model && xml.errors().empty()) xml.fail(ErrorCode::parse, "has no <model>");
         errors_.insert(errors_.end(), xml.errors().begin(), xml.errors().end());
     }
@@ -134,11 +135,11 @@ private:
     void read_model(XmlReader& xml) {
         constexpr std::array<std::pair<std::string_view, double>, 6> units = {
             {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254}, {"foot", 0.3048}, {"meter", 1}}};
-        const std::string unit = xml.attribute("unit").value_or("millimeter");
+        const std::string_view unit = xml.attribute("unit").value_or("millimeter");
         const auto known = std::find_if(units.begin(), units.end(), [&](const auto& entry) { return entry.first == unit; });
         if (known == units.end()) {
-            errors_.push_back(
-                {ErrorCode::out_of_range, where_, "unit `" + unit + "` must be micron, millimeter, centimeter, inch, foot or meter"});
+            errors_.push_back({ErrorCode::out_of_range, where_,
+                               "unit `" + std::string(unit) + "` must be micron, millimeter, centimeter, inch, foot or meter"});
         } else if (mesh_.metres_per_unit > 0 && mesh_.metres_per_unit != known->second) {
             errors_.push_back({ErrorCode::unsupported, where_, "its parts have different units; export with one"});
         } else {
@@ -149,32 +150,34 @@ private:
 
     /// A file says which extensions are needed to understand it: of those that change the shape only p:path is read.
     void check_required_extensions(XmlReader& xml) {
-        const std::string required = xml.attribute("requiredextensions").value_or("");
+        const std::string_view required = xml.attribute("requiredextensions").value_or("");
         std::vector<std::string_view> prefixes;
         files::TextLines lines(required);
         if (!lines.next(prefixes)) return;
         for (const std::string_view prefix : prefixes) {
-            const std::string space = xml.attribute("xmlns:" + std::string(prefix)).value_or(std::string(prefix));
+            const std::string_view space = xml.attribute("xmlns:" + std::string(prefix)).value_or(prefix);
             const bool known = space.find("/production/") != std::string::npos || space.find("/material/") != std::string::npos;
             if (!known)
-                xml.fail(ErrorCode::unsupported, "the extension " + space + " of 3MF is needed to read this file; export without it");
+                xml.fail(ErrorCode::unsupported,
+                         "the extension " + std::string(space) + " of 3MF is needed to read this file; export without it");
         }
     }
 
     Object* start_object(XmlReader& xml, const std::string& part) {
-        const auto id = xml.attribute("id");
-        if (!id) xml.fail(ErrorCode::parse, "an <object> needs an `id`");
-        Object& object = objects_[{part, id.value_or("")}];
-        if (!object.where.empty()) xml.fail(ErrorCode::inconsistent, "the object id " + id.value_or("") + " stands twice");
+        const bool has_id = xml.attribute("id").has_value();
+        const std::string id(xml.attribute("id").value_or(""));
+        if (!has_id) xml.fail(ErrorCode::parse, "an <object> needs an `id`");
+        Object& object = objects_[{part, id}];
+        if (!object.where.empty()) xml.fail(ErrorCode::inconsistent, "the object id " + id + " stands twice");
         object.where = xml.where();
         object.name = xml.attribute("name").value_or("");
-        if (object.name.empty()) object.name = "Object_" + id.value_or("");
+        if (object.name.empty()) object.name = "Object_" + id;
         object.support = xml.attribute("type").value_or("model").ends_with("support");
         return &object;
     }
 
     static std::optional<double> number(XmlReader& xml, std::string_view key) {
-        const auto text = xml.raw_attribute(key);
+        const auto text = xml.attribute(key);
         const auto value = text ? files::parsed_number(*text) : std::nullopt;
         if (!value)
             xml.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` of a <" + std::string(xml.name()) + "> is no number");
@@ -191,7 +194,7 @@ private:
         geometry::Triangle t{};
         constexpr std::array<std::string_view, 3> keys{"v1", "v2", "v3"};
         for (std::size_t k = 0; k < 3; ++k) {
-            const int index = files::parsed_integer(xml.raw_attribute(keys[k]).value_or("")).value_or(-1);
+            const int index = files::parsed_integer(xml.attribute(keys[k]).value_or("")).value_or(-1);
             if (index < 0) xml.fail(ErrorCode::parse, "the attribute `" + std::string(keys[k]) + "` of a <triangle> is no vertex index");
             t[k] = std::max(index, 0);
         }
@@ -202,7 +205,7 @@ private:
     Component component(XmlReader& xml, const std::string& part) {
         Component out;
         out.where = xml.where();
-        out.object = {part, xml.attribute("objectid").value_or("")};
+        out.object = {part, std::string(xml.attribute("objectid").value_or(""))};
         for (const std::string_view key : xml.attribute_names()) {
             if (!key.ends_with(":path")) continue;
             out.object.first = part_name(xml.attribute(key).value_or(""));

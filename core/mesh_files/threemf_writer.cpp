@@ -6,7 +6,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
-#include "fettle/core/mesh_files/zip_writer.hpp"
+#include "fettle/core/mesh_files/zip_archive.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

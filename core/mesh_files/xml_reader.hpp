@@ -1,39 +1,45 @@
 // SPDX-License-Identifier: MIT
-/// A small pull parser of XML that may come from anywhere: elements, attributes, the five predefined entities and character references;
-/// text between elements is passed over. UTF-8. A document type (and with it every entity of a file's own) is refused. For 3MF.
+/// Reads XML that may come from anywhere, by expat: elements and attributes; text between elements is passed over. What is not well formed
+/// is refused, and so is a document type (and with it every entity of a file's own), nesting deeper than 100, more than 100 attributes in a
+/// tag, and a tag, comment or the like of more than a megabyte, so that reading takes linear time. For 3MF, AMF and URDF.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 
+struct XML_ParserStruct;
+
 namespace fettle::core::mesh_files {
 
-/// Walks over the tags of a text, which outlives it:
+/// Visits the tags of a text:
 ///
-///     while (xml.next()) if (xml.opens() && xml.name() == "vertex") x = xml.attribute("x");
+///     xml.read([&] { if (xml.opens() && xml.name() == "vertex") x = xml.attribute("x"); });
 ///     if (!xml.errors().empty()) ...
 ///
-/// A tag that closes itself opens and closes: two visits.
+/// A tag that closes itself opens and closes: two visits. `name` and what is said of attributes hold within a visit.
 class XmlReader {
 public:
-    XmlReader(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
+    /// @param text  Outlives this object. @param where  The path, for messages.
+    XmlReader(std::string_view text, std::string where);
 
-    /// False at the end, and at a fault.
-    bool next();
+    /// To the end, or to the first fault, that of a visit included. Contract: once.
+    void read(const std::function<void()>& visit);
+    /// Within a visit: this was the last one.
+    void stop();
+
     bool opens() const { return opens_; }            ///< else this is an end tag
     std::string_view name() const { return name_; }  ///< of the element, without its prefix ("p:item": "item")
     int depth() const { return depth_; }             ///< of the element, the root's is 1
 
-    /// By its full name ("p:path"), entities resolved.
-    std::optional<std::string> attribute(std::string_view name) const;
-    /// The same as it stands, for numbers.
-    std::optional<std::string_view> raw_attribute(std::string_view name) const;
+    /// By its full name ("p:path").
+    std::optional<std::string_view> attribute(std::string_view name) const;
     /// Full names, in order.
     std::vector<std::string_view> attribute_names() const;
 
@@ -43,24 +49,19 @@ public:
     const Errors& errors() const { return errors_; }
 
 private:
-    struct Attribute {
-        std::string_view name, value;
-    };
-    bool skip_to_tag();
-    bool read_attributes();
-    void skip_blanks();
-    std::string_view word();
-    bool fault(const std::string& message);
+    struct Handlers;
+    void take(const char* name, const char** attributes);
+    void fault(const std::string& message) { fail(ErrorCode::parse, "not valid XML: " + message); }
 
     std::string_view text_;
     std::string where_;
-    std::size_t at_ = 0, tag_ = 0;
-    bool opens_ = false, closes_itself_ = false, known_as_utf8_ = false;
-    mutable std::size_t counted_to_ = 0, lines_counted_ = 0;  ///< new lines before a place in the text
-    int depth_ = 0;
+    std::shared_ptr<XML_ParserStruct> parser_;
+    const std::function<void()>* visit_ = nullptr;
+    std::exception_ptr thrown_;  ///< by a visit: past expat, which is written in C
+    bool opens_ = false, stopped_ = false;
+    int depth_ = 0, open_ = 0;
     std::string_view name_;
-    std::vector<std::string_view> open_;  ///< full names of the elements that are open
-    std::vector<Attribute> attributes_;
+    const char** attributes_ = nullptr;  ///< name, value, name, value, ..., null
     Errors errors_;
 };
 

@@ -1,160 +1,121 @@
 // SPDX-License-Identifier: MIT
-// Names and numbers of fields: APPNOTE.TXT (PKWARE), sections 4.3.7, 4.3.12 to 4.3.16 and 4.5.3.
+// libzip's functions are loaded where they are first called (core/base/shared_library.hpp): it brings a library of encryption with it.
 #include "fettle/core/mesh_files/zip_archive.hpp"
 
-#include <zlib.h>
+#include <zip.h>
 
-#include <algorithm>
-#include <limits>
-#include <optional>
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/shared_library.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {
 
-constexpr std::size_t end_size = 22, end64_locator_size = 20, end64_size = 56, central_size = 46, local_size = 30;
-constexpr std::uint32_t end_mark = 0x06054b50, end64_locator_mark = 0x07064b50, end64_mark = 0x06064b50, central_mark = 0x02014b50,
-                        local_mark = 0x04034b50;
-constexpr std::uint64_t in_zip64 = 0xffffffffu;  // a field of 32 bits that says: look in the zip64 extra field
+/// Each is called ZIP(x) with its name, without its "zip_".
+// clang-format off
+#define FETTLE_ZIP_FUNCTIONS(ZIP)                                                                                          \
+    ZIP(close) ZIP(discard) ZIP(fclose) ZIP(file_add) ZIP(file_set_dostime) ZIP(fopen_index) ZIP(fread) ZIP(name_locate)    \
+    ZIP(open_from_source) ZIP(set_file_compression) ZIP(source_buffer) ZIP(source_buffer_create) ZIP(source_close)          \
+    ZIP(source_free) ZIP(source_keep) ZIP(source_open) ZIP(source_read) ZIP(source_stat) ZIP(stat_index)
+// clang-format on
 
-/// Little-endian numbers; 0 beyond the end, so that a cut archive fails a test further on instead of being read out of bounds.
-class Fields {
-public:
-    explicit Fields(std::string_view bytes) : bytes_(bytes) {}
-    std::uint64_t number(std::uint64_t at, unsigned size) const {
-        std::uint64_t out = 0;
-        for (unsigned i = size; i-- > 0;) out = out << 8 | (at + i < bytes_.size() ? static_cast<unsigned char>(bytes_[at + i]) : 0);
-        return out;
-    }
-    bool holds(std::uint64_t at, std::uint64_t size) const { return at <= bytes_.size() && size <= bytes_.size() - at; }
-    std::string_view part(std::uint64_t at, std::uint64_t size) const {
-        return holds(at, size) ? bytes_.substr(at, size) : std::string_view{};
-    }
-
-private:
-    std::string_view bytes_;
+struct ZipLibrary {
+#define FETTLE_ZIP_MEMBER(function) decltype(&zip_##function) function;
+    FETTLE_ZIP_FUNCTIONS(FETTLE_ZIP_MEMBER)
+#undef FETTLE_ZIP_MEMBER
 };
 
-struct Directory {
-    std::uint64_t offset = 0, entries = 0;
-};
-
-/// From the end record, which stands last but for a comment of at most 65535 bytes, or the zip64 one that a locator before it points to.
-std::optional<Directory> find_directory(std::string_view bytes) {
-    const Fields fields(bytes);
-    if (bytes.size() < end_size) return std::nullopt;
-    const std::size_t last = bytes.size() - end_size, lowest = last > 65535 ? last - 65535 : 0;
-    for (std::size_t at = last + 1; at-- > lowest;) {
-        if (fields.number(at, 4) != end_mark) continue;
-        Directory out{fields.number(at + 16, 4), fields.number(at + 10, 2)};
-        if (at < end64_locator_size || fields.number(at - end64_locator_size, 4) != end64_locator_mark) return out;
-        const std::uint64_t end64 = fields.number(at - end64_locator_size + 8, 8);
-        if (!fields.holds(end64, end64_size) || fields.number(end64, 4) != end64_mark) return std::nullopt;
-        return Directory{fields.number(end64 + 48, 8), fields.number(end64 + 32, 8)};
-    }
-    return std::nullopt;
-}
-
-/// Inflates a raw deflate stream to exactly `size` bytes.
-std::optional<std::string> inflated(std::string_view packed, std::uint64_t size) {
-    if (packed.size() > std::numeric_limits<uInt>::max() || size >= std::numeric_limits<uInt>::max()) return std::nullopt;
-    z_stream stream{};
-    if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) return std::nullopt;
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-    stream.avail_in = static_cast<uInt>(packed.size());
-    std::string out, chunk(65536, '\0');  // memory is taken as bytes come, not as the directory claims
-    int code = Z_OK;
-    while (code == Z_OK && out.size() <= size) {
-        stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
-        stream.avail_out = static_cast<uInt>(chunk.size());
-        code = inflate(&stream, Z_NO_FLUSH);
-        out.append(chunk, 0, chunk.size() - stream.avail_out);
-    }
-    inflateEnd(&stream);
-    if (code != Z_STREAM_END || out.size() != size) return std::nullopt;
+ZipLibrary load_zip() {
+    ZipLibrary out{};
+#ifdef FETTLE_LIBZIP_NAME
+    const base::SharedLibrary library(FETTLE_LIBZIP_NAME, FETTLE_LIBZIP_PATH);
+#define FETTLE_ZIP_FIND(function) library.find("zip_" #function, out.function);
+#else
+#define FETTLE_ZIP_FIND(function) out.function = &zip_##function;
+#endif
+    FETTLE_ZIP_FUNCTIONS(FETTLE_ZIP_FIND)
+#undef FETTLE_ZIP_FIND
     return out;
 }
 
-Error damaged(const std::string& where, std::string_view what) {
-    return {ErrorCode::parse, where, "is damaged: " + std::string(what) + "; export or download it again"};
+const ZipLibrary& zip_library() {
+    static const ZipLibrary library = load_zip();
+    return library;
 }
+
+Error damaged(const std::string& where, const std::string& what) { return {ErrorCode::parse, where, "is a damaged zip archive: " + what}; }
 
 }  // namespace
 
-Result<ZipArchive> ZipArchive::open(std::string_view bytes, const std::string& where) {
-    const auto directory = find_directory(bytes);
-    if (!directory) return Error{ErrorCode::parse, where, "is not a zip archive"};
-    const Fields fields(bytes);
+Result<ZipArchive> ZipArchive::open(std::string_view bytes, const std::string& where) try {
+    const ZipLibrary& library = zip_library();
+    zip_source_t* source = library.source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
+    zip_t* opened = source == nullptr ? nullptr : library.open_from_source(source, ZIP_RDONLY, nullptr);
+    if (opened == nullptr) {
+        if (source != nullptr) library.source_free(source);
+        return Error{ErrorCode::parse, where, "is not a zip archive, or a damaged one"};
+    }
     ZipArchive archive;
-    archive.bytes_ = bytes;
     archive.where_ = where;
-    std::uint64_t at = directory->offset;
-    for (std::uint64_t i = 0; i < directory->entries; ++i) {
-        if (!fields.holds(at, central_size) || fields.number(at, 4) != central_mark) return damaged(where, "its directory is cut short");
-        Entry entry;
-        entry.flags = static_cast<unsigned>(fields.number(at + 8, 2));
-        entry.method = static_cast<unsigned>(fields.number(at + 10, 2));
-        entry.checksum = static_cast<std::uint32_t>(fields.number(at + 16, 4));
-        entry.packed_size = fields.number(at + 20, 4);
-        entry.size = fields.number(at + 24, 4);
-        entry.offset = fields.number(at + 42, 4);
-        const std::uint64_t name = fields.number(at + 28, 2), extra = fields.number(at + 30, 2), comment = fields.number(at + 32, 2);
-        entry.name = std::string(fields.part(at + central_size, name));
-        const Fields extras(fields.part(at + central_size + name, extra));
-        for (std::uint64_t field = 0; field + 4 <= extra; field += 4 + extras.number(field + 2, 2)) {
-            if (extras.number(field, 2) != 1) continue;  // zip64: only what did not fit, in this order
-            std::uint64_t value = field + 4;
-            for (std::uint64_t* number : {&entry.size, &entry.packed_size, &entry.offset}) {
-                if (*number != in_zip64) continue;
-                *number = extras.number(value, 8);
-                value += 8;
-            }
-        }
-        at += central_size + name + extra + comment;
-        archive.index_of_.try_emplace(entry.name, archive.entries_.size());
-        archive.entries_.push_back(std::move(entry));
-    }
+    archive.zip_ = {opened, library.discard};
     return archive;
+} catch (const base::MissingLibrary& missing) {
+    return Error{ErrorCode::file_not_found, where, std::string("cannot be unpacked: ") + missing.what()};
 }
 
-std::vector<std::string> ZipArchive::names() const {
-    std::vector<std::string> out;
-    for (const Entry& entry : entries_) out.push_back(entry.name);
-    return out;
-}
+bool ZipArchive::has(const std::string& name) const { return zip_library().name_locate(zip_.get(), name.c_str(), 0) >= 0; }
 
-bool ZipArchive::has(std::string_view name) const { return index_of_.find(name) != index_of_.end(); }
-
-Result<std::string_view> ZipArchive::packed(const Entry& entry) const {
-    const Fields fields(bytes_);
-    if (!fields.holds(entry.offset, local_size) || fields.number(entry.offset, 4) != local_mark)
-        return damaged(where_, "its part " + entry.name + " is not where the directory says");
-    const std::uint64_t start = entry.offset + local_size + fields.number(entry.offset + 26, 2) + fields.number(entry.offset + 28, 2);
-    if (!fields.holds(start, entry.packed_size)) return damaged(where_, "its part " + entry.name + " is cut short");
-    return fields.part(start, entry.packed_size);
-}
-
-Result<std::string> ZipArchive::unpacked(std::string_view name, std::uint64_t largest) const {
-    const auto found = index_of_.find(name);
-    if (found == index_of_.end()) return Error{ErrorCode::file_not_found, where_, "has no part " + std::string(name)};
-    const Entry* entry = &entries_[found->second];
-    if (entry->flags & 1) return Error{ErrorCode::unsupported, where_, "its part " + entry->name + " is encrypted"};
-    if (entry->method != 0 && entry->method != Z_DEFLATED)
-        return Error{ErrorCode::unsupported, where_, "its part " + entry->name + " is packed by another method than deflate"};
-    if (entry->size > largest) {
+Result<std::string> ZipArchive::unpacked(const std::string& name, std::uint64_t largest) const {
+    const ZipLibrary& library = zip_library();
+    const zip_int64_t found = library.name_locate(zip_.get(), name.c_str(), 0);
+    if (found < 0) return Error{ErrorCode::file_not_found, where_, "has no part " + name};
+    const auto index = static_cast<zip_uint64_t>(found);
+    const std::string part = "its part " + name;
+    zip_stat_t facts{};
+    if (library.stat_index(zip_.get(), index, 0, &facts) != 0) return damaged(where_, part + " is not where the directory says");
+    if (facts.encryption_method != ZIP_EM_NONE) return Error{ErrorCode::unsupported, where_, part + " is encrypted"};
+    if (facts.comp_method != ZIP_CM_STORE && facts.comp_method != ZIP_CM_DEFLATE)
+        return Error{ErrorCode::unsupported, where_, part + " is packed by another method than deflate"};
+    if (facts.size > largest) {
         return Error{ErrorCode::out_of_range, where_,
-                     "its part " + entry->name + " unpacks to " + std::to_string(entry->size) + " bytes, at most " +
-                         std::to_string(largest) + " are read"};
+                     part + " unpacks to " + std::to_string(facts.size) + " bytes, at most " + std::to_string(largest) + " are read"};
     }
-    const auto bytes = packed(*entry);
-    if (!bytes) return bytes.errors();
-    std::optional<std::string> text;
-    if (entry->method == Z_DEFLATED) text = inflated(*bytes, entry->size);
-    if (entry->method == 0 && bytes->size() == entry->size) text = std::string(*bytes);
-    const auto checksum = [](const std::string& of) {
-        return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(of.data()), of.size()));
-    };
-    if (!text || checksum(*text) != entry->checksum) return damaged(where_, "its part " + entry->name + " does not unpack to what it was");
-    return std::move(*text);
+    zip_file_t* file = library.fopen_index(zip_.get(), index, 0);
+    if (file == nullptr) return damaged(where_, part + " is not where the directory says");
+    std::string text, chunk(65536, '\0');  // memory is taken as bytes come, not as the directory claims
+    zip_int64_t count = 0;
+    while (text.size() <= facts.size && (count = library.fread(file, chunk.data(), chunk.size())) > 0)
+        text.append(chunk, 0, static_cast<std::size_t>(count));
+    library.fclose(file);  // at the end the checksum has been looked at
+    if (count != 0 || text.size() != facts.size) return damaged(where_, part + " does not unpack to what it was");
+    return text;
+}
+
+std::string zipped(const std::vector<ZipEntry>& entries) {
+    constexpr zip_uint16_t midnight = 0, first_of_1980 = (1 << 5) + 1;
+    const ZipLibrary& library = zip_library();
+    zip_source_t* target = library.source_buffer_create(nullptr, 0, 0, nullptr);
+    zip_t* archive = target == nullptr ? nullptr : library.open_from_source(target, ZIP_TRUNCATE, nullptr);
+    FETTLE_ASSERT(archive != nullptr, "libzip writes into memory");
+    library.source_keep(target);
+    bool good = true;
+    for (const ZipEntry& entry : entries) {
+        zip_source_t* contents = library.source_buffer(archive, entry.contents.data(), entry.contents.size(), 0);
+        const zip_int64_t index = library.file_add(archive, entry.name.c_str(), contents, ZIP_FL_ENC_UTF_8);
+        good = good && index >= 0;
+        if (!good) break;
+        const auto at = static_cast<zip_uint64_t>(index);
+        good = library.set_file_compression(archive, at, ZIP_CM_DEFLATE, 0) == 0 &&
+               library.file_set_dostime(archive, at, midnight, first_of_1980, 0) == 0;
+    }
+    zip_stat_t facts{};
+    good = good && library.close(archive) == 0 && library.source_stat(target, &facts) == 0 && library.source_open(target) == 0;
+    FETTLE_ASSERT(good, "libzip writes into memory");
+    std::string out(facts.size, '\0');
+    good = library.source_read(target, out.data(), out.size()) == static_cast<zip_int64_t>(out.size());
+    FETTLE_ASSERT(good, "libzip reads what it wrote");
+    library.source_close(target);
+    library.source_free(target);
+    return out;
 }
 
 }  // namespace fettle::core::mesh_files

@@ -66,12 +66,12 @@ std::vector<core::clearance::PairRequest> requests_of(const PairSelection& selec
     return requests;
 }
 
-struct Lengths {
+struct AskedLengths {
     std::optional<double> minimum, tolerance;
 };
 
-Result<Lengths> read_lengths(const ClearanceArguments& options) {
-    Lengths lengths;
+Result<AskedLengths> read_lengths(const ClearanceArguments& options) {
+    AskedLengths lengths;
     Errors errors;
     const auto read = [&](const std::string& text, const char* option, std::optional<double>& out) {
         if (text.empty()) return;
@@ -175,8 +175,8 @@ Errors try_files(const ClearanceArguments& options) {
 
 ClearanceFolder folder_of(const ClearanceArguments& options) { return {options.out, options.subject.path, options.no_report}; }
 
-int run_ranges(const ClearanceArguments& options, const Lengths& lengths, std::optional<Baseline> baseline, const CommonOptions& common,
-               Console& console) {
+int run_ranges(const ClearanceArguments& options, const AskedLengths& lengths, std::optional<Baseline> baseline,
+               const CommonOptions& common, Console& console) {
     if (!options.subject.more.empty())
         return console.input_errors({{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}});
     RangeQuestion question{options.subject.path, options.pairs,       lengths.tolerance, options.explain,
@@ -186,7 +186,7 @@ int run_ranges(const ClearanceArguments& options, const Lengths& lengths, std::o
 }
 
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
-    const Result<Lengths> lengths = read_lengths(options);
+    const Result<AskedLengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
     if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
     std::optional<Baseline> baseline;

@@ -210,7 +210,7 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
     add("See and pass on",
         {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
-    add("About the program", {add_ccd(program), add_completion(program), add_manual(program)});
+    add("About the program", {add_completion(program), add_manual(program)});
     return all;
 }
 

@@ -50,7 +50,6 @@ Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
 Command add_report(CommandLine& program, const CommonOptions& common);
 Command add_explore(CommandLine& program, const CommonOptions& common);
-Command add_ccd(CommandLine& program);
 
 /// From now on the first Ctrl-C asks the work to stop with what it has; a second one ends the program at once.
 void catch_interrupts();

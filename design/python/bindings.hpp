@@ -15,6 +15,5 @@ void bind_design(pybind11::module_& module);      ///< shapes, quantities, desig
 void bind_problem(pybind11::module_& module);     ///< DesignProblem
 void bind_studies(pybind11::module_& module);     ///< audits, optimisation
 void bind_exports(pybind11::module_& module);     ///< models out, pictures, reports
-void bind_for_tests(pybind11::module_& module);
 
 }  // namespace fettle::design::python

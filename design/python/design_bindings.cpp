@@ -34,8 +34,6 @@ reading::DesignReadOptions read_options(const std::vector<Path>& mesh_dirs, bool
     return {texts_of(mesh_dirs), allow_programs ? reading::Programs::allowed : reading::Programs::refused};
 }
 
-description::Design design_round_trip(description::Design design) { return with_formulas(std::move(design)); }
-
 }  // namespace
 
 void refuse_unit(const std::string& name) {
@@ -139,7 +137,6 @@ void bind_design(py::module_& module) {
         },
         py::arg("file"), py::arg("values"), py::arg("directory") = ".",
         "The design's file with other values of its parameters (as p of DesignProblem), to be written in that folder.");
-    module.def("as_library_has_it", &design_round_trip, py::arg("design"), "For tests.");
     module.def(
         "to_si", [](double number, const Unit& unit) { return core::base::to_si(number, unit); }, py::arg("number"), py::arg("unit"));
     module.def("from_si", &description::from_si, py::arg("si"), py::arg("unit"));

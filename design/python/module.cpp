@@ -23,5 +23,4 @@ PYBIND11_MODULE(_fettle, module) {
     python::bind_problem(module);
     python::bind_studies(module);
     python::bind_exports(module);
-    python::bind_for_tests(module);
 }

@@ -71,8 +71,6 @@ void bind_scene(py::module_& module) {
             return dimensions;
         },
         "{unit: its dimension}");
-    module.def(
-        "scene_round_trip", [](const scene::Scene& s) { return s; }, "As the library has it; for tests.");
 }
 
 }  // namespace fettle::design::python

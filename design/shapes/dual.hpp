@@ -3,6 +3,7 @@
 /// on it (mesh_builder.hpp); their Jacobian is exact up to rounding.
 ///   f(a, b):  gradient = df/da * a.gradient + df/db * b.gradient
 /// Comparisons look at the value only: a branch is differentiated on the side that was taken.
+/// By hand: Eigen's AutoDiffScalar is unsupported and makes expressions that dangle in such code; this is one page.
 #pragma once
 
 #include <cmath>

@@ -23,16 +23,16 @@ public:
 
     Result<Robot> parse() {
         bool seen_robot = false;
-        while (xml_.next()) {
+        xml_.read([&] {
             if (xml_.depth() == 1 && xml_.name() != "robot") xml_.fail(ErrorCode::parse, "the first element is not a URDF <robot>");
             if (xml_.depth() == 1 && xml_.opens()) {
                 seen_robot = true;
-                robot_.name = xml_.attribute("name").value_or("robot");
+                robot_.name = std::string(xml_.attribute("name").value_or("robot"));
             }
             if (xml_.depth() == 2) start_or_end();
             if (xml_.depth() > 2 && xml_.opens() && link_) read_in_link();
             if (xml_.depth() == 3 && xml_.opens() && joint_) read_in_joint();
-        }
+        });
         if (!seen_robot && xml_.errors().empty()) xml_.fail(ErrorCode::parse, "has no <robot>");
         if (!xml_.errors().empty()) return xml_.errors();
         return std::move(robot_);
@@ -42,7 +42,7 @@ private:
     void start_or_end() {
         link_ = joint_ = false;
         if (!xml_.opens()) return;
-        const std::string name = xml_.attribute("name").value_or("");
+        const std::string name = std::string(xml_.attribute("name").value_or(""));
         if (xml_.name() != "link" && xml_.name() != "joint") return;
         if (name.empty()) xml_.fail(ErrorCode::missing_key, "a <" + std::string(xml_.name()) + "> needs a `name`");
         if (const std::string fault = core::base::name_fault(name); !fault.empty())
@@ -57,7 +57,7 @@ private:
         }
         robot_.joints.emplace_back();
         robot_.joints.back().name = name;
-        robot_.joints.back().type = xml_.attribute("type").value_or("");
+        robot_.joints.back().type = std::string(xml_.attribute("type").value_or(""));
         const std::string& type = robot_.joints.back().type;
         if (std::find(joint_types.begin(), joint_types.end(), type) == joint_types.end())
             xml_.fail(ErrorCode::unsupported, "a joint of type \"" + type + "\"; " + core::files::did_you_mean(type, joint_types));
@@ -88,7 +88,7 @@ private:
             if (name == "cylinder") geometry.length = positive_number("length");
         } else if (name == "mesh") {
             geometry.kind = GeometryKind::mesh;
-            geometry.file = xml_.attribute("filename").value_or("");
+            geometry.file = std::string(xml_.attribute("filename").value_or(""));
             if (geometry.file.empty()) xml_.fail(ErrorCode::missing_key, "a <mesh> needs a `filename`");
             geometry.scale = vector("scale", Vector3::Ones());
         } else {
@@ -111,8 +111,8 @@ private:
     void read_in_joint() {
         Joint& joint = robot_.joints.back();
         const std::string_view name = xml_.name();
-        if (name == "parent") joint.parent = xml_.attribute("link").value_or("");
-        if (name == "child") joint.child = xml_.attribute("link").value_or("");
+        if (name == "parent") joint.parent = std::string(xml_.attribute("link").value_or(""));
+        if (name == "child") joint.child = std::string(xml_.attribute("link").value_or(""));
         if (name == "origin") joint.origin = origin();
         if (name == "axis") {
             joint.axis = vector("xyz", Vector3::UnitX());
@@ -128,7 +128,7 @@ private:
             joint.friction = number("friction").value_or(0);
         }
         if (name == "mimic") {
-            joint.mimics = xml_.attribute("joint").value_or("");
+            joint.mimics = std::string(xml_.attribute("joint").value_or(""));
             joint.multiplier = number("multiplier").value_or(1);
             joint.offset = number("offset").value_or(0);
         }
@@ -137,7 +137,7 @@ private:
     core::kinematics::Pose origin() { return {rotation_of_rpy(vector("rpy", Vector3::Zero())), vector("xyz", Vector3::Zero())}; }
 
     std::optional<double> number(std::string_view key) {
-        const auto text = xml_.raw_attribute(key);
+        const auto text = xml_.attribute(key);
         if (!text) return std::nullopt;
         const auto value = core::files::parsed_number(*text);
         if (!value) xml_.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` is no number");
@@ -153,7 +153,7 @@ private:
     }
 
     Vector3 vector(std::string_view key, const Vector3& otherwise) {
-        const auto text = xml_.raw_attribute(key);
+        const auto text = xml_.attribute(key);
         if (!text) return otherwise;
         std::vector<std::string_view> words;
         core::files::TextLines(*text).next(words);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What does a collision query cost, by each method? Public queries (../shared/ccd) where they are there, and random pairs that pass each
-// other closely, as candidates of a simulation do. Prints JSON; times are of this thread alone. Counts are checked before a time is
+// What does a collision query cost, by each method? With files of queries: their hits, misses, false alarms and times (ccd_files.hpp).
+// Without: public queries (../shared/ccd) where they are there, and random pairs that pass each other
+// closely, as candidates of a simulation do. Prints JSON; times are of this thread alone. Counts are checked before a time is
 // believed: no contact missed, no wrecking-ball query reported. Inclusion is the reference of advancement, the interval bound that of the
 // closed form.
 #include <algorithm>
@@ -10,14 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/design/cli/ccd_queries.hpp"
+#include "fettle/tests/benchmarks/ccd_files.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
 using namespace fettle;
 using namespace fettle::core::contact;
-using namespace fettle::design::cli;
+using namespace fettle::tests::support;
 
 namespace {
 
@@ -29,7 +31,7 @@ double thread_seconds() {
 
 std::vector<CcdQueries> read_folder(const std::string& folder) {
     std::vector<CcdQueries> queries;
-    const std::vector<std::string> files = find_ccd_query_files({tests::support::shared_file("ccd/" + folder)}).value();
+    const std::vector<std::string> files = find_ccd_query_files({shared_file("ccd/" + folder)}).value();
     for (const std::string& file : files) queries.push_back(read_ccd_queries(file).value());
     return queries;
 }
@@ -102,14 +104,11 @@ void print(const std::string& name, std::size_t queries, double time, double ref
 
 void linear_case(const std::string& folder) {
     const std::vector<LinearQuery> queries = linear_queries(folder);
-    LinearCcdOptions inclusion;
-    inclusion.method = LinearCcdMethod::inclusion;
     volatile bool sink = false;
-    const auto run = [&](const LinearQuery& q, const LinearCcdOptions& options) { sink = linear_ccd(q.type, q.t0, q.t1, 0, options).hit; };
     bool right = true;
     for (const LinearQuery& q : queries) right = right && (!*q.truth || linear_ccd(q.type, q.t0, q.t1, 0).hit);
-    const double time = microseconds(queries, [&](const LinearQuery& q) { run(q, {}); });
-    const double reference = microseconds(queries, [&](const LinearQuery& q) { run(q, inclusion); });
+    const double time = microseconds(queries, [&](const LinearQuery& q) { sink = linear_ccd(q.type, q.t0, q.t1, 0).hit; });
+    const double reference = microseconds(queries, [&](const LinearQuery& q) { sink = inclusion_ccd(q.type, q.t0, q.t1, 0).hit; });
     print(folder, queries.size(), time, reference, right);
 }
 
@@ -145,12 +144,13 @@ void distance_case(const std::vector<RigidQuery>& queries) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
+    if (count > 1) return fettle::tests::benchmarks::run_ccd_files(count, words);
     std::printf("[");
     const std::vector<RigidQuery> passing = passing_queries(2000);
     distance_case(passing);
     rigid_case("passing", passing, -1);
-    if (tests::support::has_shared_files()) {
+    if (has_shared_files()) {
         rigid_case("rigid/wrecking-ball", rigid_queries("rigid/wrecking-ball"), 0);
         rigid_case("rigid/kinematic", rigid_queries("rigid/kinematic"), 13);
         linear_case("sample-queries");

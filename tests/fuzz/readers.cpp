@@ -22,7 +22,6 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
-#include "fettle/design/cli/ccd_queries.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/expression.hpp"
@@ -33,6 +32,7 @@
 #include "fettle/design/studies/history.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 /// What a thread of TBB's that is still waiting for work holds at the end of the process is no leak.
@@ -178,7 +178,7 @@ void read_expression(std::string_view bytes) {
 }
 
 void read_ccd(std::string_view bytes) {
-    for (const char* name : {"a-vf.csv", "a.ccd.json"}) (void)design::cli::read_ccd_queries(scratch().write(name, bytes));
+    for (const char* name : {"a-vf.csv", "a.ccd.json"}) (void)support::read_ccd_queries(scratch().write(name, bytes));
 }
 
 void read_result(std::string_view bytes) {

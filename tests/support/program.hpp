@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Runs the fettle program from outside, as a user does: what it prints and its exit code. The build says where it is (definition
-/// FETTLE_PROGRAM of the tests' target); the environment variable FETTLE_PROGRAM names another.
+/// Runs the fettle program, or another, from outside, as a user does: what it prints and its exit code. The build says where fettle is
+/// (definition FETTLE_PROGRAM of the tests' target); the environment variable FETTLE_PROGRAM names another.
 #pragma once
 
 #include <sys/wait.h>
@@ -32,9 +32,8 @@ struct Answer {
 /// @param arguments    as a shell takes them.
 /// @param with_errors  stderr too, in `out`; dropped otherwise.
 /// @param before       what the shell does first: "ulimit -f 8;".
-inline Answer run(const std::string& arguments, bool with_errors = false, const std::string& before = {}) {
-    const char* elsewhere = std::getenv("FETTLE_PROGRAM");
-    const std::string program = elsewhere != nullptr ? elsewhere : FETTLE_PROGRAM;
+inline Answer run_program(const std::string& program, const std::string& arguments, bool with_errors = false,
+                          const std::string& before = {}) {
     const std::string command = before + "'" + program + "' " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null") + " </dev/null";
     Answer answer;
     FILE* pipe = ::popen(command.c_str(), "r");
@@ -44,6 +43,11 @@ inline Answer run(const std::string& arguments, bool with_errors = false, const 
     const int status = ::pclose(pipe);
     answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return answer;
+}
+
+inline Answer run(const std::string& arguments, bool with_errors = false, const std::string& before = {}) {
+    const char* elsewhere = std::getenv("FETTLE_PROGRAM");
+    return run_program(elsewhere != nullptr ? elsewhere : FETTLE_PROGRAM, arguments, with_errors, before);
 }
 
 }  // namespace fettle::tests::support

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The start of a mechanism forwards, which shares nothing with the adjoint but the measures: they agree.
-#include "fettle/adjoint/model/mechanism_start_tangent.hpp"
+#include "fettle/tests/adjoint/model/mechanism_start_tangent.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

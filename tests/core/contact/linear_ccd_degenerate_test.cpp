@@ -6,6 +6,7 @@
 
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 
 namespace fettle::core::contact::linear_ccd_degenerate_test {
 
@@ -96,13 +97,9 @@ TEST_CASE("linear CCD decides each kind of degenerate pair, at every size and pl
                 PairVertices t0 = c.t0, t1 = c.t1;
                 for (PairVertices* x : {&t0, &t1})
                     for (Vector3& v : *x) v = scale * (v + offset);
-                for (const LinearCcdMethod method : {LinearCcdMethod::conservative_advancement, LinearCcdMethod::inclusion}) {
-                    LinearCcdOptions options;
-                    options.method = method;
-                    options.tolerance = 1e-4 * scale;
-                    options.max_iterations = 100'000;
-                    CAPTURE(scale, offset.x(), method == LinearCcdMethod::inclusion);
-                    const LinearCcdResult r = linear_ccd(c.type, t0, t1, 0, options);
+                for (const auto ccd : {&linear_ccd, &tests::support::inclusion_ccd}) {
+                    CAPTURE(scale, offset.x(), ccd == &linear_ccd);
+                    const LinearCcdResult r = ccd(c.type, t0, t1, 0, {1e-4 * scale, 100'000});
                     CHECK(r.hit == c.hit);
                     if (r.hit && !tests::exact_distance_at_most(c.type, t0, t1, 0, 0)) CHECK(r.toi > 0);
                     CHECK((r.toi == 0 || !tests::exact_distance_at_most(c.type, t0, t1, r.toi * (1 - 0x1p-50), 0)));
@@ -116,13 +113,9 @@ TEST_CASE("linear CCD keeps a minimum separation on each kind of degenerate pair
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         for (const double dmin : {0x1p-30, 0x1p-10, 0.125}) {
-            for (const LinearCcdMethod method : {LinearCcdMethod::conservative_advancement, LinearCcdMethod::inclusion}) {
-                LinearCcdOptions options;
-                options.method = method;
-                options.tolerance = 1e-4;
-                options.max_iterations = 100'000;
-                CAPTURE(dmin, method == LinearCcdMethod::inclusion);
-                const LinearCcdResult r = linear_ccd(c.type, c.t0, c.t1, dmin, options);
+            for (const auto ccd : {&linear_ccd, &tests::support::inclusion_ccd}) {
+                CAPTURE(dmin, ccd == &linear_ccd);
+                const LinearCcdResult r = ccd(c.type, c.t0, c.t1, dmin, {1e-4, 100'000});
                 CHECK((r.hit || !c.hit));
                 // Nothing nearer than dmin before what is proven to be clear.
                 for (const double share : {0.0, 0.5, 1 - 0x1p-50}) {

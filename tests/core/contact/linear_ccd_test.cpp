@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 
 namespace fettle::core::contact::linear_ccd_test {
 
@@ -27,12 +27,8 @@ struct Tally {
     long hits = 0, false_negatives = 0, false_positives = 0, early_zero = 0, late = 0;
 };
 
-LinearCcdOptions advancement() { return {}; }
-LinearCcdOptions inclusion() {
-    LinearCcdOptions options;
-    options.method = LinearCcdMethod::inclusion;
-    options.max_iterations = 2000;
-    return options;
+LinearCcdResult by_inclusion(const Query& q, double dmin = 0, double tolerance = 1e-6) {
+    return fettle::tests::support::inclusion_ccd(q.type, q.t0, q.t1, dmin, {tolerance, 2000});
 }
 
 class Generator {
@@ -151,14 +147,12 @@ void count(const Query& q, bool truth, const LinearCcdResult& r, Tally& tally) {
 void check_random(int queries, bool degenerate, unsigned seed) {
     Generator generator(seed);
     Tally a, b;
-    LinearCcdOptions boxes = inclusion();
-    boxes.tolerance = 1e-3;
     for (int i = 0; i < queries; ++i) {
         const int range = 1 + i % 8;
         const Query q = degenerate ? generator.degenerate(range) : generator.grid(range);
         const bool truth = exact_linear_contact(q.type, q.t0, q.t1);
-        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, advancement()), a);
-        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, boxes), b);
+        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0), a);
+        count(q, truth, by_inclusion(q, 0, 1e-3), b);
     }
     CAPTURE(queries, degenerate);
     CHECK(a.hits > queries / 20);
@@ -179,8 +173,8 @@ void check_slivers(int queries, unsigned seed) {
     for (int i = 0; i < queries; ++i) {
         const Query q = generator.nearly_degenerate();
         const bool truth = exact_linear_contact(q.type, q.t0, q.t1);
-        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, advancement()), a);
-        if (i % 3 == 0) count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, inclusion()), b);
+        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0), a);
+        if (i % 3 == 0) count(q, truth, by_inclusion(q), b);
     }
     CHECK(a.hits > queries / 5);
     CHECK(a.false_positives + a.hits > queries - queries / 15);
@@ -242,16 +236,10 @@ TEST_CASE("linear CCD is the same at any scale and far from the origin") {
             // Offsets that keep every coordinate an exact double: the truth does not change.
             for (const double far : {0.0, 0x1p20, -0x1p40}) {
                 const Query moved = transformed(q, scale, Vector3(far, -far, far / 2));
-                LinearCcdOptions options = advancement();
-                options.tolerance = 1e-9 * scale;
-                const LinearCcdResult r = linear_ccd(moved.type, moved.t0, moved.t1, 0, options);
+                const LinearCcdResult r = linear_ccd(moved.type, moved.t0, moved.t1, 0, {1e-9 * scale});
                 tally.false_negatives += truth && !r.hit;
                 changed += truth != r.hit;
-                if (i % 3 == 0) {
-                    LinearCcdOptions other = inclusion();
-                    other.tolerance = 1e-3 * scale;
-                    tally.false_negatives += truth && !linear_ccd(moved.type, moved.t0, moved.t1, 0, other).hit;
-                }
+                if (i % 3 == 0) tally.false_negatives += truth && !by_inclusion(moved, 0, 1e-3 * scale).hit;
             }
         }
     }
@@ -275,8 +263,8 @@ TEST_CASE("linear CCD survives motion of 1e8 times the size") {
             q.t1[j] += stride;
         }
         const bool truth = exact_linear_contact(q.type, q.t0, q.t1);
-        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, advancement()), tally);
-        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0, inclusion()), tally);
+        count(q, truth, linear_ccd(q.type, q.t0, q.t1, 0), tally);
+        count(q, truth, by_inclusion(q), tally);
     }
     CHECK(tally.hits > 20);
     CHECK(tally.false_negatives == 0);
@@ -289,10 +277,9 @@ TEST_CASE("linear CCD with a minimum separation never reports it late") {
     for (int i = 0; i < 1500; ++i) {
         const Query q = i % 3 ? generator.grid(5) : generator.degenerate(5);
         const double dmin = std::ldexp(1.0, -generator.integer(1, 24));
-        for (const LinearCcdOptions& options : {advancement(), inclusion()}) {
-            const bool advancing = options.method == LinearCcdMethod::conservative_advancement;
+        for (const bool advancing : {true, false}) {
             if (!advancing && i % 5 != 0) continue;
-            const LinearCcdResult r = linear_ccd(q.type, q.t0, q.t1, dmin, options);
+            const LinearCcdResult r = advancing ? linear_ccd(q.type, q.t0, q.t1, dmin) : by_inclusion(q, dmin);
             hits += r.hit;
             // What is proven to be clear: exact distances at samples, the end of the proven time included.
             for (int k = 0; k < 8; ++k) {
@@ -300,7 +287,8 @@ TEST_CASE("linear CCD with a minimum separation never reports it late") {
                 if (t < r.toi || !r.hit) (r.hit ? late : missed) += exact_distance_at_most(q.type, q.t0, q.t1, t, dmin);
             }
             // What is reported is as close as the tolerance says.
-            if (advancing && r.hit) loose += !exact_distance_at_most(q.type, q.t0, q.t1, r.toi, dmin + options.tolerance * 1.0001);
+            if (advancing && r.hit)
+                loose += !exact_distance_at_most(q.type, q.t0, q.t1, r.toi, dmin + LinearCcdOptions().tolerance * 1.0001);
         }
     }
     CHECK(hits > 100);
@@ -333,7 +321,7 @@ TEST_CASE("linear CCD treats what is not a number as a hit") {
             t1[0][k] = bad;
             if (std::isnan(bad)) {
                 CHECK(linear_ccd(PairType::point_triangle, t0, t1, 0).hit);
-                CHECK(linear_ccd(PairType::point_triangle, t0, t1, 0, inclusion()).hit);
+                CHECK(by_inclusion({PairType::point_triangle, t0, t1}).hit);
             }
             CHECK(linear_ccd(PairType::point_triangle, t1, t0, 0).toi <= 1);
         }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/contact/conservative_advancement.hpp"
 #include "fettle/core/contact/contact_set.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/core/contact/inclusion_ccd.hpp"
 #include "fettle/core/contact/swept_pair.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::core::contact::not_finite_test {
@@ -72,7 +71,7 @@ TEST_CASE("collision queries hit at once where a vertex is not finite") {
         for (const PairType type : {PairType::point_triangle, PairType::edge_edge}) {
             CHECK(distance_lower_bound(type, bad) == 0);
             for (const auto& [t0, t1] : {std::pair(bad, apart), std::pair(apart, bad), std::pair(bad, bad)}) {
-                const LinearCcdResult advanced = conservative_advancement(type, t0, t1, 0), included = inclusion_ccd(type, t0, t1, 0, {});
+                const LinearCcdResult advanced = linear_ccd(type, t0, t1, 0), included = tests::support::inclusion_ccd(type, t0, t1, 0);
                 CHECK((advanced.hit && advanced.toi == 0));
                 CHECK((included.hit && included.toi == 0));
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 3MF by our own zip and XML readers: what programs write, and what nobody should.
+// 3MF: what programs write, and what nobody should.
 #include <zlib.h>
 
 #include <catch2/catch.hpp>
@@ -191,20 +191,34 @@ TEST_CASE("3MF: what a small file asks for has limits that are told, and takes l
     CHECK(only_error(whole).code == ErrorCode::out_of_range);
 }
 
-TEST_CASE("XML: a NUL, and a tag with too many attributes, are refused; lines are counted right in any order") {
-    XmlReader nul(std::string_view("<a></a>\0 garbage", 16), "x");
-    CHECK_FALSE(nul.next());
-    CHECK(contains(nul.errors().front().message, "NUL"));
+TEST_CASE("XML: what is not well formed, too deep or too long is refused; lines are counted right") {
+    const auto fault = [](std::string_view text) {
+        XmlReader xml(text, "x");
+        int visits = 0;
+        xml.read([&] { ++visits; });
+        CAPTURE(text.substr(0, 60));
+        REQUIRE(xml.errors().size() == 1);
+        CHECK(visits <= 100);
+        return xml.errors().front().message;
+    };
+    CHECK(contains(fault(std::string_view("<a></a>\0 garbage", 16)), "not valid XML"));
     std::string many = "<a";
     for (int i = 0; i < 101; ++i) many += " a" + std::to_string(i) + "=\"\"";
     many += "/>";
-    XmlReader attributes(many, "x");
-    CHECK_FALSE(attributes.next());
-    CHECK(contains(attributes.errors().front().message, "more than 100 attributes"));
+    CHECK(contains(fault(many), "more than 100 attributes"));
+    CHECK(contains(fault("<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"), "a document type is not read"));
+    CHECK(contains(fault("<a>&b;</a>"), "not valid XML"));
+    std::string deep;
+    for (int i = 0; i < 101; ++i) deep += "<a>";
+    CHECK(contains(fault(deep), "nested deeper than 100"));
+    CHECK(contains(fault("<a><!--" + std::string(40'000'000, 'x') + "--></a>"), "more than a megabyte"));
+    for (const char* broken :
+         {"", "a", "<a>", "<a></b>", "<a/><a/>", "<a b='1' b='2'/>", "<a b=1/>", "<a b='<'/>", "<a>\xff</a>", "<a b='\xc3'/>"})
+        CHECK(contains(fault(broken), "not valid XML"));
     XmlReader lines("<a>\n\n<b/>\n<c\nd='1'/></a>", "x");
     std::vector<std::string> places;
-    while (lines.next()) places.push_back(lines.where());
-    CHECK(places == std::vector<std::string>{"x:1", "x:3", "x:3", "x:4", "x:4", "x:5"});
+    lines.read([&] { places.push_back(lines.where()); });
+    CHECK(places == std::vector<std::string>{"x:1", "x:3", "x:3", "x:4", "x:5", "x:5"});
 }
 
 TEST_CASE("3MF: cut and damaged archives are read or refused, never out of bounds") {
@@ -225,7 +239,7 @@ TEST_CASE("3MF: cut and damaged archives are read or refused, never out of bound
         damaged[random() % damaged.size()] = static_cast<char>(random());
         XmlReader xml(damaged, "x");
         int tags = 0;
-        while (xml.next()) tags += xml.depth() > 0 ? 1 : 0;
+        xml.read([&] { tags += xml.depth() > 0 ? 1 : 0; });
         CHECK(tags < 100);
     }
 }

@@ -245,12 +245,12 @@ TEST_CASE("Picture: marker, legend and scale, as PNG and as SVG") {
     const std::string svg = svg_text(picture);
     core::mesh_files::XmlReader xml(svg, "svg");
     int paths = 0, texts = 0, circles = 0;
-    while (xml.next()) {
-        if (!xml.opens()) continue;
+    xml.read([&] {
+        if (!xml.opens()) return;
         paths += xml.name() == "path" ? 1 : 0;
         texts += xml.name() == "text" ? 1 : 0;
         circles += xml.name() == "circle" ? 1 : 0;
-    }
+    });
     CHECK(xml.errors().empty());
     CHECK(paths == 3);
     CHECK(texts == 5);

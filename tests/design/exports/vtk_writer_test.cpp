@@ -54,16 +54,17 @@ Decoded decoded(const std::string& bytes) {
     const std::string head = bytes.substr(0, marker) + "</VTKFile>";
     core::mesh_files::XmlReader xml(head, "vtu");
     Decoded out;
-    while (xml.next()) {
-        if (!xml.opens()) continue;
+    xml.read([&] {
+        if (!xml.opens()) return;
+        const auto attribute = [&](const char* name) { return std::string(xml.attribute(name).value()); };
         if (xml.name() == "Piece") {
-            out.points = std::stoi(*xml.attribute("NumberOfPoints"));
-            out.cells = std::stoi(*xml.attribute("NumberOfCells"));
+            out.points = std::stoi(attribute("NumberOfPoints"));
+            out.cells = std::stoi(attribute("NumberOfCells"));
         }
-        if (xml.name() != "DataArray") continue;
-        CHECK(xml.attribute("format") == "appended");
-        out.arrays[*xml.attribute("Name")] = inflated_array(bytes, appended + std::stoul(*xml.attribute("offset")));
-    }
+        if (xml.name() != "DataArray") return;
+        CHECK(attribute("format") == "appended");
+        out.arrays[attribute("Name")] = inflated_array(bytes, appended + std::stoul(attribute("offset")));
+    });
     CHECK(xml.errors().empty());
     return out;
 }

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import fettle
+import fettle_for_tests
 from conftest import EXAMPLES, Frustum, MeanHeight, box, tilted_plate
 from refusals_test import refused
 from simulation_test import falling_cube
@@ -227,7 +228,7 @@ def test_paths_of_any_kind(tmp_path, kind):
     assert len(fettle.read_exploration(at("explored.jsonl"))) == len(explored) == 1
     program = fettle.MeshProgram(["openscad", "-o", "{out}", kind("rod.scad")], directory=at("parts"))
     body = fettle.Body("rod", mesh=box(0.01, 0.01, 0.01), shape=fettle.ShapeSpec(program=program))
-    passed = fettle._fettle.scene_round_trip(fettle.Scene(path=at("a.scene.json"), bodies=[body]))
+    passed = fettle_for_tests.scene_round_trip(fettle.Scene(path=at("a.scene.json"), bodies=[body]))
     assert passed.path == str(tmp_path / "a.scene.json")
     assert passed.bodies[0].shape.program.command[-1] == "rod.scad" and passed.bodies[0].shape.program.directory == str(tmp_path / "parts")
     view = fettle.view(model)

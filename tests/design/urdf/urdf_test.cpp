@@ -335,8 +335,9 @@ TEST_CASE("URDF in: what is wrong is told") {
     CHECK(code("<robot name=\"r\"><link name=\"a\">" + box) == ErrorCode::parse);
     CHECK(code("<robot name=\"r\"><link/></robot>") == ErrorCode::missing_key);
     CHECK(code("<robot name=\"r\"><link name=\"a\xff\"/></robot>") == ErrorCode::parse);
-    CHECK(code("<robot name=\"r\"><link name=\"a&#27;[2J\"/></robot>") == ErrorCode::out_of_range);
-    CHECK(code("<robot name=\"r\"><link name=\"a&#xD800;\"/></robot>") == ErrorCode::mesh_invalid);  // no character: it stays as it is
+    CHECK(code("<robot name=\"r\"><link name=\"a&#27;[2J\"/></robot>") == ErrorCode::parse);  // no character of XML, nor the next
+    CHECK(code("<robot name=\"r\"><link name=\"a&#xD800;\"/></robot>") == ErrorCode::parse);
+    CHECK(code("<robot name=\"r\"><link name=\"a&#10;b\"/></robot>") == ErrorCode::out_of_range);
     CHECK(code(two("<joint name=\"j\" type=\"hinge\"><parent link=\"a\"/><child link=\"b\"/></joint>")) == ErrorCode::unsupported);
     CHECK(code(two("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>")) == ErrorCode::missing_key);
     CHECK(code(two("")) == ErrorCode::inconsistent);  // two roots

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/inclusion_ccd.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,31 +7,34 @@
 #include <queue>
 #include <vector>
 
-#include "fettle/core/contact/conservative_advancement.hpp"
-
-namespace fettle::core::contact {
+namespace fettle::tests::support {
 
 namespace {
 
-constexpr double rounding = 36 * 0x1p-52;
+using core::contact::LinearCcdOptions;
+using core::contact::LinearCcdResult;
+using core::contact::PairType;
+using core::contact::PairVertices;
+
+constexpr double inclusion_rounding = 36 * 0x1p-52;
 /// Halving stops here whatever the tolerance: middles of boxes stay exact.
 constexpr double least_width = 0x1p-50;
 
 /// A box of (t, u, v): lower corner and widths, all dyadic and exact.
-struct Box {
+struct ParameterBox {
     std::array<double, 3> low{0, 0, 0}, width{1, 1, 1};
     bool small = false;  // as far as the tolerance asks: not to be halved
 };
 
 /// Earliest first; among equals the smallest, so that the search dives.
-struct Later {
-    bool operator()(const Box& a, const Box& b) const {
+struct LaterBox {
+    bool operator()(const ParameterBox& a, const ParameterBox& b) const {
         if (a.low[0] != b.low[0]) return a.low[0] > b.low[0];
         return a.width[0] * a.width[1] * a.width[2] > b.width[0] * b.width[1] * b.width[2];
     }
 };
 
-struct Range {
+struct CornerRange {
     double low, high;
 };
 
@@ -55,17 +58,17 @@ public:
                 x_t1_[i][k] = std::ldexp(x_t1_[i][k], -exponent);
             }
         }
-        reach_ = std::ldexp(dmin, -exponent) * (1 + 0x1p-50) + rounding;
+        reach_ = std::ldexp(dmin, -exponent) * (1 + 0x1p-50) + inclusion_rounding;
         tolerance_ = std::ldexp(options.tolerance, -exponent);
         set_dimension_tolerances();
     }
 
     LinearCcdResult run() const {
         if (!finite_) return {true, 0};
-        std::priority_queue<Box, std::vector<Box>, Later> queue;
+        std::priority_queue<ParameterBox, std::vector<ParameterBox>, LaterBox> queue;
         add({}, queue);
         for (long boxes = 1; !queue.empty(); boxes += 2) {
-            const Box box = queue.top();
+            const ParameterBox box = queue.top();
             if (box.small || boxes > options_.max_iterations) return {true, box.low[0]};
             queue.pop();
             halve(box, queue);
@@ -76,8 +79,8 @@ public:
 private:
     /// Least and largest corner value on one axis. Rounding is monotone, so the extremes of a sum over all corners are the sums of each
     /// term's extremes, bit for bit: four ends instead of eight corners.
-    Range range_over(const Box& box, int k) const {
-        Range r{INFINITY, -INFINITY};
+    CornerRange range_over(const ParameterBox& box, int k) const {
+        CornerRange r{INFINITY, -INFINITY};
         const double u0 = box.low[1], u1 = u0 + box.width[1], v0 = box.low[2], v1 = v0 + box.width[2];
         for (const double t : {box.low[0], box.low[0] + box.width[0]}) {
             const auto at = [&](std::size_t i) { return (x_t1_[i][k] - x_t0_[i][k]) * t + x_t0_[i][k]; };
@@ -96,10 +99,10 @@ private:
     }
 
     enum class Verdict { clear, hit, halve };
-    Verdict judge(const Box& box) const {
+    Verdict judge(const ParameterBox& box) const {
         bool small_image = true, inside = true;
         for (int k = 0; k < 3; ++k) {
-            const Range r = range_over(box, k);
+            const CornerRange r = range_over(box, k);
             if (r.low > reach_ || r.high < -reach_) return Verdict::clear;
             small_image = small_image && r.high - r.low <= tolerance_;
             inside = inside && r.low >= -reach_ && r.high <= reach_;
@@ -136,19 +139,19 @@ private:
 
     /// Boxes that are clear never enter the queue.
     template <class Queue>
-    void add(Box box, Queue& queue) const {
+    void add(ParameterBox box, Queue& queue) const {
         const Verdict verdict = judge(box);
         box.small = verdict == Verdict::hit;
         if (verdict != Verdict::clear) queue.push(box);
     }
 
     template <class Queue>
-    void halve(const Box& box, Queue& queue) const {
+    void halve(const ParameterBox& box, Queue& queue) const {
         std::size_t k = 0;
         for (std::size_t i = 1; i < 3; ++i) {
             if (box.width[i] / dimension_tolerance_[i] > box.width[k] / dimension_tolerance_[k]) k = i;
         }
-        Box half = box;
+        ParameterBox half = box;
         half.width[k] = 0.5 * box.width[k];
         add(half, queue);
         half.low[k] += half.width[k];
@@ -161,7 +164,7 @@ private:
     const LinearCcdOptions& options_;
     PairVertices x_t0_, x_t1_;
     bool finite_ = true;
-    double reach_ = rounding, tolerance_ = 0;
+    double reach_ = inclusion_rounding, tolerance_ = 0;
     std::array<double, 3> dimension_tolerance_{1, 1, 1};
 };
 
@@ -191,4 +194,4 @@ LinearCcdResult inclusion_ccd(PairType type, const PairVertices& t0, const PairV
     return result;
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::tests::support

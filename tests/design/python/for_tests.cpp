@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// What tests of the Python package ask: the library's defaults of all records, and a design evaluated without passing through Python.
-#include "fettle/design/python/bindings.hpp"
+// The module `fettle_for_tests`: what the tests of the Python package ask the library beside it, with the package's own conversions:
+// records that pass through the library, its defaults of all of them, and a design evaluated without passing through Python.
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/studies_records.hpp"
 
-namespace fettle::design::python {
+namespace fettle::tests::python {
 
 namespace py = pybind11;
 
@@ -12,7 +12,7 @@ namespace {
 
 template <class T>
 void add_default(py::dict& defaults) {
-    defaults[Record<T>::python_name] = py::cast(T());
+    defaults[design::python::Record<T>::python_name] = py::cast(T());
 }
 
 py::dict defaults() {
@@ -82,23 +82,27 @@ py::dict defaults() {
     add_default<fettle::design::studies::QuantityRoughness>(all);
     add_default<fettle::design::studies::RoughnessReport>(all);
     add_default<fettle::design::studies::SweepAgreement>(all);
-    all["Relation"] = py::cast(description::Relation());
+    all["Relation"] = py::cast(design::description::Relation());
     return all;
 }
 
 py::tuple evaluate_file(const std::string& path, int steps) {
-    description::Design design = value_or_raise(reading::read_design(path)).design;
-    design.steps = steps;
-    const auto problem = value_or_raise(problem::DesignProblem::create(std::move(design)));
-    const problem::DesignEvaluation at = problem.evaluate(description::values_of(problem.design().parameters));
+    design::description::Design read = design::python::value_or_raise(design::reading::read_design(path)).design;
+    read.steps = steps;
+    const auto problem = design::python::value_or_raise(design::problem::DesignProblem::create(std::move(read)));
+    const design::problem::DesignEvaluation at = problem.evaluate(design::description::values_of(problem.design().parameters));
     return py::make_tuple(at.reason, at.objective, at.gradient);
 }
 
 }  // namespace
+}  // namespace fettle::tests::python
 
-void bind_for_tests(py::module_& module) {
+PYBIND11_MODULE(fettle_for_tests, module) {
+    using namespace fettle::tests::python;
+    using fettle::design::description::Design;
+    py::module_::import("fettle");
+    module.def("scene_round_trip", [](const fettle::core::scene::Scene& scene) { return scene; });
+    module.def("design_round_trip", [](const Design& design) { return fettle::design::python::with_formulas(design); });
     module.def("defaults", &defaults);
     module.def("evaluate_file", &evaluate_file, py::arg("path"), py::arg("steps"));
 }
-
-}  // namespace fettle::design::python

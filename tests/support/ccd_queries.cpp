@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/ccd_queries.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -12,7 +12,7 @@
 
 #include "fettle/core/files/json_document.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::tests::support {
 
 using core::files::JsonDocument;
 using core::files::JsonNode;
@@ -25,20 +25,20 @@ constexpr std::size_t rows_per_query = 8;
 
 bool ends_in(std::string_view text, std::string_view ending) { return text.size() >= ending.size() && text.ends_with(ending); }
 
-struct Row {
+struct CsvRow {
     Vector3 point;
     std::optional<bool> truth;
 };
 
 /// Comma-separated numbers of one line.
-class RowParser {
+class CsvRowParser {
 public:
-    RowParser(std::string_view line, std::string where) : rest_(line), where_(std::move(where)) {
+    CsvRowParser(std::string_view line, std::string where) : rest_(line), where_(std::move(where)) {
         while (!rest_.empty() && (rest_.back() == '\r' || rest_.back() == ' ' || rest_.back() == '\t')) rest_.remove_suffix(1);
     }
 
-    Result<Row> row() {
-        Row row;
+    Result<CsvRow> row() {
+        CsvRow row;
         for (int k = 0; k < 3; ++k) {
             const Result<double> coordinate = rational();
             if (!coordinate) return coordinate.errors();
@@ -102,7 +102,7 @@ std::optional<PairType> type_of(const fs::path& file) {
 }
 
 /// Adds row `row` (of the whole file, from 0) to its query.
-std::optional<Error> add_row(CcdQueries& queries, PairType type, std::size_t row, const Row& read, const std::string& where) {
+std::optional<Error> add_row(CcdQueries& queries, PairType type, std::size_t row, const CsvRow& read, const std::string& where) {
     if (row % rows_per_query == 0) {
         queries.linear.emplace_back();
         queries.linear.back().type = type;
@@ -158,7 +158,7 @@ Result<CcdQueries> read_linear(const std::string& path, const std::optional<Pair
     for (std::string line; std::getline(in, line);) {
         const std::string where = path + ":" + std::to_string(++line_number);
         if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-        const Result<Row> row = RowParser(line, where).row();
+        const Result<CsvRow> row = CsvRowParser(line, where).row();
         if (!row) return row.errors();
         if (const auto error = add_row(queries, *type, rows++, *row, where)) return *error;
     }
@@ -267,4 +267,4 @@ Result<std::vector<std::string>> find_ccd_query_files(const std::vector<std::str
     return files;
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::tests::support

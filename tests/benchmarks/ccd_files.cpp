@@ -1,33 +1,41 @@
 // SPDX-License-Identifier: MIT
-/// fettle ccd QUERIES...: continuous collision detection on ground-truth queries: hits, misses, false alarms, time.
+#include "fettle/tests/benchmarks/ccd_files.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
-#include <ctime>
-#include <memory>
+#include <cstdarg>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/ccd_queries.hpp"
-#include "fettle/design/cli/session.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::tests::benchmarks {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 using core::contact::CurvedCcdOptions;
 using core::contact::DeviationBound;
-using core::contact::LinearCcdMethod;
 using core::contact::PairType;
+using support::CcdQueries;
+using support::LinearQuery;
+using support::RigidQuery;
+
+constexpr int exit_done = 0, exit_missed = 1, exit_bad_input = 3;
 
 struct CcdArguments {
     std::vector<std::string> paths;
     std::string method = "default", minimum_separation = "0", tolerance, deviation = "closed-form", type;
+    bool json = false;
 };
 
 struct Settings {
     double dmin = 0;
+    bool by_inclusion = false;  // of linear queries
     CurvedCcdOptions ccd;
     std::optional<PairType> type;
 };
@@ -102,11 +110,11 @@ double query_time(Query&& query, double clock) {
 
 Tally run_file(const CcdQueries& queries, const Settings& settings, double clock, std::vector<Miss>& misses) {
     Tally tally;
+    const auto ccd = settings.by_inclusion ? &support::inclusion_ccd : &core::contact::linear_ccd;
     for (std::size_t i = 0; i < queries.linear.size(); ++i) {
         const LinearQuery& q = queries.linear[i];
         core::contact::LinearCcdResult r;
-        const double time =
-            query_time([&] { r = core::contact::linear_ccd(q.type, q.t0, q.t1, settings.dmin, settings.ccd.linear); }, clock);
+        const double time = query_time([&] { r = ccd(q.type, q.t0, q.t1, settings.dmin, settings.ccd.linear); }, clock);
         tally.add(r.hit, q.truth, time);
         if (q.truth.value_or(false) && !r.hit) misses.push_back({queries.path, i});
     }
@@ -133,11 +141,21 @@ Json tally_json(const Tally& tally) {
     return json;
 }
 
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
 std::string tally_text(const std::string& name, const Tally& tally) {
     const auto if_known = [&](long count) { return tally.with_truth > 0 ? std::to_string(count) : std::string("-"); };
-    return formatted("%8ld %8s %8ld %8s %8s %10.3f %10.3f %10.3f   %s\n", tally.queries, if_known(tally.truth_hits).c_str(), tally.hits,
+    return formatted("%8ld %8s %8ld %8s %8s %10.3f %10.3f %10.3f   ", tally.queries, if_known(tally.truth_hits).c_str(), tally.hits,
                      if_known(tally.false_negatives).c_str(), if_known(tally.false_positives).c_str(), tally.mean(), tally.median(),
-                     tally.worst(), name.c_str());
+                     tally.worst()) +
+           name + "\n";
 }
 
 /// A length with its unit, or a plain number of metres: the files know no unit.
@@ -159,8 +177,7 @@ Result<Settings> settings_of(const CcdArguments& options) {
         if (tolerance && !(*tolerance > 0)) errors.push_back({ErrorCode::out_of_range, "--tolerance", "a tolerance is greater than 0"});
         if (tolerance) settings.ccd.linear.tolerance = *tolerance;
     }
-    if (options.method == "inclusion") settings.ccd.linear.method = LinearCcdMethod::inclusion;
-    if (options.method == "conservative") settings.ccd.linear.method = LinearCcdMethod::conservative_advancement;
+    settings.by_inclusion = options.method == "inclusion";
     if (options.deviation == "interval") settings.ccd.deviation = DeviationBound::interval;
     if (!options.type.empty()) settings.type = options.type == "vertex-face" ? PairType::point_triangle : PairType::edge_edge;
     if (!errors.empty()) return errors;
@@ -174,69 +191,78 @@ Json misses_json(const std::vector<Miss>& misses) {
     return json;
 }
 
-int run_ccd(const CcdArguments& options, Console& console) {
+int input_errors(const Errors& errors, bool as_json) {
+    Json json{{"status", "error"}, {"errors", Json::array()}};
+    for (const Error& error : errors) {
+        json["errors"].push_back({{"where", error.where}, {"message", error.message}});
+        std::fprintf(stderr, "error: %s: %s\n", error.where.c_str(), error.message.c_str());
+    }
+    if (as_json) std::printf("%s\n", json.dump().c_str());
+    return exit_bad_input;
+}
+
+int run_ccd(const CcdArguments& options) {
     const Result<Settings> settings = settings_of(options);
-    if (!settings) return console.input_errors(settings.errors());
-    const Result<std::vector<std::string>> files = find_ccd_query_files(options.paths);
-    if (!files) return console.input_errors(files.errors());
+    if (!settings) return input_errors(settings.errors(), options.json);
+    const Result<std::vector<std::string>> files = support::find_ccd_query_files(options.paths);
+    if (!files) return input_errors(files.errors(), options.json);
     Tally all;
     std::vector<Miss> misses;
     Json rows = Json::array();
     std::string text = formatted("%8s %8s %8s %8s %8s %10s %10s %10s   %s\n", "queries", "truth", "hits", "missed", "false", "mean us",
                                  "median us", "worst us", "file");
     const double clock = clock_time();
-    int done = 0;
     for (const std::string& path : *files) {
-        const Result<CcdQueries> queries = read_ccd_queries(path, settings->type);
-        if (!queries) return console.input_errors(queries.errors());
+        const Result<CcdQueries> queries = support::read_ccd_queries(path, settings->type);
+        if (!queries) return input_errors(queries.errors(), options.json);
         const Tally tally = run_file(*queries, *settings, clock, misses);
         rows.push_back({{"file", path}, {"kind", queries->rigid.empty() ? "linear" : "rigid"}});
         rows.back().update(tally_json(tally));
         text += tally_text(path, tally);
         all.add(tally);
-        console.progress("querying", ++done, static_cast<int>(files->size()));
-        if (interrupted()) break;
     }
-    const bool whole = done == static_cast<int>(files->size());
     Json json;
-    json["status"] = !misses.empty() ? "missed" : whole ? "ok" : "interrupted";
+    json["status"] = misses.empty() ? "ok" : "missed";
     json.update(tally_json(all));
-    json["method"] = settings->ccd.linear.method == LinearCcdMethod::inclusion ? "inclusion" : "conservative";
+    json["method"] = settings->by_inclusion ? "inclusion" : "conservative";
     json["deviation"] = options.deviation;
     json["minimum_separation"] = settings->dmin;
     json["tolerance"] = settings->ccd.linear.tolerance;
     json["missed"] = misses_json(misses);
     json["files"] = rows;
     text += tally_text("in all", all);
-    for (const Miss& miss : misses) text += formatted("missed: %s, query %zu (from 0)\n", miss.file.c_str(), miss.query);
-    console.result(json, text);
-    if (!misses.empty()) return exit_violated;
-    return whole ? exit_done : exit_undecided;
+    for (const Miss& miss : misses) text += "missed: " + miss.file + ", query " + std::to_string(miss.query) + " (from 0)\n";
+    std::printf("%s\n", options.json ? json.dump().c_str() : text.c_str());
+    return misses.empty() ? exit_done : exit_missed;
 }
 
 }  // namespace
 
-Command add_ccd(CommandLine& program) {
-    CommandLine app = program.command("ccd", "Ground-truth collision queries: hits, misses, false alarms, time");
-    auto options = std::make_shared<CcdArguments>();
-    app.option("QUERIES", options->paths, "Files .csv (linear motion) and .json (rigid motion), or folders of them").required();
-    app.option("--method", options->method, "Of linear queries: conservative (advancement; the default), inclusion (bisection)")
-        .one_of({"default", "conservative", "inclusion"});
-    app.option("--minimum-separation", options->minimum_separation,
-               "Hit where the distance is at most this: 0.1mm, or a number in the files' own unit (default 0)");
-    app.option("--tolerance", options->tolerance, "How far above it a hit may be reported (default 1e-6)");
-    app.option("--deviation", options->deviation, "Of curve from chord in rigid queries: closed-form (default) or interval")
-        .one_of({"closed-form", "interval"});
-    app.option("--type", options->type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
-        .one_of({"vertex-face", "edge-edge"});
-    app.closing_words(
-        "Example:  fettle ccd shared/ccd/sample-queries --method inclusion --json\n"
-        "CSV: 8 rows a query, xn,xd,yn,yd,zn,zd[,truth], vertices at t0 and at t1; truth also from STEM_mma_bool.json beside the file or "
-        "in\n"
-        "../mma_bool. JSON: one pair of moving rigid bodies. The truth is that of contact, whatever --minimum-separation; counts of "
-        "misses\n"
-        "and false alarms are null (-) where a file has none. One thread. Exit code 1 if a contact was missed, 0 otherwise.");
-    return {app, [options](Console& console) { return run_ccd(*options, console); }};
+int run_ccd_files(int count, char** words) {
+    CLI::App app("Ground-truth collision queries: hits, misses, false alarms, time");
+    CcdArguments options;
+    app.add_option("QUERIES", options.paths, "Files .csv (linear motion) and .json (rigid motion), or folders of them")->required();
+    app.add_flag("--json", options.json, "One JSON object");
+    app.add_option("--method", options.method, "Of linear queries: conservative (advancement; the default), inclusion (bisection)")
+        ->check(CLI::IsMember({"default", "conservative", "inclusion"}));
+    app.add_option("--minimum-separation", options.minimum_separation,
+                   "Hit where the distance is at most this: 0.1mm, or a number in the files' own unit (default 0)");
+    app.add_option("--tolerance", options.tolerance, "How far above it a hit may be reported (default 1e-6)");
+    app.add_option("--deviation", options.deviation, "Of curve from chord in rigid queries: closed-form (default) or interval")
+        ->check(CLI::IsMember({"closed-form", "interval"}));
+    app.add_option("--type", options.type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
+        ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
+    app.footer(
+        "Example:  ccd_benchmark ../shared/ccd/sample-queries --method inclusion --json\n"
+        "CSV: 8 rows a query, xn,xd,yn,yd,zn,zd[,truth], vertices at t0 and at t1; truth also from STEM_mma_bool.json beside the file or\n"
+        "in ../mma_bool. JSON: one pair of moving rigid bodies. The truth is that of contact, whatever --minimum-separation; counts of\n"
+        "misses and false alarms are null (-) where a file has none. One thread. Exit code 1 if a contact was missed, 0 otherwise.");
+    try {
+        app.parse(count, words);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_bad_input;
+    }
+    return run_ccd(options);
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::tests::benchmarks

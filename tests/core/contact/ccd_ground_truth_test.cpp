@@ -4,22 +4,25 @@
 #include <string>
 
 #include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/design/cli/ccd_queries.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
+#include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-namespace fettle::design::cli::ccd_ground_truth_test {
+namespace fettle::core::contact::ccd_ground_truth_test {
 
-using namespace fettle::core::contact;
 using namespace fettle::tests;
+using support::CcdQueries;
+using support::LinearQuery;
+using support::RigidQuery;
 
 namespace {
 
 /// All queries of the files below a folder of ../shared/ccd.
 std::vector<CcdQueries> read_folder(const std::string& folder) {
     std::vector<CcdQueries> queries;
-    const std::vector<std::string> files = find_ccd_query_files({support::shared_file("ccd/" + folder)}).value();
-    for (const std::string& file : files) queries.push_back(read_ccd_queries(file).value());
+    const std::vector<std::string> files = support::find_ccd_query_files({support::shared_file("ccd/" + folder)}).value();
+    for (const std::string& file : files) queries.push_back(support::read_ccd_queries(file).value());
     return queries;
 }
 
@@ -35,13 +38,15 @@ bool comes_near(const LinearQuery& q, double toi, double dmin) {
            exact_distance_at_most(q.type, q.t0, q.t1, linear_ccd(q.type, q.t0, q.t1, dmin).toi, reach);
 }
 
+using LinearCcd = LinearCcdResult(PairType, const PairVertices&, const PairVertices&, double, const LinearCcdOptions&);
+
 /// Runs every query of the folder; `far` counts false positives beyond sqrt(3) (tolerance + dmin), `zero` tois of 0 of pairs that start
 /// apart.
-Tally run(const std::string& folder, const LinearCcdOptions& options, double dmin) {
+Tally run(const std::string& folder, LinearCcd* ccd, double dmin) {
     Tally t;
     for (const CcdQueries& file : read_folder(folder)) {
         for (const LinearQuery& q : file.linear) {
-            const LinearCcdResult r = linear_ccd(q.type, q.t0, q.t1, dmin, options);
+            const LinearCcdResult r = ccd(q.type, q.t0, q.t1, dmin, {});
             ++t.queries;
             REQUIRE(q.truth.has_value());
             t.hits += *q.truth;
@@ -65,7 +70,7 @@ void report(const std::string& name, const Tally& t) {
 TEST_CASE("advancement on the public linear queries") {
     FETTLE_NEEDS_SHARED();
     for (const std::string folder : {"sample-queries", "scalable"}) {
-        const Tally t = run(folder, {}, 0);
+        const Tally t = run(folder, linear_ccd, 0);
         report("advancement, " + folder, t);
         CHECK(t.queries > 4000);
         CHECK(t.false_negatives == 0);
@@ -77,7 +82,7 @@ TEST_CASE("advancement on the public linear queries") {
 TEST_CASE("advancement with a minimum separation on the public linear queries") {
     FETTLE_NEEDS_SHARED();
     for (const double dmin : {1e-8, 1e-3}) {
-        const Tally t = run("sample-queries", {}, dmin);
+        const Tally t = run("sample-queries", linear_ccd, dmin);
         CHECK(t.false_negatives == 0);
         CHECK(t.zero == 0);
         CHECK(t.far == 0);
@@ -86,10 +91,8 @@ TEST_CASE("advancement with a minimum separation on the public linear queries") 
 
 TEST_CASE("inclusion on the public linear queries", "[slow]") {
     FETTLE_NEEDS_SHARED();
-    LinearCcdOptions options;
-    options.method = LinearCcdMethod::inclusion;
     for (const std::string folder : {"sample-queries", "scalable"}) {
-        const Tally t = run(folder, options, 0);
+        const Tally t = run(folder, support::inclusion_ccd, 0);
         report("inclusion, " + folder, t);
         CHECK(t.false_negatives == 0);
         CHECK(t.zero == 0);
@@ -106,20 +109,6 @@ TEST_CASE("the public truth of linear queries is what exact arithmetic says", "[
         }
     }
     CHECK(different == 0);
-}
-
-TEST_CASE("curved CCD by the inclusion method on the public rigid queries") {
-    FETTLE_NEEDS_SHARED();
-    CurvedCcdOptions options;
-    options.linear.method = LinearCcdMethod::inclusion;
-    for (const std::string folder : {"wrecking-ball", "kinematic"}) {
-        for (const CcdQueries& file : read_folder("rigid/" + folder)) {
-            const RigidQuery& q = file.rigid.at(0);
-            const CurvedCcdResult r = curved_ccd(q.type, q.a, q.b, q.X, 0, options);
-            CHECK(r.hit == (folder == "kinematic"));
-            CHECK(r.toi > 0);
-        }
-    }
 }
 
 TEST_CASE("curved CCD on the public rigid queries") {
@@ -146,4 +135,4 @@ TEST_CASE("curved CCD on the public rigid queries") {
     }
 }
 
-}  // namespace fettle::design::cli::ccd_ground_truth_test
+}  // namespace fettle::core::contact::ccd_ground_truth_test

@@ -22,7 +22,7 @@
 #include "fettle/core/contact/linear_ccd.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::tests::support {
 
 using core::contact::PairType;
 using core::contact::PairVertices;
@@ -58,4 +58,4 @@ Result<CcdQueries> read_ccd_queries(const std::string& path, const std::optional
 /// truth (*_mma_bool.json) are passed over where they are named, too. Errors: file_not_found; a folder without any such file.
 Result<std::vector<std::string>> find_ccd_query_files(const std::vector<std::string>& paths);
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::tests::support

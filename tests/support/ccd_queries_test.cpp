@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/ccd_queries.hpp"
+#include "fettle/tests/support/ccd_queries.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -7,14 +7,14 @@
 #include "fettle/tests/support/shared_files.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
-namespace fettle::design::cli::ccd_queries_test {
+namespace fettle::tests::support::ccd_queries_test {
 
 using namespace fettle::core::contact;
 namespace fs = std::filesystem;
 
 namespace {
 
-using Folder = tests::support::TemporaryFolder;
+using Folder = TemporaryFolder;
 
 std::string rows(const std::string& row, int count) {
     std::string text;
@@ -162,4 +162,4 @@ TEST_CASE("the public files are read whole") {
     CHECK(rigid == 193 + 13);
 }
 
-}  // namespace fettle::design::cli::ccd_queries_test
+}  // namespace fettle::tests::support::ccd_queries_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/mechanism_start_tangent.hpp"
+#include "fettle/tests/adjoint/model/mechanism_start_tangent.hpp"
 
 #include <Eigen/LU>
 
