@@ -16,6 +16,7 @@
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
