@@ -40,7 +40,11 @@ core::model::TermScales term_scales_of(const Model& model) {
     return scales;
 }
 
-bool is_finite(const adjoint::TrajectoryGradient& seed) {
+// Vertices are looked at where parameters move them, and are named then.
+bool is_finite(const adjoint::Seeds& seeds) {
+    const adjoint::TrajectoryGradient& seed = seeds.trajectory_bar;
+    for (const adjoint::BodyGradient& body : seeds.model_bar.bodies)
+        if (!std::isfinite(body.density_bar)) return false;
     const auto is_finite_row = [](const auto& row) {
         return std::all_of(row.begin(), row.end(), [](const auto& x) { return x.allFinite(); });
     };
@@ -271,12 +275,12 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     for (size_t k = 0; k < design_.objective.size(); ++k) {
         const description::ObjectiveTerm& term = design_.objective[k];
         term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, seeds[0]);
-        if (!is_finite(seeds[0].trajectory_bar)) return refuse(name_of(term) + no_number);
+        if (!is_finite(seeds[0])) return refuse(name_of(term) + no_number);
     }
     for (size_t i = 0; i < design_.constraints.size(); ++i) {
         seeds.push_back(zero());
         design_.constraints[i].quantity->add_seeds(simulated, evaluation.constraints[i], 1, seeds.back());
-        if (!is_finite(seeds.back().trajectory_bar)) return refuse(name_of(design_.constraints[i]) + no_number);
+        if (!is_finite(seeds.back())) return refuse(name_of(design_.constraints[i]) + no_number);
     }
     const size_t first_residual = seeds.size();
     std::vector<double> residuals;

@@ -209,6 +209,7 @@ private:
         if (is_vector) place.back() = '0';
         const auto found = core::scene::find_place(context_.scene, place);
         if (!found) return fail(property, found.errors().front().message);
+        place = pointer_to(context_.scene, *found);
         const Dimension dimension = dimension_at(context_.scene, *found);
         if (is_vector) return read_vector(place.substr(0, place.size() - 2), property, dimension);
         if (is_said_by_true && !property.boolean().value_or(true))

@@ -47,7 +47,6 @@ py::dict defaults() {
     add_default<fettle::core::scene::Scene>(all);
     add_default<fettle::design::shapes::MeshProgram>(all);
     add_default<fettle::core::scene::ShapeSpec>(all);
-    add_default<fettle::core::model::Origin>(all);
     add_default<fettle::core::scene::Spring>(all);
     add_default<fettle::core::stepper::DriveForce>(all);
     add_default<fettle::core::stepper::JointForce>(all);
@@ -61,7 +60,6 @@ py::dict defaults() {
     add_default<fettle::design::description::Measurement>(all);
     add_default<fettle::design::description::Move>(all);
     add_default<fettle::design::description::ObjectiveTerm>(all);
-    add_default<fettle::core::model::Origin>(all);
     add_default<fettle::design::description::OptimiserSettings>(all);
     add_default<fettle::design::description::Parameter>(all);
     add_default<fettle::design::optimisers::NoiseLevel>(all);

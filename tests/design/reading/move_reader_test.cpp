@@ -75,13 +75,13 @@ TEST_CASE("moves of a mechanism: what they move, and in which unit") {
     const Move stiffness = read(R"({ "spring": "across", "stiffness": true, "scale": 2, "offset": "1 N/mm" })", "N/m");
     CHECK(stiffness.place == "/springs/0/stiffness");
     CHECK((stiffness.scale == 2 && stiffness.offset == 1000));
-    CHECK(read(R"({ "damper": "dash", "damping": true })", "1").place == "/springs/1/damping");
+    CHECK(read(R"({ "damper": "dash", "damping": true })", "1").place == "/dampers/0/damping");
     // Of a parameter without unit the scale is in the target's: degrees, lengths of the file, SI.
     CHECK(read(R"({ "joint": "hinge", "lower_limit": true })", "1").scale == Approx(degree));
     CHECK(read(R"({ "joint": "slide", "rest": true })", "1").scale == Approx(1e-3));
     CHECK(read(R"({ "joint": "pinion", "radius": true })", "mm").place == "/joints/2/radius");
     CHECK(read(R"({ "joint": "hinge", "preload": true })", "N mm").scale == 1);
-    CHECK(read(R"({ "motor": "push", "value": 1 })", "Nm").place == "/motors/0/curve/values/1");
+    CHECK(read(R"({ "motor": "push", "value": 1 })", "Nm").place == "/motors/0/torque/values/1");
     CHECK(read(R"({ "load": "pull", "force": [0, 1, 0] })", "N").place == "/loads/0/force/1");
     CHECK(read(R"({ "gravity": [0, 0, -1] })", "m/s^2").place == "/gravity/2");
     const Move pair = read(R"({ "materials": ["brass", "steel"], "mu": true, "scale": 0.5, "offset": 0.1 })", "1");
