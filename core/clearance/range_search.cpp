@@ -231,32 +231,17 @@ public:
     }
 
 private:
-    struct Key {
-        double lower = 0;
-        std::uint32_t order = 0;  // of making: ties are broken the same way on every run
-        std::uint32_t cell = 0;
-    };
-    static bool is_later(const Key& x, const Key& y) { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
-
     void push(const RangeCell& cell) {
         if (cell.lower >= cells_.result.upper) return;
-        queue_.push_back({cell.lower, made_++, static_cast<std::uint32_t>(pool_.add(cell))});
-        std::push_heap(queue_.begin(), queue_.end(), is_later);
+        queue_.push({cell.lower, made_++, static_cast<std::uint32_t>(pool_.add(cell))});
     }
-    RangeCell pop() {
-        std::pop_heap(queue_.begin(), queue_.end(), is_later);
-        const Key key = queue_.back();
-        queue_.pop_back();
-        return pool_.take(static_cast<int>(key.cell));
-    }
+    RangeCell pop() { return pool_.take(static_cast<int>(queue_.pop().entry)); }
 
-    double lower_bound() const {
-        return std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, cells_.result.upper - 2 * pair_.slack});
-    }
+    double lower_bound() const { return std::min({aside_, queue_.least(), cells_.result.upper - 2 * pair_.slack}); }
 
     bool is_settled() const {
         const double lower = lower_bound(), upper = cells_.result.upper;
-        if (cells_.result.intersecting || queue_.empty() || queue_.front().lower >= aside_) return true;
+        if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_) return true;
         if (!(upper - lower <= options_.tolerance)) return false;
         if (upper - lower <= 4 * pair_.slack) return true;
         const double finest = 1e-3 * options_.tolerance;  // where the minimum lies between, or 0 does
@@ -284,7 +269,7 @@ private:
     const RangeSearchOptions& options_;
     CellBounds cells_;
     EntryPool<RangeCell> pool_;
-    std::vector<Key> queue_;   // a heap
+    BestFirst queue_;
     double aside_ = infinity;  // least bound of what cannot be split
     std::uint32_t made_ = 0;
 };

@@ -5,6 +5,8 @@
 /// The most promising entry comes first, and then for a while the most promising of those made last, which are mostly parts of it: what is
 /// below the cutoff has to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is
 /// to be proven and nothing nearer has been seen, always one of those made last.
+/// A search over ranges of joints (range_search.hpp) shares the heap and the pool, and no more: its cells are one kind, its upper bound is
+/// nearly the least from the start, and what ends it, what is set aside and what is a witness differ.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +50,8 @@ private:
     std::vector<int> free_;
 };
 
-class SearchFront {
+/// Entries that wait, the least bound first.
+class BestFirst {
 public:
     /// What the heap moves about: the entries themselves stay where they are.
     struct Key {
@@ -57,6 +60,31 @@ public:
         std::uint32_t entry : 31 = 0;
         std::uint32_t is_spans : 1 = 0;
     };
+    struct Later {
+        bool operator()(const Key& x, const Key& y) const { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
+    };
+
+    bool empty() const { return keys_.empty(); }
+    double least() const { return keys_.empty() ? infinity : keys_.front().lower; }
+    void push(const Key& key) {
+        keys_.push_back(key);
+        std::push_heap(keys_.begin(), keys_.end(), Later{});
+    }
+    /// Contract: not empty.
+    Key pop() {
+        std::pop_heap(keys_.begin(), keys_.end(), Later{});
+        const Key key = keys_.back();
+        keys_.pop_back();
+        return key;
+    }
+
+private:
+    std::vector<Key> keys_;
+};
+
+class SearchFront {
+public:
+    using Key = BestFirst::Key;
 
     /// `within` >= 0: everything as near as that is wanted, instead of the least distance.
     SearchFront(const PieceTree& tree_a, const PieceTree& tree_b, const std::vector<PairSegment>& all_segments,
@@ -104,7 +132,7 @@ public:
     }
     Key pop() {
         // Of those made since the last one was given back, the most promising one comes first.
-        std::sort(last_made_.begin() + static_cast<std::ptrdiff_t>(sorted_), last_made_.end(), Later{});
+        std::sort(last_made_.begin() + static_cast<std::ptrdiff_t>(sorted_), last_made_.end(), BestFirst::Later{});
         const Key key = next();
         sorted_ = last_made_.size();
         return key;
@@ -113,7 +141,7 @@ public:
     bool is_settled() const {
         if ((queue_.empty() && last_made_.empty()) || result.upper < options.refuted) return true;
         if (!in_order_ || !last_made_.empty()) return false;
-        const double next = queue_.front().lower;
+        const double next = queue_.least();
         if (is_collecting()) return next > within_;
         if (options.seek_intersection) return result.intersecting || next > 0;
         return std::max(next, 0.0) >= std::max(cutoff(), sampling_cutoff());
@@ -122,7 +150,7 @@ public:
     /// Of everything searched, however far the search has come.
     double lower_bound() {
         put_in_order();
-        return std::max(0.0, std::min({aside_, queue_.empty() ? infinity : queue_.front().lower, result.upper}));
+        return std::max(0.0, std::min({aside_, queue_.least(), result.upper}));
     }
 
     void take_upper(const Encounter& encounter) {
@@ -139,31 +167,19 @@ public:
     }
 
 private:
-    struct Later {
-        bool operator()(const Key& x, const Key& y) const { return x.lower != y.lower ? x.lower > y.lower : x.order > y.order; }
-    };
-
-    static Key taken_from(std::vector<Key>& keys) {
-        const Key key = keys.back();
-        keys.pop_back();
-        return key;
-    }
-
     Key next() {
         if (last_made_.empty() || (in_order_ && ++taken_ > longest_dive)) {
             put_in_order();
             taken_ = 0;
-            std::pop_heap(queue_.begin(), queue_.end(), Later{});
-            return taken_from(queue_);
+            return queue_.pop();
         }
-        return taken_from(last_made_);
+        const Key key = last_made_.back();
+        last_made_.pop_back();
+        return key;
     }
 
     void put_in_order() {
-        for (const Key& key : last_made_) {
-            queue_.push_back(key);
-            std::push_heap(queue_.begin(), queue_.end(), Later{});
-        }
+        for (const Key& key : last_made_) queue_.push(key);
         last_made_.clear();
         sorted_ = 0;
     }
@@ -171,9 +187,9 @@ private:
     static constexpr int longest_dive = 64;
 
     double within_ = -1;
-    bool strict_;                 // the most promising one always
-    bool in_order_;               // else one of the last made always
-    std::vector<Key> queue_;      // a heap
+    bool strict_;    // the most promising one always
+    bool in_order_;  // else one of the last made always
+    BestFirst queue_;
     std::vector<Key> last_made_;  // and not in the queue yet
     std::size_t sorted_ = 0;      // of these
     int taken_ = 0;               // of these since the last one from the queue
