@@ -112,6 +112,26 @@ double factor_of(const Design& design, const std::string& parameter) {
     return 1;
 }
 
+std::string unit_of(const Design& design, const std::string& parameter) {
+    for (const Parameter& p : design.parameters)
+        if (p.name == parameter) return std::string(p.unit.name);
+    return {};
+}
+
+// What the text counts a row's quantity in: the objective, a plain number, in 1.
+struct CountedIn {
+    double unit = 1;   // SI
+    std::string name;  // "clearance pin:plate [mm]"
+};
+CountedIn counted_in(const Design& design, const std::string& quantity) {
+    for (const description::Constraint& constraint : design.constraints) {
+        if (constraint.name != quantity) continue;
+        const std::string unit = description::unit_name(constraint);
+        return {constraint.bounds.unit, unit.empty() ? quantity : quantity + " [" + unit + "]"};
+    }
+    return {1, quantity};
+}
+
 Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json direction_json(const Design& design, const VectorX& direction) {
@@ -218,13 +238,12 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     report.direction.cwiseAbs().maxCoeff(&most);
     std::string text = formatted("along the objective's gradient, as %s moves (most):\n%-40s %12s %12s %14s %14s\n",
                                  design.parameters[static_cast<size_t>(most)].name.c_str(), "quantity", "noise", "tolerance",
-                                 "gradient holds", "not over");
+                                 "gradient holds", "no longer over");
     std::string rough;
-    for (size_t q = 0; q < report.quantities.size(); ++q) {
-        const QuantityRoughness& quantity = report.quantities[q];
+    for (const QuantityRoughness& quantity : report.quantities) {
         const bool bound = quantity.noise.status == optimisers::NoiseStatus::spacing_too_large;
-        const double unit = q == 0 ? 1 : design.constraints[q - 1].bounds.unit;
-        text += formatted("%-40s %1s%11.3g %12.3g %14s %14s\n", quantity.name.c_str(), bound ? "<" : "", quantity.noise.noise / unit,
+        const auto [unit, name] = counted_in(design, quantity.name);
+        text += formatted("%-40s %1s%11.3g %12.3g %14s %14s\n", name.c_str(), bound ? "<" : "", quantity.noise.noise / unit,
                           quantity.tolerance / unit, length_text(design, report, quantity.holds).c_str(),
                           std::isfinite(quantity.breaks) ? length_text(design, report, quantity.breaks).c_str() : "-");
         if (quantity.rough) rough += (rough.empty() ? "" : ", ") + quantity.name;
@@ -283,33 +302,39 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
     return text;
 }
 
-std::string along_text(const CheckReport& report) {
+std::string along_text(const Design& design, const CheckReport& report) {
     if (report.along.empty()) return "along the gradient: not simulated\n";
     std::string text =
         formatted("%-61s %14s %14s %10s %10s\n", "along the gradient, in shares of the ranges", "adjoint", "difference", "error", "slope");
     for (const studies::LineRow& row : report.along) {
-        const std::string slope = std::isfinite(row.slope) ? formatted("%10.2f", row.slope) : "    (noise)";
-        text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", row.quantity.c_str(), row.adjoint, row.difference, row.relative_error,
+        const std::string slope = std::isfinite(row.slope) ? formatted("%10.2f", row.slope) : "         -";
+        const auto [unit, name] = counted_in(design, row.quantity);
+        text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", name.c_str(), row.adjoint / unit, row.difference / unit, row.relative_error,
                           slope.c_str(), row.resolved ? "" : "  hidden by noise");
     }
-    return text + "slope: of what the gradient leaves, over the step; 2 where it is right and the quantity smooth\n";
+    return text +
+           "slope: the power of the step with which the error of the gradient's prediction falls: 2 of a right gradient of a smooth "
+           "quantity, 1 of a "
+           "wrong one (-: noise hides it)\n";
 }
 
 std::string check_text(const Design& design, const CheckReport& report) {
-    std::string text = formatted("%-40s %-20s %14s %14s %10s %10s\n", "quantity", "parameter", "adjoint", "difference", "error", "(diff.)");
+    std::string text =
+        formatted("%-40s %-28s %14s %14s %10s %10s\n", "quantity", "per unit of", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
-        text += formatted("%-40s %-20s %14.7g %14.7g %10.2e %10.2e%s\n", row.quantity.c_str(), row.parameter.c_str(), row.adjoint,
-                          row.difference, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
-    }
-    for (const CheckRow& row : report.rows) {
+        const auto [unit, name] = counted_in(design, row.quantity);
+        const double factor = factor_of(design, row.parameter) / unit;
+        const std::string parameter = row.parameter + " [" + unit_of(design, row.parameter) + "]";
+        text += formatted("%-40s %-28s %14.7g %14.7g %10.2e %10.2e%s\n", name.c_str(), parameter.c_str(), row.adjoint * factor,
+                          row.difference * factor, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
         if (row.kink != 0)
-            text += formatted("%s has a kink in %s: slope %.7g below, %.7g above\n", row.quantity.c_str(), row.parameter.c_str(),
-                              row.difference - row.kink / 2, row.difference + row.kink / 2);
+            text += formatted("  it has a kink there: slope %.7g below, %.7g above\n", (row.difference - row.kink / 2) * factor,
+                              (row.difference + row.kink / 2) * factor);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
     for (size_t k = 0; k < report.left_out.size(); ++k) text += (k == 0 ? "left out: " : ", ") + report.left_out[k];
     if (!report.left_out.empty()) text += "\n";
-    text += along_text(report);
+    text += along_text(design, report);
     text += report.sweeps.failure.empty()
                 ? formatted("backwards and forwards through the simulation agree to %.2g\n", report.sweeps.disagreement)
                 : "backwards and forwards not compared: " + report.sweeps.failure + "\n";

@@ -61,6 +61,11 @@ TEST_CASE("gradient --check: torques on a body and of a motor, the size of a par
         CHECK(told.at("largest_relative_error").get<double>() < 1e-6);
         REQUIRE(told.at("gradient").size() == 5);
         for (const nlohmann::json& slope : told.at("gradient")) CHECK(slope.get<double>() != 0);
+        // The table counts in the units of the lines above it.
+        for (const nlohmann::json& row : told.at("check"))
+            if (row.at("quantity") == "objective")
+                CHECK(row.at("adjoint").get<double>() ==
+                      Approx(told.at("gradient").at(row.at("parameter").get<std::string>()).get<double>()));
     }
 }
 
