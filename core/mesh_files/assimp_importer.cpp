@@ -116,7 +116,16 @@ Placement axes_of_the_file(const aiNode& root) {
     return out;
 }
 
-const aiScene* imported(const char* path) {
+/// What assimp says of faces that it leaves out: a hole is no part of what the file says.
+void note_left_out(const char* message, char* left_out) {
+    const std::string text(message);
+    if (text.find("out-of-range") != std::string::npos || text.find("were dropped") != std::string::npos)
+        *reinterpret_cast<bool*>(left_out) = true;
+}
+
+const aiScene* imported(const char* path, bool& left_out) {
+    const aiLogStream log{note_left_out, reinterpret_cast<char*>(&left_out)};
+    aiAttachLogStream(&log);
     aiPropertyStore* properties = aiCreatePropertyStore();
     // Axes stay those of the file, in every format.
     aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
@@ -168,11 +177,13 @@ void limit(__rlimit_resource_t what, rlim_t most, rlim_t last = 0) {
 
 int import(const char* path) {
     try {
-        const aiScene* scene = imported(path);
+        bool left_out = false;
+        const aiScene* scene = imported(path, left_out);
         if (scene == nullptr || scene->mRootNode == nullptr) {
             const std::string reason = aiGetErrorString();
             return write_failure(reason, reason == "std::bad_alloc" ? import_out_of_memory : import_failed);
         }
+        if (left_out) throw std::string("a face names a vertex that is not there");
         Flat mesh;
         append_node(*scene, *scene->mRootNode, axes_of_the_file(*scene->mRootNode), mesh);
         return write_mesh(mesh);  // and no more: what assimp holds goes with the process

@@ -138,6 +138,18 @@ TEST_CASE("An import ends when it is told to, or when what is asked throws, and 
     CHECK(contains(mesh.errors().front().message, "stopped on request"));
 }
 
+TEST_CASE("A face of glTF that names no vertex is refused, not left out") {
+    const TemporaryFolder folder;
+    exported(folder, "gltf2", "a.gltf");  // whose indices, of 32 bits, stand in a.bin, behind the coordinates
+    std::string bytes = contents(folder.file("a.bin"));
+    REQUIRE(bytes.size() >= 4);
+    bytes[bytes.size() - 4] = 'z';
+    folder.write("a.bin", bytes);
+    const auto mesh = read_mesh(folder.file("a.gltf"));
+    REQUIRE_FALSE(mesh);
+    CHECK(contains(mesh.errors().front().message, "names a vertex that is not there"));
+}
+
 TEST_CASE("What places more than ten million vertices and triangles is refused where it is read") {
     const TemporaryFolder folder;
     std::string roots, nodes;  // a thousand times 9999 vertices and 3333 triangles, from 130 kB
