@@ -369,7 +369,9 @@ bool JsonNode::check_range(double number, const NumberRange& range, std::string_
     std::string allowed;
     if (std::isfinite(range.low)) allowed = (range.low_open ? "greater than " : "at least ") + shortest(range.low);
     if (std::isfinite(range.high)) allowed += (allowed.empty() ? "" : " and ") + ("at most " + shortest(range.high));
-    fail(ErrorCode::out_of_range, shown() + " is out of range: it must be " + allowed + std::string(unit));
+    const auto wants_unit = [](double limit) { return std::isfinite(limit) && limit != 0; };  // 0 m is 0 in every unit
+    if (wants_unit(range.low) || wants_unit(range.high)) allowed += unit;
+    fail(ErrorCode::out_of_range, shown() + " is out of range: it must be " + allowed);
     return false;
 }
 

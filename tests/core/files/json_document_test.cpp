@@ -183,6 +183,9 @@ TEST_CASE("Lengths take the file's unit or their own", "[scene]") {
     REQUIRE(document.errors().size() == 2);
     CHECK(document.errors()[0].where == "a.json#/d");
     CHECK(document.errors()[1].code == ErrorCode::out_of_range);
+    CHECK(document.errors()[1].message == "-2 is out of range: it must be greater than 0");  // of no unit
+    CHECK_FALSE(root["f"].length(0.001, {1, 2}));
+    CHECK(document.errors()[2].message == "-2 is out of range: it must be at least 1 and at most 2 m");
 }
 
 TEST_CASE("The nearest word is a slip of the pen, not a guess", "[scene]") {
