@@ -93,6 +93,30 @@ Error not_finite_error(const std::string& where, const std::string& found) {
     return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is wanted"};
 }
 
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+/// What is wrong at this place, to one who writes JSON by hand; empty where the library's own words must do.
+std::string plain_words(const std::string& text, std::size_t offset, const std::string& word, const std::string& said) {
+    const char here = offset < text.size() ? text[offset] : ' ';
+    const std::size_t before = offset == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", std::min(offset, text.size()) - 1);
+    const bool is_literal = has(said, "invalid literal");
+    if (has(said, "unexpected end of input")) return "the text ends too early: is its end missing, or a closing bracket?";
+    if (has(said, "missing closing quote")) return "a text has no closing quote";
+    if ((here == '}' || here == ']') && before != std::string::npos && text[before] == ',')
+        return std::string("a comma stands before ") + here + "; after the last entry there is none";
+    if (is_literal && here == '\'') return "text is in double quotes, not in single ones";
+    if (is_literal && (here == '/' || here == '#')) return "JSON has no comments";
+    if (has(said, "expected end of input")) return "more text follows behind the end";
+    if (is_literal && has(said, "object key")) return "a key is wanted, which is text in double quotes";
+    if (word == "True" || word == "False" || word == "None" || word == "Null")
+        return "here stands " + word + "; JSON writes true, false and null";
+    if (word.size() > 1 && word[0] == '0' && std::isdigit(static_cast<unsigned char>(word[1]))) return "a number begins with a 0 too many";
+    if (has(said, "parsing object separator - unexpected")) return "a colon is missing behind a key";
+    if (has(said, "parsing object - unexpected") || has(said, "parsing array - unexpected"))
+        if (has(said, "literal; expected") || here == '{' || here == '[') return "a comma is missing before this entry";
+    return {};
+}
+
 Error parse_fault(const std::string& text, const std::string& name, const json::parse_error& fault) {
     // The library's offset is one past the last character that it read.
     const std::size_t offset = fault.byte > 0 ? fault.byte - 1 : 0;
@@ -102,7 +126,8 @@ Error parse_fault(const std::string& text, const std::string& name, const json::
     std::string message = fault.what();
     const auto colon = message.find(": ");
     if (colon != std::string::npos) message = message.substr(colon + 2);
-    return {ErrorCode::parse, at(name, place_of(text, offset)), "not valid JSON: " + message};
+    const std::string plain = plain_words(text, offset, word, message);
+    return {ErrorCode::parse, at(name, place_of(text, offset)), "not valid JSON: " + (plain.empty() ? message : plain)};
 }
 
 Error overflow_fault(const std::string& text, const std::string& name, const std::string& what) {
@@ -344,7 +369,9 @@ bool JsonNode::check_range(double number, const NumberRange& range, std::string_
     std::string allowed;
     if (std::isfinite(range.low)) allowed = (range.low_open ? "greater than " : "at least ") + shortest(range.low);
     if (std::isfinite(range.high)) allowed += (allowed.empty() ? "" : " and ") + ("at most " + shortest(range.high));
-    fail(ErrorCode::out_of_range, shown() + " is out of range: it must be " + allowed + std::string(unit));
+    const auto wants_unit = [](double limit) { return std::isfinite(limit) && limit != 0; };  // 0 m is 0 in every unit
+    if (wants_unit(range.low) || wants_unit(range.high)) allowed += unit;
+    fail(ErrorCode::out_of_range, shown() + " is out of range: it must be " + allowed);
     return false;
 }
 

@@ -108,6 +108,16 @@ std::string reason_of(std::string_view written) {
     return reason;
 }
 
+/// What assimp says most often of damaged files and of other ones; the rest stays as it is.
+std::string in_plain_words(const std::string& reason) {
+    for (const auto& [said, words] : {std::pair{"No suitable reader found", "what is in it is not of the kind that its name says"},
+                                      {"3DS file is either empty or corrupt", "it is damaged, or no 3DS file"},
+                                      {"StreamReader: File is empty or EOF", "it ends too early"},
+                                      {"Unable to read file, malformed XML", "it is damaged, or no XML"}})
+        if (reason.starts_with(said)) return words;
+    return reason;
+}
+
 Error failure(const ImportOutcome& outcome, const ImportLimits& limits, const std::string& path) {
     using End = ImportOutcome::End;
     const std::string library = "assimp, the library that reads files of this kind, ", other = "as .3mf, .obj, .stl, .off or .ply",
@@ -136,7 +146,7 @@ Error failure(const ImportOutcome& outcome, const ImportLimits& limits, const st
         return {ErrorCode::out_of_range, path, library + "wants more than " + memory + " of memory for it" + instead};
     if (outcome.code == import_too_large)
         return {ErrorCode::out_of_range, path, "is too large: it places more than 10 million vertices and triangles" + instead};
-    const std::string reason = reason_of(outcome.written);
+    const std::string reason = in_plain_words(reason_of(outcome.written));
     return {ErrorCode::parse, path, "cannot be read as a mesh: " + (reason.empty() ? "assimp gives no reason" : reason) + instead};
 }
 
@@ -161,6 +171,8 @@ Result<double> metres_per_unit(const std::string& path, std::string_view extensi
 }  // namespace
 
 Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension, const std::function<bool()>& should_stop) {
+    std::error_code code;
+    if (std::filesystem::file_size(path, code) == 0) return Error{ErrorCode::parse, path, "is empty; export or download it again"};
     const auto unit = metres_per_unit(path, extension);
     if (!unit) return unit.errors();
     const ImportLimits limits = limits_for(path);

@@ -181,9 +181,11 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
         node.allow_keys({"generator", "program", "dimensions", "counts"});
         spec.generator = node.require("generator").string().value_or("");
     }
+    const std::size_t faults = document_.errors().size();
     for (const auto& [name, value] : node["dimensions"].members()) spec.dimensions[name] = value.length(unit_).value_or(0);
     for (const auto& [name, value] : node["counts"].members()) spec.counts[name] = value.integer(0).value_or(0);
     body.shape = spec;
+    if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
     if (spec.generator.empty() && (!spec.program || spec.program->command.empty())) return;
     if (!options_.shape_generator) {
         node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.generator) +

@@ -26,8 +26,9 @@ public:
         root["$schema"].string();
         root["description"].string();
         files::is_version(root["fettle_scene"], 1);
-        if (const auto name = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"}))
-            unit_ = base::metres_per_unit(*name).value();
+        const auto unit_name = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
+        if (!unit_name) return document_.errors();  // no length means anything
+        unit_ = base::metres_per_unit(*unit_name).value();
         scene_.path = document_.path();
         scene_.length_unit = unit_;
         scene_.gravity = root["gravity"].vector3().value_or(Vector3::Zero());

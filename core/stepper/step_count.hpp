@@ -8,7 +8,7 @@ namespace fettle::core::stepper {
 inline constexpr int default_step_count = 1000;
 
 /// The least number of steps that cover `duration` [s]: 1 s takes four steps of 0.3 s. What exceeds a whole number by 1e-9 or less is that
-/// number, so that a duration of 100 h takes 100 steps whatever its rounding.
+/// number, so that a duration of 100 h takes 100 steps whatever its rounding; a duration above 0 takes one at least.
 /// Contract: duration >= 0, timestep > 0. At most the largest int.
 int step_count(double duration, double timestep);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -336,6 +337,10 @@ Errors write_range_proof(const RangeQuestion& question, core::certificate::Certi
 }  // namespace
 
 int clearance_over_ranges(RangeQuestion question, const CommonOptions& common, Console& console) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(question.path, ignored))
+        return console.input_errors(
+            {{ErrorCode::unsupported, question.path, "is a folder: --ranges wants a scene or design, whose joints have ranges"}});
     if (file_kind(question.path) == FileKind::trajectory)
         return console.input_errors(
             {{ErrorCode::unsupported, question.path, "a trajectory has no joints: --ranges wants a scene or design"}});

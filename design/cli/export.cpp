@@ -150,7 +150,7 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
 int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
     const Result<core::scene::Scene> scene =
         core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
-    if (!scene) return console.input_errors(scene.errors());
+    if (!scene) return console.input_errors(or_other_kind(options.shown.path, "scene", scene.errors()));
     core::model::BuildOptions build;
     build.check_start = false;
     const Result<core::model::Model> model = core::model::build_model(*scene, build);

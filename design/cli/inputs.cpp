@@ -123,12 +123,25 @@ FileKind file_kind(const std::string& path) {
     return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;
 }
 
+Errors or_other_kind(const std::string& path, const std::string& wanted, const Errors& errors) {
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return errors;
+    const FileKind kind = file_kind(path);
+    if (kind == FileKind::trajectory)
+        return {
+            {ErrorCode::unsupported, path, "is a trajectory, not a " + wanted + "; clearance, draw and export to other formats take it"}};
+    if (kind == FileKind::certificate)
+        return {
+            {ErrorCode::unsupported, path, "is a certificate, not a " + wanted + "; validate, draw and export to other formats take it"}};
+    return errors;
+}
+
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start) {
     if (is_foreign(path)) return foreign_error(path);
     begin_to_read(path);
     const bool design = core::files::has_top_level_key(path, "fettle_design");
     Result<LoadedModel> loaded = design ? load_design(path, common) : load_scene(path, common, check_start);
-    if (!loaded) return loaded.errors();
+    if (!loaded) return design ? loaded.errors() : or_other_kind(path, "scene", loaded.errors());
     const auto& more = loaded->model.warnings;
     loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
     if (common.strict && !loaded->warnings.empty()) return as_errors(loaded->warnings, path);
@@ -138,7 +151,8 @@ Result<LoadedModel> load_model(const std::string& path, const CommonOptions& com
 Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common) {
     if (is_foreign(path)) return foreign_error(path);
     Result<reading::DesignFile> file = reading::read_design(path, {common.mesh_dirs, programs_of(common)});
-    if (!file || !common.strict) return file;
+    if (!file) return or_other_kind(path, "design", file.errors());
+    if (!common.strict) return file;
     Errors errors = strict_faults(file->scene_path, common);
     if (!errors.empty()) return errors;
     return file;

@@ -21,6 +21,9 @@ enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);
 
+/// Why `path` was not read as a `wanted` ("scene"): that it is a trajectory or a certificate, if it is one; else `errors`.
+Errors or_other_kind(const std::string& path, const std::string& wanted, const Errors& errors);
+
 /// A scene or a design, opened once: a model to simulate, and for how many steps (negative: the model's own end time).
 struct LoadedModel {
     FileKind kind = FileKind::scene;

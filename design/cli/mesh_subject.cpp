@@ -57,6 +57,8 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
                 warnings.push_back(below + ": the meshes in this folder are left out; name it too if they belong together");
         } else if (file_kind(path) == FileKind::mesh) {
             files.push_back(path);
+        } else if (!fs::exists(path, code)) {
+            errors.push_back({ErrorCode::file_not_found, path, "no such file"});
         } else {
             errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
         }
@@ -127,8 +129,9 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
     }
     subject.files = *files;
     core::files::UniqueNames names(" ");
+    std::error_code code;
     for (const std::string& path : *files) {
-        if (unit.empty() && !core::mesh_files::states_its_unit(path)) {
+        if (unit.empty() && !core::mesh_files::states_its_unit(path) && fs::exists(path, code)) {  // else its reader says why
             errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
             continue;
         }

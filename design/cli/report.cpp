@@ -19,6 +19,9 @@ struct ReportArguments {
 };
 
 int run_report(const ReportArguments& arguments, const CommonOptions& common, Console& console) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(arguments.source, ignored))
+        return console.input_errors({{ErrorCode::file_not_found, arguments.source, "there is no such file or folder"}});
     report::ReportOptions options;
     options.out = arguments.out;
     options.mesh_dirs = common.mesh_dirs;
@@ -29,7 +32,6 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
         const Errors errors = try_output_file(arguments.out);
         if (!errors.empty()) return console.input_errors(errors);
     }
-    std::error_code ignored;
     const Result<std::string> made = std::filesystem::is_regular_file(arguments.source, ignored)
                                          ? report::write_exploration_report(arguments.source, options)
                                          : report::write_report(arguments.source, std::move(options));

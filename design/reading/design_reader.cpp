@@ -42,7 +42,8 @@ public:
         core::files::is_version(root.require("fettle_design"), 1);
         file_.path = document_.path();
         const auto unit = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
-        if (unit) file_.length_unit = *find_unit(*unit);
+        if (!unit) return all_errors();  // no length means anything
+        file_.length_unit = *find_unit(*unit);
         if (!read_scene_file(root.require("scene"))) return all_errors();
         take_shapes();
         read_simulation(root["simulation"]);

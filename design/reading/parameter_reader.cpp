@@ -25,6 +25,9 @@ std::vector<std::string_view> parameter_unit_names() {
     return names;
 }
 
+// " mm"; of a pure number nothing.
+std::string in_unit(const Unit& unit) { return unit.dimension == Dimension::number ? "" : " " + std::string(unit.name); }
+
 class ParameterReader {
 public:
     ParameterReader(const ReadContext& context, const Shapes& shapes, const Unit& default_unit)
@@ -64,7 +67,8 @@ private:
                                                             node["upper"].shown() + " of parameter \"" + parameter.name + "\"");
         } else if (value && lower && upper && (*value < *lower || *value > *upper)) {
             node["value"].fail(ErrorCode::out_of_range, "the value " + node["value"].shown() + " lies outside the bounds [" +
-                                                            node["lower"].shown() + ", " + node["upper"].shown() + "]");
+                                                            node["lower"].shown() + ", " + node["upper"].shown() + "]" +
+                                                            in_unit(parameter.unit));
         }
         parameter.value = to_si(value.value_or(0), parameter.unit);
         parameter.lower = to_si(lower.value_or(0), parameter.unit);

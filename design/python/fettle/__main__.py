@@ -37,6 +37,27 @@ def number_of(word: str, text: str, kind: Callable[[str], Any], where: str) -> A
         raise Error([Fault("parse", where, f"{FORMS}; {word} is {wanted}, found {text!r}")]) from None
 
 
+def check_near_bounds(parameter: Any, values: Sequence[float], where: str) -> None:
+    """As the problem checks them (description::check_values), but told in the parameter's own unit, in which they were given."""
+    lower, upper, unit = parameter.lower, parameter.upper, parameter.unit
+
+    def in_unit(value: float) -> str:
+        return f"{_fettle.from_si(value, unit):.6g} {unit}" if unit not in ("", "1") else f"{value:.6g}"
+
+    faults = [
+        Fault(
+            "out_of_range",
+            where,
+            f"{in_unit(value)} is far outside the bounds, {in_unit(lower)} to {in_unit(upper)}: farther than they are apart. "
+            "If it is meant, widen the bounds",
+        )
+        for value in values
+        if value < lower - (upper - lower) or value > upper + (upper - lower)
+    ]
+    if faults:
+        raise Error(faults)
+
+
 def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
     """Of NAME=COUNT, or NAME=LOW:HIGH:COUNT in the parameter's own unit: {name: count, or values in SI}."""
     name, _, values = text.rpartition("=")
@@ -55,8 +76,9 @@ def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
         raise Error([Fault(fault.code, where, fault.message) for fault in faults])
     if not ends:
         return {name: count}
-    unit = next(p.unit for p in design.parameters if p.name == name)
-    low, high = (_fettle.to_si(end, unit) if unit else end for end in ends)
+    parameter = next(p for p in design.parameters if p.name == name)
+    low, high = (_fettle.to_si(end, parameter.unit) if parameter.unit else end for end in ends)
+    check_near_bounds(parameter, (low, high) if count > 1 else (low,), where)
     return {name: [low + (high - low) * k / max(1, count - 1) for k in range(count)]}
 
 

@@ -40,6 +40,30 @@ TEST_CASE("Faults of syntax have a line and a column", "[scene]") {
     CHECK(only_error(JsonDocument::read("/nonexistent/a.json").errors()).code == ErrorCode::file_not_found);
 }
 
+TEST_CASE("Faults of syntax that are common are told in plain words", "[scene]") {
+    const std::pair<const char*, const char*> said[] = {{R"({"a": 1, })", "a comma stands before }"},
+                                                        {R"({"a": [1,]})", "a comma stands before ]"},
+                                                        {"{'a': 1}", "text is in double quotes"},
+                                                        {R"({"a": 'x'})", "text is in double quotes"},
+                                                        {"{\"a\": 1 // one\n}", "JSON has no comments"},
+                                                        {R"({"a": 1, /* two */ "b": 2})", "JSON has no comments"},
+                                                        {"# three\n{}", "JSON has no comments"},
+                                                        {R"({"a": 1 "b": 2})", "a comma is missing before this entry"},
+                                                        {R"({"a": [1 2]})", "a comma is missing before this entry"},
+                                                        {R"({"a" 1})", "a colon is missing"},
+                                                        {"{a: 1}", "a key is wanted, which is text in double quotes"},
+                                                        {R"({"a": True})", "JSON writes true, false and null"},
+                                                        {R"({"a": 1)", "the text ends too early"},
+                                                        {R"({"a": "x)", "a text has no closing quote"},
+                                                        {R"({"a": 1}})", "more text follows"}};
+    for (const auto& [text, words] : said) {
+        const auto error = only_error(JsonDocument::parse(text, "a.json").errors());
+        CAPTURE(text, error.message);
+        CHECK(error.code == ErrorCode::parse);
+        CHECK(contains(error.message, std::string("not valid JSON: ") + words));
+    }
+}
+
 TEST_CASE("Numbers that are not finite are called so", "[scene]") {
     for (const std::string text : {"{\"a\": 1,\n \"b\": NaN}", "{\"a\": 1,\n \"b\": -Infinity}", "{\"a\": 1,\n \"b\": nan}",
                                    "{\"a\": 1,\n \"b\": 1e999}", "{\"a\": 1,\n \"b\": -1e999}"}) {
@@ -159,6 +183,9 @@ TEST_CASE("Lengths take the file's unit or their own", "[scene]") {
     REQUIRE(document.errors().size() == 2);
     CHECK(document.errors()[0].where == "a.json#/d");
     CHECK(document.errors()[1].code == ErrorCode::out_of_range);
+    CHECK(document.errors()[1].message == "-2 is out of range: it must be greater than 0");  // of no unit
+    CHECK_FALSE(root["f"].length(0.001, {1, 2}));
+    CHECK(document.errors()[2].message == "-2 is out of range: it must be at least 1 and at most 2 m");
 }
 
 TEST_CASE("The nearest word is a slip of the pen, not a guess", "[scene]") {

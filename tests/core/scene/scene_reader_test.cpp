@@ -300,6 +300,20 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
         CHECK(scene->bodies[0].shape->dimensions.at("length") == 0.01);
         CHECK(scene->bodies[0].mesh.vertices.maxCoeff() == 0.01);
     }
+    SECTION("none is asked for where a number or the unit is wrong, which alone is told") {
+        ReadOptions options;
+        options.shape_generator = [](const ShapeSpec&) -> base::Result<geometry::Mesh> {
+            return base::Error{ErrorCode::out_of_range, "facets", "facets is 0"};
+        };
+        json many = text, unknown = text;
+        many["bodies"][0]["shape"]["counts"]["facets"] = 99999999999;
+        unknown["units"] = "parsec";
+        for (const auto& [scene, where] : {std::pair{many, "#/bodies/0/shape/counts/facets"}, {unknown, "#/units"}}) {
+            const auto errors = shop.read(scene, options).errors();
+            REQUIRE(errors.size() == 1);
+            CHECK(contains(errors[0].where, where));
+        }
+    }
     SECTION("that fails") {
         ReadOptions options;
         options.shape_generator = [](const ShapeSpec&) -> base::Result<geometry::Mesh> {

@@ -161,6 +161,28 @@ TEST_CASE("messages: one part, or one part twice, is no question of clearance") 
     refused("clearance " + folder.path.string() + " " + file + " --unit mm --minimum 1mm", {"is named twice"});
 }
 
+TEST_CASE("messages: what is not there is said so before anything is asked of it") {
+    const TemporaryFolder folder;
+    const core::geometry::Mesh box = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01});
+    const std::string mesh = folder.write("a.stl", core::mesh_files::stl_bytes({{"a", &box}})), none = folder.file("nope.stl");
+    const Answer alone = run("clearance " + none, true);
+    CHECK(alone.code == 3);
+    CHECK(alone.says(none + ": no such file"));
+    CHECK_FALSE(alone.says("unit"));
+    refused("clearance " + mesh + " " + folder.file("nope.txt") + " --unit mm", {folder.file("nope.txt") + ": no such file"});
+    refused("report " + folder.file("nope.jsonl"), {folder.file("nope.jsonl") + ": there is no such file or folder"});
+    refused("clearance " + folder.path.string() + " --ranges", {"is a folder: --ranges wants a scene or design"});
+}
+
+TEST_CASE("messages: a trajectory where a scene or design is wanted is called one") {
+    const DesignFolder folder;
+    REQUIRE(run("simulate " + folder.file("small.scene.json") + " --steps 1 --no-report --out " + folder.file("out")).code == 0);
+    const std::string path = folder.file("out/trajectory.json");
+    refused("simulate " + path, {path + ": is a trajectory, not a scene; "});
+    refused("export " + path + " --to " + folder.file("a.urdf"), {path + ": is a trajectory, not a scene; "});
+    refused("gradient " + path, {path + ": is a trajectory, not a design; "});
+}
+
 TEST_CASE("messages: lengths are in the file's unit, and one step is one step") {
     const DesignFolder folder;
     const Answer one = run("simulate " + folder.file("small.scene.json") + " --steps 1");

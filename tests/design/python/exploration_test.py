@@ -258,6 +258,7 @@ def test_the_commands_errors_have_code_and_place(tmp_path, capsys):
         ("crank_radius=0", "out_of_range", "1 or more"),
         ("crank_radius=13:14:0", "out_of_range", "1 or more"),
         ("crank_radius=nan:14:2", "not_finite", "finite"),
+        ("crank_radius=13:900:3", "out_of_range", "900 mm is far outside the bounds, "),
         ("crank_radus=3", "unknown_key", "did you mean 'crank_radius'?"),
         ("crank_radius=9999999999", "out_of_range", "up to 1000000"),
     ]

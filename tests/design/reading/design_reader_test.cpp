@@ -64,7 +64,8 @@ TEST_CASE("a design file is read in SI units") {
 TEST_CASE("every fault of a design is named, with its place") {
     const Fault faults[] = {
         {"\"lower\": 6,", "\"lower\": 16,", ErrorCode::inconsistent, "#/parameters/0/lower", "above the upper bound"},
-        {"\"value\": 10,", "\"value\": 15,", ErrorCode::out_of_range, "#/parameters/0/value", "outside the bounds"},
+        {"\"value\": 10,", "\"value\": 15,", ErrorCode::out_of_range, "#/parameters/0/value",
+         "the value 15 lies outside the bounds [6, 14] mm"},
         {"\"value\": 10,", "\"value\": \"ten\",", ErrorCode::wrong_type, "#/parameters/0/value", ""},
         {"\"value\": 10,", "\"valeu\": 10,", ErrorCode::unknown_key, "#/parameters/0/valeu", "value"},
         {"\"dimension\": \"size_z\"", "\"dimension\": \"size_zz\"", ErrorCode::out_of_range, "#/parameters/0/moves/0/dimension", "size_z"},
