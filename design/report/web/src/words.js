@@ -144,13 +144,21 @@ function explored(data) {
   return { tone: "good", head: `${plural(met, "design meets", "designs meet")} every requirement, proven.`, rest };
 }
 
+// The requirement that a design's violation is of, in whose unit it is; null where that is not known, as of one without bounds in the file.
+function violatedOf(designs, i) {
+  const violation = designs.of("violation")[0].column.values[i];
+  const over = ({ column }) => Math.max(column.lower === null ? -Infinity : column.lower - column.values[i], column.upper === null ? -Infinity : column.values[i] - column.upper);
+  const found = designs.of("constraint").find((each) => Math.abs(over(each) - violation) <= 1e-3 * violation);
+  return found ? { name: found.column.name, unit: found.column.unit.replace("^2", "\u00b2").replace("^3", "\u00b3") } : null;
+}
+
 function exploredFacts(data) {
   const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "by proven bounds"]];
   if (!data.designs.length) return rows;
   const designs = new Designs(data), [best] = designs.bestFirst(), of = (group) => designs.of(group)[0].column.values[best];
   if (best === undefined) return rows;
   if (data.designs[best].met) rows.push(["Least objective", number(of("objective")), "of those that meet everything"]);
-  else rows.push(["Least violation", number(of("violation")), `of design ${best + 1}, whose objective is ${number(of("objective"))}`]);
+  else rows.push(["Least violation", withUnit(number(of("violation")), violatedOf(designs, best)?.unit), `${violatedOf(designs, best) ? `${violatedOf(designs, best).name} ` : ""}of design ${best + 1}, whose objective is ${number(of("objective"))}`]);
   return rows;
 }
 
