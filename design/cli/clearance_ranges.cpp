@@ -262,8 +262,10 @@ std::string explained_row(const RangeRow& row, const Model& model, const JointRa
     std::string text = row.spec.a.name + ":" + row.spec.b.name + ": " + finding_word(least) + "\n";
     if (least.status == PairStatus::undecided) text += "   undecided: " + least.reason + "\n";
     if (!std::isfinite(least.upper)) return text;
-    text += "   at least " + lengths.fixed(least.lower, Towards::down, 3) + ", at most " + lengths.fixed(least.upper, Towards::up, 3) +
-            " " + lengths.unit() + " over every combination; worst at " + combination(ranges, least, lengths) + "\n";
+    text += (least.is_clash() ? std::string("   the parts share material")
+                              : "   at least " + lengths.fixed(least.lower, Towards::down, 3) + ", at most " +
+                                    lengths.fixed(least.upper, Towards::up, 3) + " " + lengths.unit() + " over every combination") +
+            "; worst at " + combination(ranges, least, lengths) + "\n";
     if (least.solids == core::clearance::Solids::overlap) return text + "   one lies inside the material of the other\n";
     const auto place = [&](int body, const Vector3& x) {
         return "   of " + model.bodies[static_cast<size_t>(body)].name + " at " + point_text(x, lengths) + "\n";
@@ -284,8 +286,8 @@ std::string ranges_text(const RangeReport& report, const Model& model, const Joi
         const RangeClearance& least = row.least;
         text += formatted("%-*s %12s %14s %14s  %s", w, (row.spec.a.name + ":" + row.spec.b.name).c_str(),
                           row.spec.required_by.empty() ? "-" : formatted("%.6g", least.minimum / lengths.metres()).c_str(),
-                          lengths.fixed(least.lower, Towards::down).c_str(),
-                          std::isfinite(least.upper) ? lengths.fixed(least.upper, Towards::up).c_str() : "-",
+                          least.is_clash() ? "-" : lengths.fixed(least.lower, Towards::down).c_str(),
+                          std::isfinite(least.upper) && !least.is_clash() ? lengths.fixed(least.upper, Towards::up).c_str() : "-",
                           console.coloured(formatted("%-16s", finding_word(least)), least.status == PairStatus::clear).c_str());
         text += "  " + combination(ranges, least, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
@@ -315,7 +317,9 @@ std::vector<Check> range_checks(const RangeReport& report, const JointRanges& ra
     for (const RangeRow& row : report.rows) {
         const RangeClearance& least = row.least;
         Check check{row.spec.a.name + ":" + row.spec.b.name, to_check(least.status), finding_word(least), "", file};
-        check.message = "at least " + lengths.fixed(least.lower, Towards::down) + " " + unit + " apart over all positions of the joints";
+        check.message = least.is_clash() ? "the parts share material at some position of the joints"
+                                         : "at least " + lengths.fixed(least.lower, Towards::down) + " " + unit +
+                                               " apart over all positions of the joints";
         if (!row.spec.required_by.empty()) check.message += formatted("; required %.6g ", least.minimum / lengths.metres()) + unit;
         check.message += "; worst at " + combination(ranges, least, lengths);
         if (least.status == PairStatus::undecided) check.message += "; undecided: " + least.reason;

@@ -57,7 +57,26 @@ std::string touched(const ReportedPair& pair, const Lengths& lengths) {
            (pair.spec.may_touch ? ", accepted" : "");
 }
 
+// "3.9999 to 6.0001 mm deep, 116 to 161 mm^3 shared".
+std::string overlapped(const ReportedPair& pair, const Lengths& lengths) {
+    if (!pair.least.overlap) return pair.overlap.empty() ? "the surfaces pass through each other" : pair.overlap;
+    const core::clearance::Overlap& o = *pair.least.overlap;
+    const double cubed = lengths.metres() * lengths.metres() * lengths.metres();
+    return (o.depth_lower > 0 ? lengths.down(o.depth_lower) + " to " : std::string("at most ")) + lengths.up(o.depth_upper) + " " +
+           lengths.unit() + " deep, " +
+           (o.volume_lower > 0 ? formatted("%.3g to ", 0.995 * o.volume_lower / cubed) : std::string("at most ")) +
+           formatted("%.3g ", 1.005 * o.volume_upper / cubed) + lengths.unit() + "^3 shared";
+}
+
+// Of parts that share material, or touch, a distance says nothing.
+bool has_distance(const ReportedPair& pair) { return pair.finding != Finding::clash && pair.finding != Finding::touching; }
+
 std::string table(const ClearanceReport& report, const Subject& subject, const Lengths& lengths, const Console& console) {
+    const auto bound = [&](const ReportedPair& pair, bool is_lower) {
+        if (!has_distance(pair)) return std::string("-");
+        if (!pair.least.is_bounded) return std::string("not proven");
+        return is_lower ? lengths.down(pair.least.lower) : lengths.up(pair.least.upper);
+    };
     size_t width = 4;
     for (const ReportedPair& pair : report.pairs)
         if (!pair.least.is_far) width = std::max(width, pair_name(pair).size());
@@ -70,16 +89,30 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
         const std::string status = formatted("%-16s", to_string(pair.finding));
         const bool good = pair.finding == Finding::clear || pair.least.status == core::clearance::PairStatus::contact;
         text += formatted("%-*s %12s %14s %14s  %s", w, pair_name(pair).c_str(),
-                          pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(),
-                          least.is_bounded ? lengths.down(least.lower).c_str() : "not proven",
-                          least.is_bounded ? lengths.up(least.upper).c_str() : "not proven", console.coloured(status, good).c_str());
+                          pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), bound(pair, true).c_str(),
+                          bound(pair, false).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
-        if (least.touch) text += "  " + touched(pair, lengths);
+        if (pair.finding == Finding::clash) text += "  " + overlapped(pair, lengths);
+        if (least.touch) text += (pair.finding == Finding::touching ? "  " : "  touching ") + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
         text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
     }
     return text;
 }
+
+// What is proven: of the distance, or of what the parts share or touch over.
+std::string found_of(const ReportedPair& pair, const Lengths& lengths) {
+    const PairClearance& least = pair.least;
+    if (pair.finding == Finding::clash) return "the parts share material: " + overlapped(pair, lengths);
+    if (pair.finding == Finding::touching) return "the parts touch " + touched(pair, lengths);
+    if (least.is_far) return "at least twice as far apart as is required";
+    if (!least.is_bounded) return "no bound is proven" + (least.reason.empty() ? "" : ": " + least.reason);
+    return "at least " + lengths.down(least.lower) + " " + lengths.unit() + " apart, at most " + lengths.up(least.upper) + " " +
+           lengths.unit();
+}
+
+// Of a pair that touches.
+std::string how_to_accept(const ReportedPair& pair) { return "--allow-touch " + pair_name(pair) + " accepts it"; }
 
 std::string pose_line(const std::string& name, const core::kinematics::Pose& pose, const Lengths& lengths) {
     const Vector3 theta = core::kinematics::rotation_vector(pose.rotation);
@@ -119,9 +152,10 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     const std::string& a = subject.model.bodies[static_cast<size_t>(least.a)].name;
     const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
     std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
-    text += (least.is_bounded ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
-                                    lengths.unit() + " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)"
-                              : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
+    text += (!has_distance(pair) ? std::string("   the parts ") + (pair.finding == Finding::clash ? "share material" : "touch")
+             : least.is_bounded  ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
+                                      lengths.unit() + " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)"
+                                : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     if (const double charge = joint_charge(subject, least.a, least.b); charge > 0)
@@ -174,14 +208,6 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     return text + "\n";
 }
 
-// What is proven of the distance.
-std::string bounds_of(const PairClearance& pair, const Lengths& lengths) {
-    if (pair.is_far) return "at least twice as far apart as is required";
-    if (!pair.is_bounded) return "no bound is proven" + (pair.reason.empty() ? "" : ": " + pair.reason);
-    return "at least " + lengths.down(pair.lower) + " " + lengths.unit() + " apart, at most " + lengths.up(pair.upper) + " " +
-           lengths.unit();
-}
-
 // Of meshes, the file of that name; else what was judged.
 std::string file_of_part(const Subject& subject, const std::string& part, const std::string& otherwise) {
     for (const std::string& file : subject.files)
@@ -218,8 +244,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
         if (pair.least.status == core::clearance::PairStatus::undecided && !pair.least.reason.empty()) ++reasons[pair.least.reason];
     const auto touch = std::find_if(report.pairs.begin(), report.pairs.end(),
                                     [](const ReportedPair& p) { return p.finding == Finding::touching && !p.spec.may_touch; });
-    if (touch != report.pairs.end())
-        text += "touching: faces lie on each other; if they are meant to, --allow-touch " + pair_name(*touch) + " accepts it\n";
+    if (touch != report.pairs.end()) text += "touching: faces lie on each other; if they are meant to, " + how_to_accept(*touch) + "\n";
     for (const auto& [reason, count] : reasons) text += formatted("undecided (%d): ", count) + reason + "\n";
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
@@ -242,15 +267,17 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
     std::vector<Check> checks;
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
-        Check check{pair_name(pair), to_check(least.status), to_string(pair.finding), bounds_of(least, lengths),
+        Check check{pair_name(pair), to_check(least.status), to_string(pair.finding), found_of(pair, lengths),
                     file_of_part(subject, pair.spec.a.name, file)};
         if (!pair.spec.required_by.empty()) check.message += "; required " + lengths.plain(least.minimum) + " " + unit + " per side";
-        if (pair.finding == Finding::clash) check.message = "the parts share material; " + check.message;
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
         if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
             check.message += "; undecided: " + least.reason;
         if (subject.motion() && !least.is_far && least.is_bounded)
-            check.message += formatted(", at %.6g s", least.is_clash() ? least.clash_time : least.witness.time);
+            check.message +=
+                least.is_clash() ? formatted(", from %.6g s on", least.clash_time) : formatted(", at %.6g s", least.witness.time);
+        if (least.touch && has_distance(pair)) check.message += "; parts of the two touch " + touched(pair, lengths);
+        if (pair.finding == Finding::touching && !pair.spec.may_touch) check.message += "; if they are meant to, " + how_to_accept(pair);
         if (!pair.change.word.empty()) check.message += " (" + pair.change.word + ")";
         checks.push_back(std::move(check));
     }

@@ -72,6 +72,7 @@ Json row_of(const PairClearance& pair, const core::model::Model& model, const co
             {"point_b", millimetres(w.point_b)},
             {"depth", Json()},
             {"volume", Json()},
+            {"touching", Json()},
             {"note", Json()}};
 }
 
@@ -120,6 +121,14 @@ Json measured_bounds(const Json& told, int dimensions) {
     if (told.contains("time")) bounds["time"] = told["time"];
     if (told.contains("point")) bounds["point"] = millimetres(told["point"]);
     return bounds;
+}
+
+// Null: the two do not touch.
+Json touching_of(const Json& told) {
+    if (!told.is_object()) return {};
+    return {{"area", told.at("area").get<double>() / (millimetre * millimetre)},
+            {"at_least", member(told, "at_least") == true},
+            {"allowed", member(told, "allowed") == true}};
 }
 
 // All bodies where a pair is worst over the ranges of the joints, of an answer's `poses`, which has those that moved. Null: it has none.
@@ -209,10 +218,16 @@ Json told_pairs(const Json& pairs, const core::model::Model& model, const std::v
                         {"point_b", millimetres(member(pair, "point_b"))},
                         {"depth", measured_bounds(member(pair, "depth"), 1)},
                         {"volume", measured_bounds(member(pair, "volume"), 3)},
+                        {"touching", touching_of(member(pair, "touching"))},
                         {"poses", worst_poses(member(pair, "poses"), model)},
                         {"note", note}});
     }
     return rows;
+}
+
+void leave_out_distances(Json& rows) {
+    for (Json& row : rows)
+        if (row["finding"] == "clash" || row["finding"] == "touching") row["lower"] = row["upper"] = Json();
 }
 
 Json nearest_pairs(const core::model::Model& model, const core::stepper::Trajectory& trajectory, double least,

@@ -105,6 +105,7 @@ void add_motion(Json& data, const ReportSource& source, const std::function<bool
     const Json all = source.kind == ReportKind::clearance ? member(source.result, "pairs") : Json();
     data["pair_count"] = all.is_array() ? all.size() : data["pairs"].size();
     data["margins"] = should_stop() ? Json() : margin_curves(data["pairs"], source.motion->model, trajectory, should_stop);
+    leave_out_distances(data["pairs"]);
     std::set<std::string> fixed;
     for (const core::model::Body& body : source.motion->model.bodies)
         if (body.type == core::scene::BodyType::static_body) fixed.insert(body.name);

@@ -64,6 +64,9 @@ TEST_CASE("ranges: bodies that joints join are not judged unless named, options 
     const Answer answer = run(std::string("clearance ") + two_arms + " --ranges --json --minimum 1mm --pairs 'left_arm:left_hand'");
     CHECK(answer.code == 1);
     CHECK(answer.pair("left_arm", "left_hand")["finding"] == "clash");
+    const Answer told = run(std::string("clearance ") + two_arms + " --ranges --explain --minimum 1mm --pairs 'left_arm:left_hand'");
+    CHECK(told.says("the parts share material; worst at "));
+    CHECK_FALSE(told.says("e-1"));
     const Answer all = run(std::string("clearance ") + two_arms + " --ranges --json --minimum 1mm --ignore '*_hand:*'");
     CHECK(all.code == 0);
     const Json left_out = all.json()["left_out"];

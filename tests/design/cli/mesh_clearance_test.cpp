@@ -166,6 +166,17 @@ TEST_CASE("clearance: a lid on its base is told as touching, is accepted where t
     CHECK(clearance(base + lid, "--minimum 0.3mm").says("over 240 mm^2"));
     CHECK(clearance(base + lid, "--minimum 0.3mm").says("--allow-touch base:lid"));
     CHECK(clearance(base + lid, "--json").code == 2);
+    const Answer told = clearance(base + lid + deep, "--minimum 0.3mm --markdown " + boxes.file("told.md"));  // no distances of 1e-12 mm
+    const std::string file = contents(boxes.file("told.md"));
+    CAPTURE(told.out, file);
+    CHECK(told.says(" mm deep, "));
+    CHECK(told.says(" mm^3 shared"));
+    CHECK_FALSE(told.says("e-1"));
+    CHECK(file.find("the parts share material: ") != std::string::npos);
+    CHECK(file.find(" mm deep, ") != std::string::npos);
+    CHECK(file.find("the parts touch over 240 mm^2; required 0.3 mm per side; if they are meant to, --allow-touch base:lid accepts it") !=
+          std::string::npos);
+    CHECK(file.find("at least 0 mm") == std::string::npos);
     for (const std::string allowed : {"base:lid", "lid:base", "'ba*:*'", "base:lid=0.01mm"}) {
         const Answer accepted = clearance(base + lid + post, "--minimum 0.3mm --json --allow-touch " + allowed);
         CAPTURE(allowed, accepted.out);

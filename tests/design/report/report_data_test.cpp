@@ -391,6 +391,29 @@ TEST_CASE("report: how deep two parts are in each other, how much they share, an
     REQUIRE(point.size() == 3);
     CHECK(std::max(std::abs(point[0].get<double>()), std::abs(point[1].get<double>())) < 6);
     CHECK(std::abs(point[2].get<double>() - 2.5) < 0.1);  // of a ball of 2.5 mm between the pin's end at 0 and the plate's face at 5
+    CHECK(pair["lower"].is_null());                       // a distance of rounding's size is none
+    CHECK(pair["upper"].is_null());
+    CHECK(pair["touching"].is_null());
+}
+
+TEST_CASE("report: over which area two parts touch, and no distance of theirs") {
+    const DesignFolder folder;
+    folder.write("touch.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "pin", "type": "static", "position": [0, 0, 15],
+         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+    const std::string out = folder.file("touch"), command = "clearance " + folder.file("touch.scene.json") + " --out " + out;
+    for (const bool allowed : {false, true}) {
+        CHECK(run(command + (allowed ? " --allow-touch plate:pin" : " --minimum 0.3mm")).code == (allowed ? 0 : 1));
+        const Json data = data_of(contents(out + "/report.html")), pair = data["pairs"][0];
+        CAPTURE(pair.dump());
+        CHECK(pair["finding"] == "touching");
+        CHECK(pair["lower"].is_null());
+        CHECK(pair["upper"].is_null());
+        CHECK(pair["touching"]["area"].get<double>() == Approx(144).epsilon(1e-5));  // mm^2
+        CHECK(pair["touching"]["at_least"] == false);
+        CHECK(pair["touching"]["allowed"] == allowed);
+    }
 }
 
 TEST_CASE("report: parts have the colours that all pictures give them, what is fixed is pale; the page knows the others") {

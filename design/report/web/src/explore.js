@@ -145,6 +145,17 @@ function scatter(parent, designs) {
 
 const mostAxes = 14;
 
+// A name in lines of its words, as wide as the axes are apart; the whole of it, for axes may differ in any word.
+function labelLines(c, name, wide) {
+  if (c.measureText(name).width <= wide) return [name];
+  const fits = (text) => c.measureText(text).width < wide;
+  const lines = name.split(" ").reduce((rows, word) => {
+    const last = rows[rows.length - 1];
+    return last === undefined || !fits(`${last} ${word}`) ? [...rows, word] : [...rows.slice(0, -1), `${last} ${word}`];
+  }, []);
+  return lines.length <= 6 ? lines : [...lines.slice(0, 3), "\u2026", ...lines.slice(-2)];
+}
+
 function parallel(parent, designs) {
   const shown = designs.columns.map((column, k) => ({ column, k })).filter(({ column, k }) => column.group !== "violation" && designs.varies(k) && !(column.group === "term" && designs.of("term").length === 1)).slice(0, mostAxes);
   if (shown.length < 2) return;
@@ -172,6 +183,8 @@ function parallel(parent, designs) {
   };
   const chart = canvasChart(parent, 360, (c, w, h) => {
     [width, height] = [w, h];
+    const wide = (width - 120) / (axes.length - 1), labels = axes.map((axis) => labelLines(c, named(designs, axis.k), wide));
+    room.top = 28 + 14 * Math.max(2, ...labels.map((lines) => lines.length));
     const shade = designs.shade === null ? null : designs.columns[designs.shade], [s0, s1] = shade ? span(shade.values, 0) : [0, 1];
     for (const wanted of [false, true]) {
       c.globalAlpha = wanted ? Math.max(0.25, Math.min(0.8, 40 / all.length)) : 0.15;
@@ -212,9 +225,7 @@ function parallel(parent, designs) {
       c.fillText(high, x, room.top - 6);
       c.fillText(low, x, height - room.bottom + 16);
       c.fillStyle = css("--ink");
-      const wide = (width - 120) / (axes.length - 1), name = named(designs, axis.k);
-      const lines = c.measureText(name).width > wide ? name.match(/\S+(?:\s|$)/g).reduce((rows, word) => (c.measureText(rows[rows.length - 1] + word).width < wide || !rows[rows.length - 1] ? [...rows.slice(0, -1), rows[rows.length - 1] + word] : [...rows, word]), [""]) : [name];
-      lines.slice(-2).forEach((row, r, list) => c.fillText(row.trim(), x, room.top - 22 - 14 * (list.length - 1 - r), Math.max(40, wide - 4)));
+      labels[n].forEach((row, r, list) => c.fillText(row.trim(), x, room.top - 22 - 14 * (list.length - 1 - r), Math.max(40, wide - 4)));
     });
   });
   const place = (event) => {
@@ -263,8 +274,19 @@ function chosenTables(designs) {
   return [element("div", {}, left), element("div", {}, right)];
 }
 
+// What the best are ordered by, and which parameters their table leaves out.
+function bestWords(designs) {
+  const order = designs.list.some((design) => design.met) ? "By the objective, those first that meet every requirement." : "No design meets every requirement: these are ordered by their largest violation, the least first.";
+  const shown = freeParameters(designs), left = designs.of("parameter").filter(({ k }) => !shown.some((each) => each.k === k)).map(({ column }) => column.name);
+  if (!left.length) return order;
+  const names = left.length <= 3 ? left.join(", ") : `${left.slice(0, 3).join(", ")}, ...`;
+  return `${order} Left out of the table: ${plural(left.length, "parameter")} (${names}); the design chosen shows all.`;
+}
+
+const freeParameters = (designs) => designs.of("parameter").filter(({ k }) => designs.varies(k)).slice(0, 5);
+
 function bestTable(designs) {
-  const objective = designs.of("objective")[0].column, free = designs.of("parameter").filter(({ k }) => designs.varies(k)).slice(0, 5);
+  const objective = designs.of("objective")[0].column, free = freeParameters(designs);
   const rows = designs.bestFirst().slice(0, 10).map((i) => element("tr", { "data-design": i },
     element("td", {}, element("button", { type: "button", class: "row-button", onclick: () => designs.choose(i) }, `design ${i + 1}`)),
     cell("Objective", "num", number(objective.values[i])),
@@ -294,7 +316,7 @@ export function showExploration(data, section, motion) {
   section("All numbers at once", "Each line is a design. Drag along an axis to keep those within a range, in the picture above too; red marks what is required.", all, clear);
   parallel(all, designs);
   section("The design chosen", null, chosenWords, chosen);
-  section("The best", "By the objective, those first that meet every requirement.", bestTable(designs));
+  section("The best", bestWords(designs), bestTable(designs));
   const update = () => {
     const i = designs.chosen, design = designs.list[i], objective = designs.of("objective")[0].column;
     const verdict = `${design.met ? "It meets every requirement, proven" : design.reason ? design.reason : "It does not meet every requirement"}.`.replace("..", ".");

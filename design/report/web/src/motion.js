@@ -6,7 +6,7 @@ import { indexAt } from "./data.js";
 import { announce, byId, element, reducedMotion } from "./dom.js";
 import { seconds, spaced, upperBound, withUnit } from "./numbers.js";
 import { Viewer } from "./viewer.js";
-import { depthWords, isShared } from "./words.js";
+import { depthWords, isShared, isTouching, touchWords } from "./words.js";
 
 const playIcon = "M4 2.2v11.6L13.5 8z", pauseIcon = "M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z";
 const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
@@ -252,12 +252,12 @@ class Motion {
   markOf(pair, near) {
     const shared = isShared(pair), middle = shared ? pair.depth?.point : null;
     const a = new THREE.Vector3(...(middle ?? pair.point_a)), b = new THREE.Vector3(...(middle ?? pair.point_b));
-    return { a, b, time: this.instant(pair), near, shared, label: shared ? `${pair.a} \u2013 ${pair.b}: ${depthWords(pair)}` : withUnit(upperBound(pair.upper), "mm") };
+    return { a, b, time: this.instant(pair), near, shared, label: shared ? `${pair.a} \u2013 ${pair.b}: ${depthWords(pair)}` : isTouching(pair) ? `${pair.a} \u2013 ${pair.b}: ${touchWords(pair)}` : withUnit(upperBound(pair.upper), "mm") };
   }
 
   // Before anything is chosen: the worst pair, whatever hides it.
   markWorst() {
-    const slack = (pair) => (pair.lower ?? Infinity) - (pair.minimum ?? 0);
+    const slack = (pair) => (isTouching(pair) ? 0 : pair.lower ?? Infinity) - (pair.minimum ?? 0);
     const shown = this.data.pairs.filter((pair, k) => this.canShow(k) && !pair.poses);
     const depth = (pair) => pair.depth?.upper ?? 0, deepest = shown.filter(isShared).sort((x, y) => depth(y) - depth(x))[0];
     const worst = deepest ?? shown.reduce((least, pair) => (least === null || slack(pair) < slack(least) ? pair : least), null);
@@ -311,7 +311,7 @@ class Motion {
     viewer.fly(middle, tilt, height / (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)));
     this.seek(marked.time);
     this.highlight();
-    const told = marked.shared ? `interference, ${depthWords(pair)}` : `${withUnit(upperBound(pair.upper), "mm")} apart`;
+    const told = marked.shared ? `interference, ${depthWords(pair)}` : isTouching(pair) ? touchWords(pair) : `${withUnit(upperBound(pair.upper), "mm")} apart`;
     announce(`Shown: ${pair.a} and ${pair.b}, ${told} ${pair.poses ? spaced(pair.note ?? "at the start") : `at ${seconds(marked.time, this.data.step)}`}`);
     byId("viewport").scrollIntoView({ block: "nearest" });
   }

@@ -2,7 +2,7 @@
 // Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
 import { element } from "./dom.js";
 import { lowerBound, number, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
-import { depthRange, heldWords, isShared, spansMuch, startName, volumeRange } from "./words.js";
+import { depthRange, heldWords, isShared, isTouching, spansMuch, startName, touchWords, volumeRange } from "./words.js";
 
 export function tableOf(label, headings, rows) {
   const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
@@ -44,7 +44,7 @@ export function pairTable(data, show) {
   const required = apart.some(({ pair }) => pair.minimum !== null), timed = apart.some(({ pair }) => pair.motion && pair.time !== null);
   const headings = [["Pair"], ...(required ? [["Required", "num"]] : []), ["Proven at least", "num"], ["At most", "num"], ...(timed ? [["When", "num"]] : []), ["Verdict"]];
   const rows = apart.map(({ pair, k }) => element("tr", { "data-pair": k },
-    opener(pairName(pair), pair.note, k, show),
+    opener(pairName(pair), pair.note ?? (isTouching(pair) ? touchWords(pair) : null), k, show),
     required ? cell("Required", "num", withUnit(number(pair.minimum), "mm")) : null,
     cell("Proven at least", "num", withUnit(lowerBound(pair.lower), "mm")),
     cell("At most", "num", withUnit(upperBound(pair.upper), "mm")),

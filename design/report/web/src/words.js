@@ -19,8 +19,21 @@ export const depthRange = (pair) => range(pair.depth, "mm");
 export const volumeRange = (pair) => range(pair.volume, "mm\u00b3");
 export const depthWords = (pair) => (depthRange(pair) ? `${depthRange(pair)} deep` : "depth not measured");
 
+export const isTouching = (pair) => pair.finding === "touching";
+// "touching over 100 mm^2, accepted".
+export function touchWords(pair) {
+  const t = pair.touching;
+  if (!t) return "touching";
+  const over = t.area > 0 || t.at_least ? `over ${t.at_least ? "at least " : ""}${withUnit(number(t.area, 4), "mm\u00b2")}` : "in edges and points";
+  return `touching ${over}${t.allowed ? ", accepted" : ""}`;
+}
+export const acceptWords = (pair) => `if they are meant to touch, --allow-touch ${pair.a}:${pair.b} accepts it`;
+
 const list = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`);
 const some = (names, most = 3) => (names.length <= most ? list(names) : `${names.slice(0, most).join(", ")} and ${names.length - most} more`);
+
+// Names of pairs have an "and" of their own.
+const somePairs = (names, most = 3) => (names.length <= most ? names.join("; ") : `${names.slice(0, most).join("; ")}; and ${names.length - most} more`);
 
 export function asked(data) {
   if (data.description) return data.description;
@@ -95,8 +108,10 @@ function simulated(data) {
 function cleared(data) {
   const pairs = data.pairs, required = pairs.filter((p) => p.minimum !== null), where = data.ranges ? "over all positions of the joints" : data.motion ? "over the whole motion" : "as assembled";
   const of = (status) => pairs.filter((p) => p.status === status);
-  const names = (rows) => some(rows.map((p) => `${p.a} and ${p.b}`));
-  const shared = pairs.filter(isShared), close = of("violated").filter((p) => !isShared(p));
+  const names = (rows) => somePairs(rows.map((p) => `${p.a} and ${p.b}`));
+  const shared = pairs.filter(isShared), close = of("violated").filter((p) => !isShared(p) && !isTouching(p));
+  const against = pairs.filter((p) => isTouching(p) && p.status !== "contact");
+  const over = against.length ? `${somePairs(against.map((p) => `${p.a} and ${p.b}${touchWords(p).replace("touching", "")}`))}; ${acceptWords(against[0])}.` : "", touch = over ? ` Touching: ${over}` : "";
   const total = data.pair_count ?? pairs.length;
   const touching = of("contact").filter((p) => p.finding === "touching").length;
   const pushing = of("contact").length - touching, judged = total - pushing - touching;
@@ -111,12 +126,13 @@ function cleared(data) {
         : { tone: "good", head: "No clash, proven.", rest: `The distances of ${plural(total, "pair")} are bounded ${where}; no minimum was asked for.` };
     case "violated":
       if (shared.length) {
-        const deep = some(shared.map((p) => `${p.a} and ${p.b}${depthRange(p) ? ` (${depthWords(p)})` : ""}`));
-        return { tone: "bad", head: `${plural(shared.length, "interference")} ${where}.`, rest: `${shared.length === 1 ? "Two parts share" : "Parts share"} material: ${deep}.${close.length ? ` Too close: ${names(close)}.` : ""}` };
+        const deep = somePairs(shared.map((p) => `${p.a} and ${p.b}${depthRange(p) ? ` (${depthWords(p)})` : ""}`));
+        return { tone: "bad", head: `${plural(shared.length, "interference")} ${where}.`, rest: `${shared.length === 1 ? "Two parts share" : "Parts share"} material: ${deep}.${close.length ? ` Too close: ${names(close)}.` : ""}${touch}` };
       }
-      return { tone: "bad", head: "Too close.", rest: `Nearer than required ${where}: ${names(close)}.` };
+      if (!close.length && over) return { tone: "bad", head: "Touching.", rest: `Faces lie on each other ${where}: ${over}` };
+      return { tone: "bad", head: "Too close.", rest: `Nearer than required ${where}: ${names(close)}.${touch}` };
     default:
-      return { tone: "open", head: "Undecided.", rest: of("undecided").length ? `Not settled ${where}: ${names(of("undecided"))}.` : "Nothing was judged, or not to the end." };
+      return { tone: "open", head: "Undecided.", rest: of("undecided").length ? `Not settled ${where}: ${names(of("undecided"))}.${touch}` : "Nothing was judged, or not to the end." };
   }
 }
 
@@ -128,13 +144,21 @@ function explored(data) {
   return { tone: "good", head: `${plural(met, "design meets", "designs meet")} every requirement, proven.`, rest };
 }
 
+// The requirement that a design's violation is of, in whose unit it is; null where that is not known, as of one without bounds in the file.
+function violatedOf(designs, i) {
+  const violation = designs.of("violation")[0].column.values[i];
+  const over = ({ column }) => Math.max(column.lower === null ? -Infinity : column.lower - column.values[i], column.upper === null ? -Infinity : column.values[i] - column.upper);
+  const found = designs.of("constraint").find((each) => Math.abs(over(each) - violation) <= 1e-3 * violation);
+  return found ? { name: found.column.name, unit: found.column.unit.replace("^2", "\u00b2").replace("^3", "\u00b3") } : null;
+}
+
 function exploredFacts(data) {
   const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "by proven bounds"]];
   if (!data.designs.length) return rows;
   const designs = new Designs(data), [best] = designs.bestFirst(), of = (group) => designs.of(group)[0].column.values[best];
   if (best === undefined) return rows;
   if (data.designs[best].met) rows.push(["Least objective", number(of("objective")), "of those that meet everything"]);
-  else rows.push(["Least violation", number(of("violation")), `of design ${best + 1}, whose objective is ${number(of("objective"))}`]);
+  else rows.push(["Least violation", withUnit(number(of("violation")), violatedOf(designs, best)?.unit), `${violatedOf(designs, best) ? `${violatedOf(designs, best).name} ` : ""}of design ${best + 1}, whose objective is ${number(of("objective"))}`]);
   return rows;
 }
 
@@ -157,7 +181,7 @@ export function facts(data) {
     rows.push(["Interferences", String(shared.length), deepest.depth ? `the deepest ${depthRange(deepest)}` : "depth not measured", "bad"]);
   }
   const least = data.kind === "simulate" ? data.least : Math.min(...apart.map((p) => p.lower ?? Infinity));
-  if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : shared.length ? "of the other pairs, proven" : "proven"]);
+  if (least !== null && Number.isFinite(least)) rows.push(["Least clearance", `\u2265\u00a0${mm(lowerBound(least))}`, data.kind === "simulate" && data.status !== "ok" ? "as far as it is proven" : shared.length || data.pairs.some(isTouching) ? "of the other pairs, proven" : "proven"]);
   if (data.kind === "optimise") rows.push(["Simulations", String(data.evaluations), data.failed ? `${data.failed} of them failed` : "none failed"]);
   else if (data.motion) rows.push(["Motion", `${number(data.duration, 4)}\u00a0s`, plural(data.steps, "step")]);
   if (data.kind === "clearance" && data.status !== "shown") rows.push(["Pairs", String(data.pair_count ?? data.pairs.length), data.ranges ? "over the joints\u2019 ranges" : data.motion ? "over the motion" : "as assembled"]);
