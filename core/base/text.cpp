@@ -34,14 +34,11 @@ Character character_at(std::string_view text, std::size_t at) {
     return {code, bytes};
 }
 
-// U+FFFE and U+FFFF are no characters, nor may they stand in XML.
-bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0xFFFE || code == 0xFFFF; }
+bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
 
-std::string hexadecimal(unsigned code) {
+std::string hexadecimal(unsigned byte) {
     constexpr std::string_view digits = "0123456789abcdef";
-    std::string out = "\\x";
-    for (unsigned shift = code > 0xFF ? 16 : 8; shift > 0;) out += digits[code >> (shift -= 4) & 15U];
-    return out;
+    return {'\\', 'x', digits[byte >> 4U & 15U], digits[byte & 15U]};
 }
 
 // Calls `kept(character's bytes, its code)` for each, `other(shown)` for what no terminal is to have.

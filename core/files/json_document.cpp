@@ -410,17 +410,9 @@ std::optional<bool> JsonNode::boolean() const {
 
 std::optional<std::string> JsonNode::string() const {
     if (!exists()) return std::nullopt;
-    if (!is_string()) {
-        fail(ErrorCode::wrong_type, "a string is wanted, found " + shown());
-        return std::nullopt;
-    }
-    auto found = value_of(value_).get<std::string>();
-    // It may be told, and then no terminal may take it for more than text.
-    if (const std::string told = base::shown(found); told != found) {
-        fail(ErrorCode::out_of_range, "this text holds a control character: " + told.substr(0, 60));
-        return std::nullopt;
-    }
-    return found;
+    if (is_string()) return value_of(value_).get<std::string>();
+    fail(ErrorCode::wrong_type, "a string is wanted, found " + shown());
+    return std::nullopt;
 }
 
 std::optional<std::string> JsonNode::choice(const std::vector<std::string_view>& allowed) const {

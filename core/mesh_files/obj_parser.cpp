@@ -57,8 +57,8 @@ private:
     }
 
     void parse_vertex(const Words& words) {
-        Vector3 x = Vector3::Zero();  // x y z, then a weight or a colour, which is passed over
-        if (words.size() < 4) return fail(ErrorCode::parse, "a vertex needs coordinates `v x y z`");
+        Vector3 x = Vector3::Zero();  // x y [z], then a weight or a colour, which is passed over
+        if (words.size() < 3) return fail(ErrorCode::parse, "a vertex needs coordinates `v x y z`");
         for (std::size_t i = 1; i < std::min<std::size_t>(words.size(), 4); ++i) {
             const auto value = files::parsed_number(words[i]);
             if (!value) return fail(ErrorCode::parse, "`" + std::string(words[i]) + "` is not a number");

@@ -138,7 +138,9 @@ Errors check_numbers(const scene::Scene& scene) {
         if (!good) errors.push_back({ErrorCode::out_of_range, scene.path + "#" + pointer, message});
     };
     const auto positive = [](const std::optional<double>& x) { return !x || (*x > 0 && std::isfinite(*x)); };
-    want(positive(scene.timestep), "/timestep", "the time step must be greater than 0 and finite");
+    constexpr double a_day = 86400;  // [s]
+    want(positive(scene.timestep) && scene.timestep <= a_day, "/timestep",
+         "the time step must be greater than 0 and at most a day (it is in seconds)");
     want(positive(scene.dhat), "/contact/dhat", "the activation distance must be greater than 0 and finite");
     want(scene.dmin >= 0 && std::isfinite(scene.dmin), "/contact/dmin", "the minimum separation must be at least 0 and finite");
     want(positive(scene.kappa), "/contact/kappa", "the barrier stiffness must be greater than 0 and finite");

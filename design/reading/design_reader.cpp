@@ -6,6 +6,7 @@
 #include <set>
 #include <system_error>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
@@ -54,6 +55,8 @@ public:
         design_.constraints = read_constraints(root["constraints"], context, margin);
         design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
         file_.output = root["output"].string().value_or("");
+        if (const std::string fault = core::base::name_fault(file_.output); !file_.output.empty() && !fault.empty())
+            root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
         if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
         if (!document_.errors().empty()) return all_errors();
         file_.warnings = document_.warnings();

@@ -29,14 +29,17 @@ Errors read_lines(const std::string& file, ExplorationSource& source) {
     if (member(source.header, "fettle_explore") != 1)
         return {
             {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
-    for (int number = 2; std::getline(lines, line); ++number) {
+    int damaged = 0;
+    while (std::getline(lines, line)) {
         if (line.empty()) continue;
         Json result = parsed_json(line);
-        if (!result.is_object() || !member(result, "status").is_string())
-            return {{ErrorCode::parse, file + ": line " + std::to_string(number),
-                     "the line is damaged: it is no result of an exploration; take it out, or name another file"}};
-        source.results.push_back(std::move(result));
+        if (result.is_object() && member(result, "status").is_string()) {
+            source.results.push_back(std::move(result));
+        } else {
+            ++damaged;
+        }
     }
+    if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
     if (end < text->size()) source.notices.emplace_back(cut_off);
     if (source.results.empty())
         return {{ErrorCode::missing_key, file,

@@ -188,8 +188,15 @@ TEST_CASE("check files: warnings are remarks, about their file, and errors where
     const Answer strict = run("validate " + folder.design() + " --strict", true);
     CHECK(strict.code == 3);
     CHECK(strict.says("its size is 40 m"));
-    // What is about no file names none; a place in a file names the file.
-    CHECK_FALSE(found(folder, "clearance " + scene + " --minimum 3").results()[0].contains("locations"));
+    // What is about no file of its own is about the command's; a place in a file names the file.
+    CHECK(found(folder, "clearance " + scene + " --minimum 3")
+              .results()[0]
+              .at("locations")[0]
+              .at("physicalLocation")
+              .at("artifactLocation")
+              .at("uri")
+              .get<std::string>()
+              .ends_with("small.scene.json"));
     const Found broken = found(folder, "validate " + folder.write("broken.scene.json", "{\n \"fettle_scene\": }"));
     CHECK(broken.results()[0]
               .at("locations")[0]
