@@ -108,8 +108,7 @@ std::string plain_words(const std::string& text, std::size_t offset, const std::
     if (is_literal && (here == '/' || here == '#')) return "JSON has no comments";
     if (has(said, "expected end of input")) return "more text follows behind the end";
     if (is_literal && has(said, "object key")) return "a key is wanted, which is text in double quotes";
-    if (word == "True" || word == "False" || word == "None" || word == "Null")
-        return "JSON writes true, false and null, not " + word;
+    if (word == "True" || word == "False" || word == "None" || word == "Null") return "JSON writes true, false and null, not " + word;
     if (word.size() > 1 && word[0] == '0' && std::isdigit(static_cast<unsigned char>(word[1]))) return "a number begins with a 0 too many";
     if (has(said, "parsing object separator - unexpected")) return "a colon is missing behind a key";
     if (has(said, "parsing object - unexpected") || has(said, "parsing array - unexpected"))
