@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 
 namespace fettle::adjoint::constraint {
 namespace {
@@ -28,7 +28,7 @@ public:
           poses_(poses),
           frames_(placed(problem.set.frames, poses)),
           angles_(std::move(angles)),
-          solver_(problem.index, problem.count) {
+          solver_(problem.dofs) {
         for (std::size_t i = 0; i < problem.rows.size(); ++i) {
             const auto is_this = [&](const DependentRow& d) { return d.row == static_cast<int>(i); };
             if (std::any_of(dependent.begin(), dependent.end(), is_this)) continue;
@@ -44,10 +44,8 @@ public:
         std::vector<Vector6> y_bar(n), lambda(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i) y_bar[i] = tangent_of(pose_bar[i], poses_[i].rotation);
         solver_.factorise(hessian_, jacobian_);
-        const auto solution = solver_.solve(gathered(y_bar), VectorX::Zero(jacobian_.count()));
-        for (std::size_t i = 0; i < n; ++i)
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) lambda[i][k] = solution.y[problem_.index[i][k]];
+        const auto solution = solver_.solve_refined(hessian_, jacobian_, gather(problem_.dofs, y_bar), VectorX::Zero(jacobian_.count()));
+        scatter(problem_.dofs, solution.y, lambda);
         AssemblyGradient out;
         out.written_bar = held_back(y_bar, lambda, solution.multipliers);
         out.moments_bar.assign(n, Matrix4::Zero());
@@ -63,14 +61,6 @@ public:
     }
 
 private:
-    VectorX gathered(const std::vector<Vector6>& values) const {
-        VectorX out(problem_.count);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) out[problem_.index[i][k]] = values[i][k];
-        return out;
-    }
-
     // Those of the inertia's gradient; then the Lagrangian's Hessian.
     void find_multipliers() {
         std::vector<Vector6> gradient;
@@ -84,7 +74,8 @@ private:
         const std::vector<Vector3> no_turn(poses_.size(), Vector3::Zero());
         add_row_curvature(problem_.set, rows_, VectorX::Zero(jacobian_.count()), frames_, no_turn, hessian_);  // the pattern
         solver_.factorise(hessian_, jacobian_);
-        multipliers_ = solver_.solve(-gathered(gradient), VectorX::Zero(jacobian_.count())).multipliers;
+        multipliers_ =
+            solver_.solve_refined(hessian_, jacobian_, -gather(problem_.dofs, gradient), VectorX::Zero(jacobian_.count())).multipliers;
         for (std::size_t i = 0; i < poses_.size(); ++i)
             hessian_.diagonal[i].bottomRightCorner<3, 3>() += core::kinematics::tangent_curvature(arms[i]);
         add_row_curvature(problem_.set, rows_, multipliers_, frames_, no_turn, hessian_);
@@ -92,16 +83,11 @@ private:
 
     // Of coordinates that may not move.
     std::vector<Vector6> held_back(const std::vector<Vector6>& y_bar, const std::vector<Vector6>& lambda, const VectorX& mu) const {
-        std::vector<Vector6> out(y_bar.size(), Vector6::Zero()), taken(y_bar.size(), Vector6::Zero());
-        for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += hessian_.diagonal[i] * lambda[i];
-        for (const core::kinematics::OffDiagonalBlock& b : hessian_.off_diagonal) {
-            taken[b.a] += b.block * lambda[b.b];
-            taken[b.b] += b.block.transpose() * lambda[b.a];
-        }
+        std::vector<Vector6> out(y_bar.size(), Vector6::Zero()), taken = core::linear::multiply(hessian_, lambda);
         add_transposed(jacobian_, mu, taken);
         for (std::size_t i = 0; i < out.size(); ++i)
             for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] < 0) out[i][k] = y_bar[i][k] - taken[i][k];
+                if (problem_.dofs.index[i][k] < 0) out[i][k] = y_bar[i][k] - taken[i][k];
         return out;
     }
 
@@ -139,7 +125,7 @@ private:
     std::vector<int> kept_;  // places in the problem's rows
     std::vector<Row> rows_;
     core::constraint::RowJacobian jacobian_;
-    core::constraint::SaddleSolver solver_;
+    core::linear::LinearSystem solver_;
     core::kinematics::BlockHessian hessian_;
     VectorX multipliers_;
 };

@@ -5,7 +5,7 @@
 #include "fettle/adjoint/energy/time_integration_adjoint.hpp"
 #include "fettle/core/energy/measure_terms.hpp"
 #include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/linear/matrices.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {
@@ -73,7 +73,7 @@ void subtract_terms(const Model& model, const std::vector<std::vector<Vector6>>&
     measure_terms_adjoint.subtract_reverse(terms.end(), motion, step_bar, to.model_bar);
     const core::energy::CouplingDerivatives d = terms.derivatives();
     for (std::size_t s = 0; s < motion.size(); ++s) {
-        const std::vector<Vector6> along = core::solver::multiply(d.hessian, motion[s]);
+        const std::vector<Vector6> along = core::linear::multiply(d.hessian, motion[s]);
         for (std::size_t i = 0; i < n; ++i) {
             const Matrix3& rotation = terms.poses()[i].rotation;
             const Matrix34& slip_bar = step_bar.slip_reference_bar[s][i];

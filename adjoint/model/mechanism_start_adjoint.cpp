@@ -4,8 +4,8 @@
 #include "fettle/adjoint/constraint/assembly_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 #include "fettle/core/model/mechanism_start.hpp"
 
 namespace fettle::adjoint::model {
@@ -62,7 +62,7 @@ public:
           frames_(placed(model.mechanism.set.frames, start_poses(model))),
           rotations_(frame_rotations(model)),
           rows_(row_jacobian(problem.set, problem.rows, frames_)),
-          solver_(problem.index, problem.count) {}
+          solver_(problem.dofs) {}
 
     // @param agreed_bar  (v, omega) of what the model has. Adds to the poses' gradients and the mechanism's.
     void reverse(const Motions& agreed_bar, WrittenStartGradient& out, Motions& pose_bar, ModelGradient& gradient) {
@@ -71,9 +71,12 @@ public:
         for (const Body& body : model_.bodies)
             mass.diagonal.push_back(core::kinematics::mass_matrix(body.pose_start.rotation, body.moments));
         if (!solver_.factorise(mass, rows_)) return;  // as forwards: nothing is made to agree
-        const auto found = solver_.solve(VectorX::Zero(problem_.count), rates() - multiply(rows_, written));
-        const auto back = solver_.solve(gathered(agreed_bar), VectorX::Zero(rows_.count()));
-        const Motions delta = scattered(found.y), lambda = scattered(back.y);
+        const VectorX none = VectorX::Zero(problem_.dofs.count), still = VectorX::Zero(rows_.count());
+        const auto found = solver_.solve_refined(mass, rows_, none, rates() - multiply(rows_, written));
+        const auto back = solver_.solve_refined(mass, rows_, gather(problem_.dofs, agreed_bar), still);
+        Motions delta(written.size(), Vector6::Zero()), lambda = delta;
+        scatter(problem_.dofs, found.y, delta);
+        scatter(problem_.dofs, back.y, lambda);
         Motions agreed = written, reaction(written.size(), Vector6::Zero());
         add_transposed(rows_, back.multipliers, reaction);
         for (std::size_t i = 0; i < agreed.size(); ++i) {
@@ -91,22 +94,6 @@ private:
         VectorX out(rows_.count());
         for (int i = 0; i < rows_.count(); ++i)
             out[i] = core::model::rate_at_start(problem_.rows[static_cast<std::size_t>(i)].curve, model_.timestep);
-        return out;
-    }
-
-    VectorX gathered(const Motions& values) const {
-        VectorX out(problem_.count);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) out[problem_.index[i][k]] = values[i][k];
-        return out;
-    }
-
-    Motions scattered(const VectorX& y) const {
-        Motions out(problem_.index.size(), Vector6::Zero());
-        for (std::size_t i = 0; i < out.size(); ++i)
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) out[i][k] = y[problem_.index[i][k]];
         return out;
     }
 
@@ -178,7 +165,7 @@ private:
     const std::vector<core::measure::PlacedFrame> frames_;
     const std::vector<Matrix3> rotations_;
     const core::constraint::RowJacobian rows_;
-    core::constraint::SaddleSolver solver_;
+    core::linear::LinearSystem solver_;
 };
 
 // The assembly backwards. The gradients of the poses as written take the place of those of the poses.

@@ -149,7 +149,7 @@ public:
         if (at.is_damped()) contact::subtract_contact_damping_adjoint(at.damping(), motion, {start_bar, areas_bar_, model_bar_});
         if (at.lag) add_friction(t, at, motion);
         const ContactsOf::Derivatives d = at.derivatives(HessianKind::exact);
-        const std::vector<Vector6> end_bar = core::solver::multiply(d.hessian, motion[0]);
+        const std::vector<Vector6> end_bar = core::linear::multiply(d.hessian, motion[0]);
         for (std::size_t i = 0; i < n; ++i) {
             seeds_.trajectory_bar.pose_bar[t + 1][i] -= pose_entries_of(end_bar[i], at.end.poses[i].rotation);
             seeds_.trajectory_bar.pose_bar[t][i] += start_bar[0][i];

@@ -208,7 +208,7 @@ private:
         energy::subtract_terms_reverse(step.end(), motion_, step_bar_, out_);
         if (step.rows.count() > 0) constraint::subtract_rows_reverse({step.problem, step.poses, step.multipliers}, motion_, mu_, out_);
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
-            std::vector<Vector6> h_lambda = core::solver::multiply(step.derivatives.hessian, lambda_[s]);
+            std::vector<Vector6> h_lambda = core::linear::multiply(step.derivatives.hessian, lambda_[s]);
             if (step.rows.count() > 0) add_transposed(step.rows, mu_[s], h_lambda);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 torque_back(t, s, i, step);
@@ -249,7 +249,7 @@ private:
                 y_bar_[s][i].tail<3>() =
                     left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
-            rhs.col(static_cast<Eigen::Index>(s)) = core::solver::gather(dofs_, y_bar_[s]);
+            rhs.col(static_cast<Eigen::Index>(s)) = gather(dofs_, y_bar_[s]);
             if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
                 of_rows.col(static_cast<Eigen::Index>(s)) = bar[static_cast<std::size_t>(t)];
         }
@@ -257,7 +257,7 @@ private:
         const MatrixX &lambda = solution.y, &mu = solution.mu;
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             if (step.rows.count() > 0) mu_[s] = mu.col(static_cast<Eigen::Index>(s));
-            core::solver::scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
+            scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 motion_[s][i].head<3>() = lambda_[s][i].head<3>();
                 motion_[s][i].tail<3>() = left_jacobian_[i] * lambda_[s][i].tail<3>();
@@ -373,7 +373,7 @@ private:
     const Trajectory& trajectory_;
     const std::vector<TrajectoryGradient>& seeds_;
     StepSolver solver_;
-    const core::solver::FreeDofs dofs_;
+    const core::linear::FreeDofs dofs_;
     const SweepHistory history_;
     std::vector<ModelGradient> out_;
     std::vector<std::vector<Matrix34>> end_, start_, before_;                             // [seed][body]: P_bar[t+1], P_bar[t], P_bar[t-1]

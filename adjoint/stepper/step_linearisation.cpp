@@ -49,46 +49,6 @@ core::energy::History history_at(const core::model::Model& model, const core::st
     return out;
 }
 
-// H^-1 rhs, one column each, with one round of iterative refinement.
-MatrixX refined_solve(const core::solver::LinearSolver& solver, const core::solver::FreeDofs& dofs,
-                      const core::kinematics::BlockHessian& hessian, const MatrixX& rhs) {
-    MatrixX x = solver.solve(rhs);
-    MatrixX residual(rhs.rows(), rhs.cols());
-    std::vector<Vector6> column(dofs.index.size(), Vector6::Zero());
-    for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
-        core::solver::scatter(dofs, x.col(k), column);
-        residual.col(k) = rhs.col(k) - core::solver::gather(dofs, core::solver::multiply(hessian, column));
-    }
-    return x + solver.solve(residual);
-}
-
-// [H C^T; C 0], whole.
-Eigen::SparseMatrix<double> saddle_matrix(const LinearisedStep& step, const core::solver::FreeDofs& dofs) {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add_block = [&](int a, int b, const Matrix6& block) {
-        for (int i = 0; i < 6; ++i)
-            for (int j = 0; j < 6; ++j)
-                if (dofs.index[a][i] >= 0 && dofs.index[b][j] >= 0) entries.emplace_back(dofs.index[a][i], dofs.index[b][j], block(i, j));
-    };
-    const core::kinematics::BlockHessian& h = step.derivatives.hessian;
-    for (std::size_t i = 0; i < h.diagonal.size(); ++i) add_block(static_cast<int>(i), static_cast<int>(i), h.diagonal[i]);
-    for (const core::kinematics::OffDiagonalBlock& b : h.off_diagonal) {
-        add_block(b.a, b.b, b.block);
-        add_block(b.b, b.a, b.block.transpose());
-    }
-    for (int row = 0; row < step.rows.count(); ++row)
-        for (int k = step.rows.first[row]; k < step.rows.first[row + 1]; ++k)
-            for (int i = 0; i < 6; ++i) {
-                const int column = dofs.index[step.rows.entries[k].body][i];
-                if (column < 0) continue;
-                entries.emplace_back(dofs.count + row, column, step.rows.entries[k].gradient[i]);
-                entries.emplace_back(column, dofs.count + row, step.rows.entries[k].gradient[i]);
-            }
-    Eigen::SparseMatrix<double> out(dofs.count + step.rows.count(), dofs.count + step.rows.count());
-    out.setFromTriplets(entries.begin(), entries.end());
-    return out;
-}
-
 // The rows' part of the Lagrangian.
 void add_rows(StepSolver& solver, LinearisedStep& step) {
     const core::model::Mechanism& mechanism = step.problem.model->mechanism;
@@ -100,7 +60,7 @@ void add_rows(StepSolver& solver, LinearisedStep& step) {
         rotation_vectors.push_back(p.rotation_vector);
         left_jacobians.push_back(core::kinematics::left_jacobian(p.rotation_vector));
     }
-    to_chart(left_jacobians, step.rows);
+    core::constraint::to_chart(left_jacobians, step.rows);
     const auto add_curvature = [&](const VectorX& multipliers) {
         add_row_curvature(mechanism.set, mechanism.rows, multipliers, frames, rotation_vectors, step.derivatives.hessian);
     };
@@ -114,16 +74,14 @@ void add_rows(StepSolver& solver, LinearisedStep& step) {
 
 bool rotates_freely(const core::model::Body& body) { return is_free(body, 3) && is_free(body, 4) && is_free(body, 5); }
 
-StepSolver::StepSolver(const core::model::Model& model) : dofs_(core::solver::free_dofs(model)), linear_(dofs_) {
-    if (!model.mechanism.rows.empty()) saddle_.emplace(dofs_.index, dofs_.count);
-}
+StepSolver::StepSolver(const core::model::Model& model) : system_(free_dofs(model)) {}
 
 Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const {
     const core::model::Model& model = *step.problem.model;
     std::vector<double> magnitude = step.derivatives.force_magnitude;
     for (int row = 0; row < step.rows.count(); ++row)
         for (int k = step.rows.first[row]; k < step.rows.first[row + 1]; ++k) {
-            const core::constraint::RowGradient& e = step.rows.entries[k];
+            const core::linear::RowGradient& e = step.rows.entries[k];
             const double arm = std::max(model.bodies[e.body].radius, model.dhat);
             magnitude[e.body] += std::abs(step.multipliers[row]) * (e.gradient.head<3>().norm() + e.gradient.tail<3>().norm() / arm);
         }
@@ -132,7 +90,7 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
         Vector6 g = step.derivatives.gradient[i];
         g.tail<3>() /= std::max(body.radius, model.dhat);
         for (int k = 0; k < 6; ++k)
-            if (dofs_.index[i][k] < 0) g[k] = 0;
+            if (dofs().index[i][k] < 0) g[k] = 0;
         const double mass = body.moments(3, 3), size = magnitude[i] + mass * model.velocity_tolerance * model.timestep;
         if (g.norm() <= balanced * size + mass * rounding_of_places * model.diagonal) continue;
         std::ostringstream message;
@@ -187,17 +145,11 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
 }
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
-    indefinite_.reset();
     if (Errors errors = check_rows(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_areas(trajectory, t, step); !errors.empty()) return errors;
     ++counts_.factorisations;
-    if (!saddle_) {
-        if (linear_.factorise_indefinite(step.derivatives.hessian)) return {};
-    } else {
-        if (saddle_->factorise(step.derivatives.hessian, step.rows)) return {};
-        if (indefinite_.emplace().factorise(saddle_matrix(step, dofs_))) return {};
-    }
+    if (system_.factorise_any(step.derivatives.hessian, step.rows)) return {};
     return unsolved(trajectory, t);
 }
 
@@ -205,40 +157,15 @@ Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t,
 StepSolver::Solution StepSolver::solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
     constexpr double solved = 1e-2;
     ++counts_.solves;
-    Solution out = solve_once(step, rhs, of_rows);
+    const core::kinematics::BlockHessian& hessian = step.derivatives.hessian;
+    const core::linear::LinearSystem::Solution x = system_.solve_refined(hessian, step.rows, rhs, of_rows),
+                                               left = system_.residual(hessian, step.rows, rhs, of_rows, x);
+    Solution out{x.y, x.multipliers};
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
-        std::vector<Vector6> y(dofs_.index.size(), Vector6::Zero());
-        core::solver::scatter(dofs_, out.y.col(k), y);
-        std::vector<Vector6> taken = core::solver::multiply(step.derivatives.hessian, y);
-        double left = 0, all = rhs.col(k).norm();
-        if (step.rows.count() > 0) {
-            add_transposed(step.rows, out.mu.col(k), taken);
-            left += (multiply(step.rows, y) - of_rows.col(k)).norm();
-            all += of_rows.col(k).norm();
-        }
-        left += (core::solver::gather(dofs_, taken) - rhs.col(k)).norm();
-        out.is_one = out.is_one && left <= solved * all;
-    }
-    return out;
-}
-
-StepSolver::Solution StepSolver::solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const {
-    if (!saddle_) return {refined_solve(linear_, dofs_, step.derivatives.hessian, rhs), {}};
-    Solution out{MatrixX(rhs.rows(), rhs.cols()), MatrixX(of_rows.rows(), rhs.cols())};
-    for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
-        if (!indefinite_) {
-            const core::constraint::SaddleSolver::Solution x = saddle_->solve(rhs.col(k), of_rows.col(k));
-            out.y.col(k) = x.y;
-            out.mu.col(k) = x.multipliers;
-            continue;
-        }
-        const Eigen::SparseMatrix<double> matrix = saddle_matrix(step, dofs_);
-        VectorX b(rhs.rows() + of_rows.rows());
-        b << rhs.col(k), of_rows.col(k);
-        VectorX x = indefinite_->solve(b);
-        x += indefinite_->solve(b - matrix * x);
-        out.y.col(k) = x.head(rhs.rows());
-        out.mu.col(k) = x.tail(of_rows.rows());
+        const bool has_rows = step.rows.count() > 0;
+        const double rest = left.y.col(k).norm() + (has_rows ? left.multipliers.col(k).norm() : 0),
+                     all = rhs.col(k).norm() + (has_rows ? of_rows.col(k).norm() : 0);
+        out.is_one = out.is_one && rest <= solved * all;
     }
     return out;
 }
@@ -254,8 +181,9 @@ VectorX StepSolver::multipliers(const LinearisedStep& step) {
     for (core::kinematics::OffDiagonalBlock& b : weight.off_diagonal) b.block.setZero();
     ++counts_.factorisations;
     ++counts_.solves;
-    saddle_->factorise(weight, step.rows);
-    return saddle_->solve(-core::solver::gather(dofs_, step.derivatives.gradient), VectorX::Zero(step.rows.count())).multipliers;
+    system_.factorise(weight, step.rows);
+    const VectorX force = -gather(dofs(), step.derivatives.gradient);
+    return system_.solve_refined(weight, step.rows, force, VectorX::Zero(step.rows.count())).multipliers;
 }
 
 std::vector<std::vector<double>> angles_along(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "fettle/adjoint/energy/term_adjoint.hpp"
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
@@ -26,7 +24,7 @@ struct LinearisedStep {
     core::contact::ContactSet contacts;                  ///< at the step's end
     std::shared_ptr<const contact::LaggedContacts> lag;  ///< what friction was taken from; null: there is none
     core::energy::ChartDerivatives derivatives;          ///< gradient and true Hessian in the chart (q, theta), of the Lagrangian
-    core::constraint::RowJacobian rows;                  ///< of joints and motors, in the chart
+    core::linear::RowJacobian rows;                      ///< of joints and motors, in the chart
     VectorX multipliers;                                 ///< per row: those that balance the potential's gradient
     energy::StepEnd end() const { return {{problem, poses, contacts, core::contact::HessianKind::exact}, lag.get()}; }
 };
@@ -43,7 +41,7 @@ class StepSolver {
 public:
     explicit StepSolver(const core::model::Model& model);
 
-    const core::solver::FreeDofs& dofs() const { return dofs_; }
+    const core::linear::FreeDofs& dofs() const { return system_.dofs(); }
     const SweepCounts& counts() const { return counts_; }
     void count_assembly() { ++counts_.assemblies; }
 
@@ -78,13 +76,9 @@ private:
     Errors check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const;
     static Errors check_rows(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
     static Errors check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step);
-    Solution solve_once(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
-    core::solver::FreeDofs dofs_;
     mutable SweepCounts counts_;
-    core::solver::LinearSolver linear_;
-    std::optional<core::constraint::SaddleSolver> saddle_;
-    std::optional<SparseLu> indefinite_;  ///< where H is not positive definite on the rows
+    core::linear::LinearSystem system_;
 };
 
 /// Angles of the mechanism's measures with their turns at the start of each step, and at the end: [t], t = 0 .. steps.

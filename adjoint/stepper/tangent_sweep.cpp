@@ -202,9 +202,9 @@ private:
             for (int k = 0; k < 6; ++k) residual_dot[i][k] = residual_change(t, i, change.r[i], k, energy.value[i], energy.dot[i]);
         for (std::size_t i = 0; i < n; ++i)
             residual_dot[i].tail<3>() -= step.problem.weight * torque_change(t, i, step, change.pose_hat_dot[i]);
-        const MatrixX rhs = -core::solver::gather(dofs_, residual_dot);
+        const MatrixX rhs = -gather(dofs_, residual_dot);
         const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
-        core::solver::scatter(dofs_, solution.y.col(0), y_dot);
+        scatter(dofs_, solution.y.col(0), y_dot);
         multiplier_dot_ = step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX();
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, change.r[i], k);
@@ -263,7 +263,7 @@ private:
     const Trajectory& trajectory_;
     const ModelTangent& direction_;
     StepSolver solver_;
-    const core::solver::FreeDofs dofs_;
+    const core::linear::FreeDofs dofs_;
     const SweepHistory history_;
     std::vector<Matrix4> moments_dot_;
     std::vector<contact::AreaChange> areas_dot_;

@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SparseLU>
 
 namespace fettle::core::base {
 
@@ -41,24 +40,11 @@ DenseLu::DenseLu(DenseLu&&) noexcept = default;
 DenseLu& DenseLu::operator=(DenseLu&&) noexcept = default;
 
 void DenseLu::factorise(const MatrixX& matrix) { implementation_->lu.compute(matrix); }
-double DenseLu::reciprocal_condition() const { return implementation_->lu.rcond(); }
+double DenseLu::reciprocal_condition() const {
+    // Eigen's estimate passes over pivots that are exactly 0.
+    return (implementation_->lu.matrixLU().diagonal().array() == 0).any() ? 0 : implementation_->lu.rcond();
+}
 MatrixX DenseLu::solve(const MatrixX& rhs) const { return implementation_->lu.solve(rhs); }
 MatrixX DenseLu::inverse() const { return implementation_->lu.inverse(); }
-
-struct SparseLu::Implementation {
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
-};
-
-SparseLu::SparseLu() : implementation_(std::make_unique<Implementation>()) {}
-SparseLu::~SparseLu() = default;
-SparseLu::SparseLu(SparseLu&&) noexcept = default;
-SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;
-
-bool SparseLu::factorise(const Eigen::SparseMatrix<double>& matrix) {
-    implementation_->lu.compute(matrix);
-    return implementation_->lu.info() == Eigen::Success;
-}
-
-MatrixX SparseLu::solve(const MatrixX& rhs) const { return implementation_->lu.solve(rhs); }
 
 }  // namespace fettle::core::base

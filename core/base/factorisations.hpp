@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Eigen's factorisations of the sizes that fettle needs, compiled once: each costs a file that names it seconds of compiling.
+/// Eigen's dense factorisations of the sizes that fettle needs, compiled once: each costs a file that names it seconds of compiling.
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCore>
 #include <memory>
 
 #include "fettle/core/base/types.hpp"
@@ -46,23 +45,6 @@ public:
     double reciprocal_condition() const;  ///< estimate of 1 / (|A|_1 |A^-1|_1)
     MatrixX solve(const MatrixX& rhs) const;
     MatrixX inverse() const;
-
-private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
-};
-
-/// L U with partial pivoting, of a sparse square matrix, its columns in an order that keeps the factors sparse. Movable.
-class SparseLu {
-public:
-    SparseLu();
-    ~SparseLu();
-    SparseLu(SparseLu&&) noexcept;
-    SparseLu& operator=(SparseLu&&) noexcept;
-
-    /// @return false where the matrix is singular: then there is nothing to solve with.
-    bool factorise(const Eigen::SparseMatrix<double>& matrix);
-    MatrixX solve(const MatrixX& rhs) const;
 
 private:
     struct Implementation;

@@ -34,8 +34,10 @@ SharedLibrary::SharedLibrary(const std::string& name, const std::string& path) :
                              "; install it, or say where it is with LD_LIBRARY_PATH");
 }
 
+void* SharedLibrary::find_any(const char* symbol) const { return dlsym(handle_, symbol); }
+
 void* SharedLibrary::address(const char* symbol) const {
-    void* const found = dlsym(handle_, symbol);
+    void* const found = find_any(symbol);
     if (found == nullptr)
         throw MissingLibrary("the library " + name_ + " is not the one that this needs: " + last_fault() +
                              "; install the version that fettle was built with");

@@ -27,6 +27,9 @@ public:
         function = reinterpret_cast<Function*>(address(symbol));
     }
 
+    /// The address of what has this name in the library or in those that it needs; null: none has it.
+    void* find_any(const char* symbol) const;
+
 private:
     void* address(const char* symbol) const;
 

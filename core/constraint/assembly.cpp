@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/constraint/saddle_solver.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 
 namespace fettle::core::constraint {
 namespace {
@@ -41,7 +41,7 @@ public:
           start_(start),
           rows_(kept_rows(problem.rows, left_out)),
           targets_(kept_values(problem.targets, left_out)),
-          solver_(problem.index, problem.count) {
+          solver_(problem.dofs) {
         at_.poses = start;
         at_.angles = angles_at(problem.set, start, {});
         measure_gaps(at_);
@@ -94,20 +94,10 @@ private:
         return out;
     }
 
-    VectorX gathered(const std::vector<Vector6>& values) const {
-        VectorX out(problem_.count);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) out[problem_.index[i][k]] = values[i][k];
-        return out;
-    }
-
-    Place moved(const VectorX& step, double fraction) const {
+    Place moved(const std::vector<Vector6>& step, double fraction) const {
         Place out{at_.poses, {}, {}, 0};
         for (std::size_t i = 0; i < out.poses.size(); ++i) {
-            Vector6 y = Vector6::Zero();
-            for (int k = 0; k < 6; ++k)
-                if (problem_.index[i][k] >= 0) y[k] = fraction * step[problem_.index[i][k]];
+            const Vector6 y = fraction * step[i];
             if (y.isZero(0)) continue;
             out.poses[i].position += y.head<3>();
             out.poses[i].rotation = kinematics::orthonormalised(kinematics::rotation(y.tail<3>()) * out.poses[i].rotation);
@@ -118,14 +108,10 @@ private:
     }
 
     // The longest move of a body, as a share of what one iteration may do.
-    double stride(const VectorX& step) const {
+    double stride(const std::vector<Vector6>& step) const {
         double most = 0;
-        for (const auto& index : problem_.index) {
-            Vector6 y = Vector6::Zero();
-            for (int k = 0; k < 6; ++k)
-                if (index[k] >= 0) y[k] = step[index[k]];
+        for (const Vector6& y : step)
             most = std::max({most, y.head<3>().norm() / (largest_shift * problem_.size), y.tail<3>().norm() / largest_turn});
-        }
         return most;
     }
 
@@ -143,16 +129,18 @@ private:
             exact_ = false;
             return true;
         }
-        const SaddleSolver::Solution solution = solver_.solve(-gathered(system.gradient), at_.remaining);
+        const auto solution = solver_.solve_refined(system.hessian, jacobian, -gather(problem_.dofs, system.gradient), at_.remaining);
         multipliers_ = solution.multipliers;
-        double fraction = 1 / std::max(1.0, stride(solution.y));
+        std::vector<Vector6> step(start_.size(), Vector6::Zero());
+        scatter(problem_.dofs, solution.y, step);
+        double fraction = 1 / std::max(1.0, stride(step));
         const double close = closed_gap(problem_.size, start_);
         for (int k = 0; k < most_halvings; ++k, fraction *= 0.5) {
-            Place trial = moved(solution.y, fraction);
+            Place trial = moved(step, fraction);
             if (!(trial.gap <= std::max(close, (1 - 0.1 * fraction) * at_.gap))) continue;
             at_ = std::move(trial);
             exact_ = true;
-            return stride(solution.y) > last_step / largest_shift || at_.gap > close;
+            return stride(step) > last_step / largest_shift || at_.gap > close;
         }
         if (!exact_) return false;
         exact_ = false;
@@ -163,7 +151,7 @@ private:
     const std::vector<Pose>& start_;
     const std::vector<Row> rows_;
     const VectorX targets_;
-    SaddleSolver solver_;
+    linear::LinearSystem solver_;
     Place at_;
     VectorX multipliers_;
     bool exact_ = false;  // with the curvature of rows and rotations
@@ -177,7 +165,7 @@ std::vector<Matrix6> masses(const AssemblyProblem& problem, const std::vector<Po
 
 std::vector<DependentRow> dependent_at(const AssemblyProblem& problem, const std::vector<Pose>& poses) {
     const RowJacobian rows = row_jacobian(problem.set, problem.rows, placed(problem.set.frames, poses));
-    return dependent_rows(masses(problem, poses), problem.index, problem.count, rows);
+    return dependent_rows(masses(problem, poses), problem.dofs, rows);
 }
 
 VectorX gaps_at(const AssemblyProblem& problem, const std::vector<Pose>& poses, const std::vector<double>& angles) {
@@ -225,15 +213,15 @@ std::vector<Vector6> compatible_velocities(const AssemblyProblem& problem, const
                                            const std::vector<DependentRow>& dependent, const VectorX& rates,
                                            const std::vector<Vector6>& velocities) {
     const RowJacobian all = row_jacobian(problem.set, problem.rows, placed(problem.set.frames, poses)), rows = without(all, dependent);
-    SaddleSolver solver(problem.index, problem.count);
+    linear::LinearSystem solver(problem.dofs);
     kinematics::BlockHessian hessian;
     hessian.diagonal = masses(problem, poses);
     std::vector<Vector6> out = velocities;
     if (!solver.factorise(hessian, rows)) return out;
-    const VectorX change = solver.solve(VectorX::Zero(problem.count), kept_values(rates, dependent) - multiply(rows, velocities)).y;
-    for (std::size_t i = 0; i < out.size(); ++i)
-        for (int k = 0; k < 6; ++k)
-            if (problem.index[i][k] >= 0) out[i][k] += change[problem.index[i][k]];
+    const VectorX none = VectorX::Zero(problem.dofs.count), wanted = kept_values(rates, dependent) - multiply(rows, velocities);
+    std::vector<Vector6> change(out.size(), Vector6::Zero());
+    scatter(problem.dofs, solver.solve_refined(hessian, rows, none, wanted).y, change);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += change[i];
     return out;
 }
 

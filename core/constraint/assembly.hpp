@@ -4,22 +4,21 @@
 /// by Newton's method on the Lagrangian. docs/method.md section 9.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "fettle/core/constraint/dependent_rows.hpp"
 #include "fettle/core/constraint/row.hpp"
+#include "fettle/core/linear/free_dofs.hpp"
 
 namespace fettle::core::constraint {
 
 struct AssemblyProblem {
     const measure::MeasureSet& set;
     const std::vector<Row>& rows;
-    VectorX targets;                        ///< per row
-    std::vector<Matrix4> moments;           ///< per body: what moving it costs
-    std::vector<std::array<int, 6>> index;  ///< as SaddleSolver takes it: what may be moved
-    int count = 0;
-    double size = 1;  ///< of the scene [m]
+    VectorX targets;               ///< per row
+    std::vector<Matrix4> moments;  ///< per body: what moving it costs
+    linear::FreeDofs dofs;         ///< what may be moved
+    double size = 1;               ///< of the scene [m]
 };
 
 /// Gaps of rows up to this are none [m]: 1e-12 of the scene's size, or what rounding makes of places as far out as these.

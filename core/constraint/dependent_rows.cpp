@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/constraint/dependent_rows.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
-#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/linear/dependent_columns.hpp"
 
 namespace fettle::core::constraint {
+namespace {
 
-std::vector<DependentRow> dependent_rows(const std::vector<Matrix6>& masses, const std::vector<std::array<int, 6>>& index, int count,
-                                         const RowJacobian& rows) {
-    std::vector<DependentRow> out;
-    if (rows.count() == 0) return out;
-    SaddleSolver solver(index, count);
-    kinematics::BlockHessian hessian;
-    hessian.diagonal = masses;
-    solver.factorise(hessian, rows);
-    if (!solver.is_usable()) return out;
-    const VectorX pivots = solver.relative_pivots();
-    for (int i = 0; i < rows.count(); ++i)
-        if (pivots[i] < dependent_pivot) out.push_back({i, {}});
-    if (out.empty()) return out;
-
-    // Of what is left no row depends on others: C^T m = (the row left out) has one solution.
-    std::vector<int> kept;
-    for (int i = 0; i < rows.count(); ++i)
-        if (!(pivots[i] < dependent_pivot)) kept.push_back(i);
-    const RowJacobian independent = without(rows, out);
-    solver.factorise(hessian, independent);
-    if (!solver.is_usable()) return out;
-    constexpr double counts = 1e-6;  // of the largest share
-    for (DependentRow& dependent : out) {
-        VectorX r = VectorX::Zero(count);
-        for (int k = rows.first[dependent.row]; k < rows.first[dependent.row + 1]; ++k)
-            for (int i = 0; i < 6; ++i)
-                if (index[rows.entries[k].body][i] >= 0) r[index[rows.entries[k].body][i]] += rows.entries[k].gradient[i];
-        const VectorX shares = solver.solve(r, VectorX::Zero(independent.count())).multipliers;
-        const double largest = shares.size() > 0 ? shares.cwiseAbs().maxCoeff() : 0;
-        for (int i = 0; i < independent.count(); ++i)
-            if (std::abs(shares[i]) > counts * largest) dependent.on.push_back(kept[i]);
+// Of what is free, as if what is not had the mass 1.
+Matrix6 free_mass(Matrix6 mass, const std::array<int, 6>& index) {
+    for (int k = 0; k < 6; ++k) {
+        if (index[static_cast<std::size_t>(k)] >= 0) continue;
+        mass.row(k).setZero();
+        mass.col(k).setZero();
+        mass(k, k) = 1;
     }
+    return mass;
+}
+
+}  // namespace
+
+std::vector<DependentRow> dependent_rows(const std::vector<Matrix6>& masses, const linear::FreeDofs& dofs, const RowJacobian& rows) {
+    std::vector<Eigen::LLT<Matrix6>> factors;
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+        factors.emplace_back(free_mass(masses[i], dofs.index[i]));
+        if (factors.back().info() != Eigen::Success) return {};
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int row = 0; row < rows.count(); ++row)
+        for (int k = rows.first[row]; k < rows.first[row + 1]; ++k) {
+            const auto body = static_cast<std::size_t>(rows.entries[k].body);
+            Vector6 gradient = rows.entries[k].gradient;
+            for (int i = 0; i < 6; ++i)
+                if (dofs.index[body][i] < 0) gradient[i] = 0;
+            factors[body].matrixL().solveInPlace(gradient);
+            for (int i = 0; i < 6; ++i)
+                if (dofs.index[body][i] >= 0) entries.emplace_back(dofs.index[body][i], row, gradient[i]);
+        }
+    Eigen::SparseMatrix<double> columns(dofs.count, rows.count());
+    columns.setFromTriplets(entries.begin(), entries.end());
+    std::vector<DependentRow> out;
+    for (linear::DependentColumn& found : linear::dependent_columns(std::move(columns), dependent_angle))
+        out.push_back({found.column, std::move(found.on)});
     return out;
 }
 

@@ -134,20 +134,6 @@ void to_chart(const std::vector<Matrix3>& left_jacobians, RowJacobian& jacobian)
         entry.gradient.tail<3>() = left_jacobians[static_cast<std::size_t>(entry.body)].transpose() * entry.gradient.tail<3>();
 }
 
-VectorX multiply(const RowJacobian& jacobian, const std::vector<Vector6>& v) {
-    VectorX out = VectorX::Zero(jacobian.count());
-    for (int i = 0; i < jacobian.count(); ++i)
-        for (int k = jacobian.first[i]; k < jacobian.first[i + 1]; ++k)
-            out[i] += jacobian.entries[k].gradient.dot(v[jacobian.entries[k].body]);
-    return out;
-}
-
-void add_transposed(const RowJacobian& jacobian, const VectorX& multipliers, std::vector<Vector6>& out) {
-    for (int i = 0; i < jacobian.count(); ++i)
-        for (int k = jacobian.first[i]; k < jacobian.first[i + 1]; ++k)
-            out[jacobian.entries[k].body] += multipliers[i] * jacobian.entries[k].gradient;
-}
-
 void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, const VectorX& multipliers,
                        const std::vector<PlacedFrame>& frames, const std::vector<Vector3>& rotation_vectors,
                        kinematics::BlockHessian& hessian) {
@@ -166,25 +152,7 @@ void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, cons
     }
     for (kinematics::OffDiagonalBlock& b : sum.blocks)
         b.block = to_tangent[static_cast<std::size_t>(b.a)].transpose() * b.block * to_tangent[static_cast<std::size_t>(b.b)];
-    add_blocks(std::move(sum.blocks), hessian);
-}
-
-void add_blocks(std::vector<kinematics::OffDiagonalBlock> blocks, kinematics::BlockHessian& hessian) {
-    using Block = kinematics::OffDiagonalBlock;
-    const auto before = [](const Block& x, const Block& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); };
-    std::stable_sort(blocks.begin(), blocks.end(), before);
-    std::vector<Block> sum;
-    sum.reserve(blocks.size() + hessian.off_diagonal.size());
-    std::merge(hessian.off_diagonal.begin(), hessian.off_diagonal.end(), blocks.begin(), blocks.end(), std::back_inserter(sum), before);
-    std::size_t count = 0;
-    for (const Block& b : sum) {
-        if (count > 0 && sum[count - 1].a == b.a && sum[count - 1].b == b.b)
-            sum[count - 1].block += b.block;
-        else
-            sum[count++] = b;
-    }
-    sum.resize(count);
-    hessian.off_diagonal = std::move(sum);
+    linear::add_blocks(sum.blocks, hessian);
 }
 
 }  // namespace fettle::core::constraint

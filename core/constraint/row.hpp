@@ -5,11 +5,14 @@
 
 #include <vector>
 
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/linear/matrices.hpp"
 #include "fettle/core/measure/measure.hpp"
 #include "fettle/core/scene/curve.hpp"
 
 namespace fettle::core::constraint {
+
+using linear::RowGradient;
+using linear::RowJacobian;
 
 struct RowPart {
     int measure = 0;
@@ -40,35 +43,15 @@ double value_at(const measure::MeasureSet& set, int measure, const std::vector<m
 VectorX row_values(const measure::MeasureSet& set, const std::vector<Row>& rows, const std::vector<measure::PlacedFrame>& frames,
                    const std::vector<double>& angles);
 
-/// Of one row in one body.
-struct RowGradient {
-    int body = 0;
-    Vector6 gradient = Vector6::Zero();
-};
-
-/// Gradients of rows, each row's bodies in increasing order, each once.
-struct RowJacobian {
-    std::vector<int> first;  ///< [row] into `entries`; one more at the end
-    std::vector<RowGradient> entries;
-    int count() const { return static_cast<int>(first.size()) - 1; }
-};
-
 /// In tangent coordinates (q, phi).
 RowJacobian row_jacobian(const measure::MeasureSet& set, const std::vector<Row>& rows, const std::vector<measure::PlacedFrame>& frames);
 
 /// The same in the chart, dphi = J dtheta. @param left_jacobians  J of each body.
 void to_chart(const std::vector<Matrix3>& left_jacobians, RowJacobian& jacobian);
 
-/// C v; C^T lambda, added.
-VectorX multiply(const RowJacobian& jacobian, const std::vector<Vector6>& v);
-void add_transposed(const RowJacobian& jacobian, const VectorX& multipliers, std::vector<Vector6>& out);
-
 /// Adds sum_i multiplier_i d2(row_i) in the chart. The blocks of every row's bodies are there afterwards, whatever the multipliers.
 void add_row_curvature(const measure::MeasureSet& set, const std::vector<Row>& rows, const VectorX& multipliers,
                        const std::vector<measure::PlacedFrame>& frames, const std::vector<Vector3>& rotation_vectors,
                        kinematics::BlockHessian& hessian);
-
-/// Adds off-diagonal blocks, in any order, to a sorted list of them.
-void add_blocks(std::vector<kinematics::OffDiagonalBlock> blocks, kinematics::BlockHessian& hessian);
 
 }  // namespace fettle::core::constraint

@@ -10,23 +10,12 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/near_search.hpp"
+#include "fettle/core/linear/matrices.hpp"
 
 namespace fettle::core::contact {
 namespace {
 
 using kinematics::Pose;
-
-kinematics::OffDiagonalBlock& off_diagonal(kinematics::BlockHessian& hessian, int a, int b) {
-    auto& blocks = hessian.off_diagonal;
-    const auto is_before = [](const kinematics::OffDiagonalBlock& block, const std::pair<int, int>& key) {
-        return std::pair(block.a, block.b) < key;
-    };
-    // Most come in order.
-    if (blocks.empty() || is_before(blocks.back(), {a, b})) return blocks.emplace_back(kinematics::OffDiagonalBlock{a, b, Matrix6::Zero()});
-    const auto at = std::lower_bound(blocks.begin(), blocks.end(), std::pair(a, b), is_before);
-    if (at != blocks.end() && at->a == a && at->b == b) return *at;
-    return *blocks.insert(at, {a, b, Matrix6::Zero()});
-}
 
 // Contacts of a run of pairs of bodies.
 struct Found {
@@ -145,6 +134,10 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t co
         made[k].of_second = full.bottomRightCorner<6, 6>();
         made[k].cross = bodies[k][0] < bodies[k][1] ? full.topRightCorner<6, 6>() : full.bottomLeftCorner<6, 6>();
     });
+    std::vector<std::array<int, 2>> pairs;
+    if (kind != HessianKind::none)
+        for (const auto& [first, second] : bodies) pairs.push_back({std::min(first, second), std::max(first, second)});
+    const std::vector<int> places = linear::place_blocks(pairs, hessian);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         const auto [first, second] = bodies[k];
         gradients[first].force += made[k].first.force;
@@ -154,7 +147,7 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t co
         if (kind == HessianKind::none) continue;
         hessian.diagonal[first] += made[k].of_first;
         hessian.diagonal[second] += made[k].of_second;
-        off_diagonal(hessian, std::min(first, second), std::max(first, second)).block += made[k].cross;
+        hessian.off_diagonal[static_cast<std::size_t>(places[k])].block += made[k].cross;
     }
 }
 

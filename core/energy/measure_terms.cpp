@@ -79,7 +79,7 @@ void add_measures_derivatives(const DerivativesAt& at, CouplingDerivatives& d) {
         else
             blocks.push_back({t.b, t.a, t.hessian.bottomLeftCorner<6, 6>()});
     }
-    constraint::add_blocks(std::move(blocks), d.hessian);
+    linear::add_blocks(blocks, d.hessian);
 }
 
 void add_measures_report(const SolvedStep& step, TermReport& report) {

@@ -137,15 +137,10 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
 }  // namespace
 
 constraint::AssemblyProblem start_problem(const Model& model) {
-    AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
+    AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, free_dofs(model), model.diagonal};
     out.targets.resize(static_cast<Eigen::Index>(out.rows.size()));
     for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[static_cast<Eigen::Index>(i)] = target_at(out.rows[i], 0);
-    for (const Body& body : model.bodies) {
-        out.moments.push_back(body.moments);
-        std::array<int, 6> index{};
-        for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? out.count++ : -1;
-        out.index.push_back(index);
-    }
+    for (const Body& body : model.bodies) out.moments.push_back(body.moments);
     return out;
 }
 

@@ -7,6 +7,12 @@ namespace fettle::core::model {
 
 kinematics::Pose scripted_pose(const Body& body, double time) { return scene::scripted_pose(body.script, body.pose_start, time); }
 
+linear::FreeDofs free_dofs(const Model& model) {
+    linear::FreeDofs out;
+    for (const Body& body : model.bodies) out.add_body([&](int k) { return is_free(body, k); });
+    return out;
+}
+
 bool may_collide(const Model& model, int a, int b) {
     if (a == b) return false;
     const Body& first = model.bodies[static_cast<std::size_t>(a)];

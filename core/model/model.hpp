@@ -12,6 +12,7 @@
 #include "fettle/core/geometry/flat_features.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/linear/free_dofs.hpp"
 #include "fettle/core/model/mechanism.hpp"
 #include "fettle/core/scene/scene.hpp"
 
@@ -95,5 +96,8 @@ kinematics::Pose scripted_pose(const Body& body, double time);
 /// neither is dynamic: static and kinematic bodies never push each other. By type alone: a dynamic body all of whose coordinates are held
 /// or driven still meets static ones, and is stopped by them.
 bool may_collide(const Model& model, int a, int b);
+
+/// What is solved for: all that no script prescribes.
+linear::FreeDofs free_dofs(const Model& model);
 
 }  // namespace fettle::core::model

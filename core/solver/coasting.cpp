@@ -7,7 +7,7 @@ namespace fettle::core::solver {
 
 using kinematics::ChartPoint;
 
-std::vector<ChartPoint> coasted(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const FreeDofs& dofs) {
+std::vector<ChartPoint> coasted(const energy::StepProblem& problem, const std::vector<Vector6>& targets, const linear::FreeDofs& dofs) {
     const double widest_sine = std::sin(0.5);
     const model::Model& model = *problem.model;
     std::vector<ChartPoint> points(problem.poses_t0.size());

@@ -50,12 +50,11 @@ VectorX holding_multipliers(const FailedStep& step) {
         masses.diagonal.push_back(to_tangent.transpose() * energy::mass_matrix((*step.poses)[i].rotation, model.bodies[i].moments) *
                                   to_tangent);
     }
-    to_chart(left_jacobians, rows);
-    const FreeDofs dofs = free_dofs(model);
-    constraint::SaddleSolver solver(dofs.index, dofs.count);
-    solver.factorise(masses, rows);
-    if (!solver.is_usable()) return step.rows->multipliers();
-    return solver.solve(-gather(dofs, d.gradient), VectorX::Zero(rows.count())).multipliers;
+    constraint::to_chart(left_jacobians, rows);
+    linear::LinearSystem system(free_dofs(model));
+    system.factorise(masses, rows);
+    if (!system.is_usable()) return step.rows->multipliers();
+    return system.solve_refined(masses, rows, -gather(system.dofs(), d.gradient), VectorX::Zero(rows.count())).multipliers;
 }
 
 // The stop that is pressed most.

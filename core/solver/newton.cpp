@@ -156,7 +156,7 @@ private:
     // From where a step starts friction holds what slides, and Newton steps are as short as what it takes to tell sticking from sliding:
     // half a dozen of them go by before it slides again. Bodies that coast do not have to get going.
     void begin_where_bodies_coast() {
-        std::vector<ChartPoint> points = coasted(problem_, targets_, workspace_.dofs);
+        std::vector<ChartPoint> points = coasted(problem_, targets_, workspace_.dofs());
         if (points.empty()) return;
         Iterate ahead{std::move(points), {}, {}};
         ahead.poses = poses_of(problem_, ahead.points);
@@ -453,7 +453,7 @@ private:
         out.points.resize(at_.points.size());
         out.poses.resize(at_.points.size());
         base::parallel_for(static_cast<int>(out.points.size()), bodies_a_loop, [&](int i) {
-            out.points[i] = moved(i, at_.points, direction, fraction, targets_, workspace_.dofs);
+            out.points[i] = moved(i, at_.points, direction, fraction, targets_, workspace_.dofs());
             out.poses[i] = pose_of(problem_, i, out.points[i]);
         });
         return out;
@@ -463,7 +463,7 @@ private:
     std::vector<PathSegment> segments_along(const Direction& direction) const {
         std::vector<PathSegment> segments(at_.points.size());
         base::parallel_for(static_cast<int>(segments.size()), bodies_a_loop, [&](int i) {
-            const ChartPoint end = moved(i, at_.points, direction, 1, targets_, workspace_.dofs);
+            const ChartPoint end = moved(i, at_.points, direction, 1, targets_, workspace_.dofs());
             segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end);
         });
         return segments;
@@ -480,7 +480,7 @@ private:
     // From the straight step onto the rows, and whether the way there is clear too.
     bool reach_by_rows(const Direction& direction, double fraction, Iterate& trial) {
         const double left = 1 - fraction * direction.drive;
-        if (!workspace_.rows->put_on_rows(problem_, workspace_.dofs, left, trial.points)) return false;
+        if (!workspace_.rows->put_on_rows(problem_, workspace_.system, left, trial.points)) return false;
         trial.poses = poses_of(problem_, trial.points);
         return is_clear_to(trial);
     }

@@ -52,7 +52,7 @@ struct ResidualShare {
     double square = 0, magnitude = 0;
 };
 
-ResidualShare residual_share(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs, std::size_t i) {
+ResidualShare residual_share(const ChartDerivatives& d, const model::Model& model, const linear::FreeDofs& dofs, std::size_t i) {
     const model::Body& body = model.bodies[i];
     ResidualShare share;
     for (int k = 0; k < 6; ++k) {
@@ -66,7 +66,7 @@ ResidualShare residual_share(const ChartDerivatives& d, const model::Model& mode
 
 double residual_of(const ResidualShare& sum) { return sum.magnitude > 0 ? std::sqrt(sum.square) / sum.magnitude : std::sqrt(sum.square); }
 
-double residual_of(const ChartDerivatives& d, const model::Model& model, const FreeDofs& dofs) {
+double residual_of(const ChartDerivatives& d, const model::Model& model, const linear::FreeDofs& dofs) {
     ResidualShare sum;
     for (std::size_t i = 0; i < d.gradient.size(); ++i) {
         const ResidualShare share = residual_share(d, model, dofs, i);
@@ -83,8 +83,8 @@ double rounding_share(const ChartDerivatives& d, const model::Body& body, const 
 }
 
 // Direction::unbalanced. What moves the body by no more than the rounding of places counts for none.
-double unbalanced_share(const StepProblem& problem, const ChartDerivatives& d, const FreeDofs& dofs, const ChartPoint& point, std::size_t i,
-                        double motion) {
+double unbalanced_share(const StepProblem& problem, const ChartDerivatives& d, const linear::FreeDofs& dofs, const ChartPoint& point,
+                        std::size_t i, double motion) {
     const model::Body& body = problem.model->bodies[i];
     const double rounding = 64 * std::numeric_limits<double>::epsilon() * (point.position.norm() + body.radius);
     if (motion <= rounding) return 0;
@@ -98,7 +98,7 @@ bool all_finite(const Matrix& m) {
     return (m - m).sum() == 0;
 }
 
-bool is_finite(const ChartDerivatives& d, const FreeDofs& dofs) {
+bool is_finite(const ChartDerivatives& d, const linear::FreeDofs& dofs) {
     const auto bodies = static_cast<int>(d.gradient.size()), blocks = static_cast<int>(d.hessian.off_diagonal.size());
     std::atomic<bool> finite = true;
     base::parallel_for(bodies + blocks, blocks_a_pass, [&](int i) {
@@ -146,12 +146,12 @@ std::optional<double> factorise(const StepProblem& problem, const Iterate& at, N
         const auto span = workspace.clock.charge(SolvePhase::linear_solve);
         return workspace.factorise(d.hessian);
     };
-    if (!is_finite(d, workspace.dofs)) return std::nullopt;
-    if (workspace.dofs.count == 0 || is_definite()) return 0;
+    if (!is_finite(d, workspace.dofs())) return std::nullopt;
+    if (workspace.dofs().count == 0 || is_definite()) return 0;
     if (kind == HessianKind::exact) {
         kind = HessianKind::projected;
         d = derivatives(problem, at, kind, workspace);
-        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        if (!is_finite(d, workspace.dofs())) return std::nullopt;
         if (is_definite()) return 0;
     }
     const std::vector<Matrix6> unit = shift_unit(problem, at, d);
@@ -160,7 +160,7 @@ std::optional<double> factorise(const StepProblem& problem, const Iterate& at, N
     if (is_definite()) return 0;
     for (double shift = smallest_hessian_shift;; shift *= 100) {
         for (std::size_t i = 0; i < unit.size(); ++i) d.hessian.diagonal[i] = unshifted[i] + shift * unit[i];
-        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        if (!is_finite(d, workspace.dofs())) return std::nullopt;
         if (is_definite()) return shift;
     }
 }
@@ -170,14 +170,14 @@ constexpr double shift_growth = 10;
 // The same with a shift that is asked for: the exact Hessian is kept as long as its tries last.
 std::optional<double> factorise_shifted(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace, ChartDerivatives& d,
                                         const HessianChoice& choice, HessianKind& kind) {
-    if (!is_finite(d, workspace.dofs)) return std::nullopt;
-    if (workspace.dofs.count == 0) return 0;
+    if (!is_finite(d, workspace.dofs())) return std::nullopt;
+    if (workspace.dofs().count == 0) return 0;
     std::vector<Matrix6> unit = shift_unit(problem, at, d);
     std::vector<Matrix6> unshifted = d.hessian.diagonal;
     double shift = *choice.shift;
     for (int tries = 1;; ++tries) {
         for (std::size_t i = 0; i < unit.size(); ++i) d.hessian.diagonal[i] = unshifted[i] + shift * unit[i];
-        if (!is_finite(d, workspace.dofs)) return std::nullopt;
+        if (!is_finite(d, workspace.dofs())) return std::nullopt;
         {
             const auto span = workspace.clock.charge(SolvePhase::linear_solve);
             if (workspace.factorise(d.hessian)) return shift;
@@ -185,7 +185,7 @@ std::optional<double> factorise_shifted(const StepProblem& problem, const Iterat
         if (kind == HessianKind::exact && tries == choice.exact_shifts) {
             kind = HessianKind::projected;
             d = derivatives(problem, at, kind, workspace);
-            if (!is_finite(d, workspace.dofs)) return std::nullopt;
+            if (!is_finite(d, workspace.dofs())) return std::nullopt;
             unshifted = d.hessian.diagonal;
             shift = *choice.shift;
         } else {
@@ -206,7 +206,7 @@ double inertia_along(const StepProblem& problem, const Iterate& at, const std::v
 }
 
 void measure_remaining(const std::vector<Vector6>& targets, const std::vector<ChartPoint>& points, const model::Model& model,
-                       const FreeDofs& dofs, Direction& direction) {
+                       const linear::FreeDofs& dofs, Direction& direction) {
     direction.remaining.assign(points.size(), Vector6::Zero());
     for (const auto& [i, k] : dofs.prescribed) {
         direction.remaining[i][k] = targets[i][k] - coordinates(points[i])[k];
@@ -217,17 +217,17 @@ void measure_remaining(const std::vector<Vector6>& targets, const std::vector<Ch
 void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direction& direction) {
     direction.step = direction.remaining;
     for (Vector6& step : direction.step) step *= direction.drive;
-    if (workspace.dofs.count == 0) return;
-    VectorX rhs = -gather(workspace.dofs, d.gradient);
+    if (workspace.dofs().count == 0) return;
+    VectorX rhs = -gather(workspace.dofs(), d.gradient);
     if (workspace.rows) {
-        if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs, multiply(d.hessian, direction.step));
+        if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs(), linear::multiply(d.hessian, direction.step));
         const auto span = workspace.clock.charge(SolvePhase::linear_solve);
-        workspace.rows->solve_for_step(workspace.dofs, rhs, direction.drive, direction.step);
+        workspace.rows->solve_for_step(workspace.system, d.hessian, rhs, direction.drive, direction.step);
         return;
     }
-    if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs, multiply(d.hessian, direction.step));
+    if (direction.remaining_norm > 0) rhs -= gather(workspace.dofs(), linear::multiply(d.hessian, direction.step));
     const auto span = workspace.clock.charge(SolvePhase::linear_solve);
-    scatter(workspace.dofs, workspace.linear.solve(rhs), direction.step);
+    scatter(workspace.dofs(), workspace.system.solve(rhs).y, direction.step);
 }
 
 // Of a body's step, what it may take of it: a nearly singular Hessian sends bodies round the world, where every search is dear and nothing
@@ -242,7 +242,7 @@ double allowed_share(const StepProblem& problem, const Direction& direction, std
 
 // Slope, motion, residual and rounding of the step as it is. @return what all bodies may take of it: if less than the whole, it is to be
 // shortened, and measured again.
-double measure(const StepProblem& problem, const ChartDerivatives& d, const FreeDofs& dofs, const std::vector<ChartPoint>& points,
+double measure(const StepProblem& problem, const ChartDerivatives& d, const linear::FreeDofs& dofs, const std::vector<ChartPoint>& points,
                Direction& direction) {
     const model::Model& model = *problem.model;
     struct Shares {
@@ -290,7 +290,7 @@ void shorten(Direction& direction, double share) {
 std::optional<Direction> newton_direction(const StepProblem& problem, const Iterate& at, const std::vector<Vector6>& targets,
                                           const HessianChoice& hessian, double drive, NewtonWorkspace& workspace) {
     const model::Model& model = *problem.model;
-    const FreeDofs& dofs = workspace.dofs;
+    const linear::FreeDofs& dofs = workspace.dofs();
     Direction direction;
     HessianKind kind = hessian.kind;
     ChartDerivatives d = derivatives(problem, at, kind, workspace);
@@ -318,7 +318,7 @@ std::optional<Direction> newton_direction(const StepProblem& problem, const Iter
 }
 
 ChartPoint moved(int i, const std::vector<ChartPoint>& points, const Direction& direction, double fraction,
-                 const std::vector<Vector6>& targets, const FreeDofs& dofs) {
+                 const std::vector<Vector6>& targets, const linear::FreeDofs& dofs) {
     Vector6 y = coordinates(points[i]) + fraction * direction.step[i];
     if (fraction == 1 && direction.drive == 1)
         for (int k = 0; k < 6; ++k)
@@ -329,13 +329,13 @@ ChartPoint moved(int i, const std::vector<ChartPoint>& points, const Direction& 
 double residual_at(const StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace) {
     ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
     add_row_forces(*problem.model, workspace, d);
-    return residual_of(d, *problem.model, workspace.dofs);
+    return residual_of(d, *problem.model, workspace.dofs());
 }
 
 namespace {
 
 // The step of a body under its inertia alone; not finite without.
-Vector6 inertial_step(const StepProblem& problem, const Iterate& at, const ChartDerivatives& d, const FreeDofs& dofs, int body) {
+Vector6 inertial_step(const StepProblem& problem, const Iterate& at, const ChartDerivatives& d, const linear::FreeDofs& dofs, int body) {
     Matrix6 inertia = inertia_in_chart(problem, at, static_cast<std::size_t>(body));
     Vector6 force = d.gradient[body];
     for (int k = 0; k < 6; ++k) {
@@ -358,12 +358,12 @@ Remainder remainder_at(const StepProblem& problem, const Iterate& at, const std:
     const model::Model& model = *problem.model;
     const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
     const std::vector<double> none(bodies.size(), 0.0);
-    Remainder out{none, none, residual_of(d, model, workspace.dofs)};
+    Remainder out{none, none, residual_of(d, model, workspace.dofs())};
     base::parallel_for(static_cast<int>(bodies.size()), bodies_at_once, [&](int k) {
         const int body = bodies[k];
         if (!energy::has_free_dof(model.bodies[body])) return;
-        out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs, body));
-        out.unbalanced[k] = unbalanced_share(problem, d, workspace.dofs, at.points[body], static_cast<std::size_t>(body), out.motion[k]);
+        out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs(), body));
+        out.unbalanced[k] = unbalanced_share(problem, d, workspace.dofs(), at.points[body], static_cast<std::size_t>(body), out.motion[k]);
     });
     return out;
 }

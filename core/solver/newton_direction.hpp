@@ -55,7 +55,7 @@ std::optional<Direction> newton_direction(const energy::StepProblem& problem, co
 
 /// points[body] + fraction * step; a whole step that takes all that remains puts the prescribed coordinates on their targets, bit for bit.
 kinematics::ChartPoint moved(int body, const std::vector<kinematics::ChartPoint>& points, const Direction& direction, double fraction,
-                             const std::vector<Vector6>& targets, const FreeDofs& dofs);
+                             const std::vector<Vector6>& targets, const linear::FreeDofs& dofs);
 
 /// NewtonResult::residual at this point.
 double residual_at(const energy::StepProblem& problem, const Iterate& at, NewtonWorkspace& workspace);

@@ -7,7 +7,7 @@
 #include "fettle/core/base/phase_clock.hpp"
 #include "fettle/core/contact/candidates.hpp"
 #include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 #include "fettle/core/solver/row_system.hpp"
 
 namespace fettle::core::solver {
@@ -32,17 +32,18 @@ struct KnownContacts {
 
 /// What is worth keeping from one solve to the next; what a solve comes to depends on it by no more than its tolerance.
 struct NewtonWorkspace {
-    FreeDofs dofs;
-    LinearSolver linear;                  ///< its symbolic factor
+    linear::LinearSystem system;          ///< its symbolic factor
     contact::Candidates candidates;       ///< near where the last solve ended
     contact::ContactPlans contact_plans;  ///< how their contacts were counted last
     KnownContacts contacts;               ///< where the last step ended
-    std::optional<RowSystem> rows;        ///< of a model with joints or motors; its symbolic factor, and the last multipliers
+    std::optional<RowSystem> rows;        ///< of a model with joints or motors; the last multipliers
     bool slides = false;                  ///< most of what friction acts on, at the end of the last solve
     base::PhaseClock<SolvePhase> clock;
-    explicit NewtonWorkspace(const model::Model& model) : dofs(free_dofs(model)), linear(dofs) {
-        if (!model.mechanism.rows.empty()) rows.emplace(dofs);
+    explicit NewtonWorkspace(const model::Model& model) : system(free_dofs(model)) {
+        if (!model.mechanism.rows.empty()) rows.emplace();
     }
+
+    const linear::FreeDofs& dofs() const { return system.dofs(); }
 
     /// All that the next solve's bits could depend on.
     void forget() {
@@ -52,7 +53,9 @@ struct NewtonWorkspace {
     }
 
     /// Of the Hessian, or of the saddle-point system that the rows make of it. @return false: it is not positive definite (on the rows)
-    bool factorise(const kinematics::BlockHessian& hessian) { return rows ? rows->factorise(hessian) : linear.factorise(hessian); }
+    bool factorise(const kinematics::BlockHessian& hessian) {
+        return rows ? system.factorise(hessian, rows->jacobian()) : system.factorise(hessian);
+    }
 };
 
 }  // namespace fettle::core::solver

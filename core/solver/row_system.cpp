@@ -40,7 +40,7 @@ void RowSystem::linearise(const energy::StepProblem& problem, const std::vector<
         rotation_vectors[i] = points[i].rotation_vector;
         left_jacobians[i] = kinematics::left_jacobian(rotation_vectors[i]);
     }
-    to_chart(left_jacobians, jacobian_);
+    constraint::to_chart(left_jacobians, jacobian_);
     remaining_ = remaining_at(problem, frames);
     unmet_ = remaining_;
     unmet_norm_ = 0;
@@ -56,12 +56,14 @@ void RowSystem::linearise(const energy::StepProblem& problem, const std::vector<
         add_row_curvature(mechanism.set, mechanism.rows, multipliers_, frames, rotation_vectors, hessian);
 }
 
-void RowSystem::solve_for_step(const FreeDofs& dofs, const VectorX& r, double drive, std::vector<Vector6>& step) {
+void RowSystem::solve_for_step(const linear::LinearSystem& system, const kinematics::BlockHessian& hessian, const VectorX& r, double drive,
+                               std::vector<Vector6>& step) {
+    const linear::FreeDofs& dofs = system.dofs();
     for (std::size_t i = 0; i < step.size(); ++i)
         for (int k = 0; k < 6; ++k)
             if (dofs.index[i][k] >= 0) step[i][k] = 0;
     const VectorX wanted = remaining_ - (1 - drive) * unmet_ - multiply(jacobian_, step);
-    const constraint::SaddleSolver::Solution solution = saddle_.solve(r, wanted);
+    const linear::LinearSystem::Solution solution = system.solve_refined(hessian, jacobian_, r, wanted);
     multipliers_ = solution.multipliers;
     scatter(dofs, solution.y, step);
 }
@@ -79,10 +81,11 @@ std::vector<double> RowSystem::add_forces(const model::Model& model, std::vector
     return magnitude;
 }
 
-bool RowSystem::put_on_rows(const energy::StepProblem& problem, const FreeDofs& dofs, double share, std::vector<ChartPoint>& points) const {
+bool RowSystem::put_on_rows(const energy::StepProblem& problem, const linear::LinearSystem& system, double share,
+                            std::vector<ChartPoint>& points) const {
     const model::Mechanism& mechanism = problem.model->mechanism;
     const double size = problem.model->diagonal;
-    const VectorX left = share * unmet_, none = VectorX::Zero(dofs.count);
+    const VectorX left = share * unmet_, none = VectorX::Zero(system.dofs().count);
     std::vector<Vector6> correction(points.size(), Vector6::Zero());
     double before = 0;
     for (int k = 0; k < most_corrections; ++k) {
@@ -91,7 +94,7 @@ bool RowSystem::put_on_rows(const energy::StepProblem& problem, const FreeDofs& 
         if (gap <= rounding_gap * size) return true;
         if (!std::isfinite(gap) || (k > 0 && gap > slow_gain * before)) return gap <= met_gap * size;
         before = gap;
-        scatter(dofs, saddle_.solve_roughly(none, remaining).y, correction);
+        scatter(system.dofs(), system.solve(none, remaining).y, correction);
         for (std::size_t i = 0; i < points.size(); ++i) {
             points[i].position += correction[i].head<3>();
             points[i].rotation_vector += correction[i].tail<3>();

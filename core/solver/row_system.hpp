@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// Rows (joints, motors) in Newton's method (newton.hpp): their linearisation where an iteration stands, the saddle-point system with the
-/// Hessian, and the way back onto the rows from where a step has led. docs/method.md section 9.
+/// Rows (joints, motors) in Newton's method (newton.hpp): their linearisation where an iteration stands, the step under them, and the way
+/// back onto the rows from where a step has led. docs/method.md section 9.
 #pragma once
 
 #include <vector>
 
-#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/constraint/row.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 
 namespace fettle::core::solver {
 
@@ -16,14 +16,12 @@ inline constexpr double met_gap = 1e-12;
 
 class RowSystem {
 public:
-    explicit RowSystem(const FreeDofs& dofs) : saddle_(dofs.index, dofs.count) {}
-
     /// Values and gradients in the chart at these points; adds the rows' curvature, by the multipliers that are known, to an exact Hessian.
     void linearise(const energy::StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,
                    const std::vector<kinematics::Pose>& poses, contact::HessianKind kind, kinematics::BlockHessian& hessian);
 
-    /// With what was linearised last. @return is the Hessian positive definite on the rows?
-    bool factorise(const kinematics::BlockHessian& hessian) { return saddle_.factorise(hessian, jacobian_); }
+    /// C, of what was linearised last.
+    const linear::RowJacobian& jacobian() const { return jacobian_; }
 
     /// target - value per row; 0 of what is met.
     const VectorX& unmet() const { return unmet_; }
@@ -31,8 +29,9 @@ public:
     double unmet_norm() const { return unmet_norm_; }
 
     /// The step of the free coordinates: H y + C^T m = r,  C y = drive unmet + (what else remains) - C y_prescribed. Takes the multipliers
-    /// along. @param step  of the prescribed coordinates; the free ones are filled in.
-    void solve_for_step(const FreeDofs& dofs, const VectorX& r, double drive, std::vector<Vector6>& step);
+    /// along. @param system  of this Hessian and jacobian()  @param step  of the prescribed coordinates; the free ones are filled in.
+    void solve_for_step(const linear::LinearSystem& system, const kinematics::BlockHessian& hessian, const VectorX& r, double drive,
+                        std::vector<Vector6>& step);
 
     /// Of the last solve; carried from step to step, where they make the first Hessian's curvature.
     const VectorX& multipliers() const { return multipliers_; }
@@ -48,13 +47,12 @@ public:
     double work_of_rounding() const { return multipliers_.cwiseAbs().dot((remaining_ - unmet_).cwiseAbs()); }
 
     /// Moves the free coordinates of `points` to where each row has `share` left of what was unmet where it was linearised last, by solves
-    /// with the last factor. @return false: too far for that.
-    bool put_on_rows(const energy::StepProblem& problem, const FreeDofs& dofs, double share,
+    /// with the system's last factor. @return false: too far for that.
+    bool put_on_rows(const energy::StepProblem& problem, const linear::LinearSystem& system, double share,
                      std::vector<kinematics::ChartPoint>& points) const;
 
 private:
-    constraint::SaddleSolver saddle_;
-    constraint::RowJacobian jacobian_;
+    linear::RowJacobian jacobian_;
     VectorX remaining_, unmet_, multipliers_;
     double unmet_norm_ = 0;
 };

@@ -160,15 +160,13 @@ private:
 class Follower {
 public:
     Follower(const model::Model& model, const std::set<std::string>& held)
-        : model_(model), problem_{model.mechanism.set, rows_, {}, {}, {}, 0, model.diagonal} {
+        : model_(model), problem_{model.mechanism.set, rows_, {}, {}, {}, model.diagonal} {
         std::set<int> out_of_it;
         for (std::size_t i = 0; i < model.bodies.size(); ++i) {
             const model::Body& body = model.bodies[i];
             problem_.moments.push_back(body.moments);
-            std::array<int, 6> index{};
             const bool stays = held.count(body.name) > 0;
-            for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) && !stays ? problem_.count++ : -1;
-            problem_.index.push_back(index);
+            problem_.dofs.add_body([&](int k) { return is_free(body, k) && !stays; });
             if (stays) out_of_it.insert(static_cast<int>(i));
         }
         for (const constraint::Row& row : model.mechanism.rows) {
@@ -218,8 +216,7 @@ private:
         std::vector<Pose> out = at;
         for (std::size_t i = 0; i < out.size(); ++i) {
             const model::Body& body = model_.bodies[i];
-            const auto& index = problem_.index[i];
-            if (!speeds_.empty() && std::all_of(index.begin(), index.end(), [](int k) { return k >= 0; })) {
+            if (!speeds_.empty() && linear::are_all_free(problem_.dofs.index[i])) {
                 out[i].position += share * speeds_[i].way;
                 out[i].rotation = kinematics::orthonormalised(kinematics::rotation(Vector3(share * speeds_[i].turn)) * out[i].rotation);
                 continue;
@@ -266,9 +263,8 @@ private:
                                    const std::vector<ChartPoint>& before) const {
         std::vector<ChartPoint> out;
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            const auto& index = problem_.index[i];
             ChartPoint point{to[i].position, kinematics::rotation_vector(to[i].rotation * poses[i].rotation.transpose())};
-            if (std::all_of(index.begin(), index.end(), [](int k) { return k < 0; })) {  // nothing moves but by scripts
+            if (linear::is_none_free(problem_.dofs.index[i])) {  // nothing moves but by scripts
                 point = {poses[i].position, before[i].rotation_vector};
                 for (int k = 0; k < 6; ++k)
                     if (!is_free(model_.bodies[i], k)) (k < 3 ? point.position[k] : point.rotation_vector[k - 3]) = node.targets[i][k];

@@ -44,16 +44,11 @@ PathGap segment_gap(const model::Model& model, const std::vector<Pose>& poses_t0
 class Splitter {
 public:
     Splitter(const model::Model& model, double allowed)
-        : model_(model), allowed_(allowed), problem_{model.mechanism.set, rows_, {}, {}, {}, 0, model.diagonal} {
+        : model_(model), allowed_(allowed), problem_{model.mechanism.set, rows_, {}, {}, free_dofs(model), model.diagonal} {
         for (const constraint::Row& row : model.mechanism.rows)
             if (!model.mechanism.joints[static_cast<std::size_t>(row.owner)].is_motor) rows_.push_back(row);
         problem_.targets.resize(static_cast<Eigen::Index>(rows_.size()));
-        for (const model::Body& body : model.bodies) {
-            problem_.moments.push_back(body.moments);
-            std::array<int, 6> index{};
-            for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? problem_.count++ : -1;
-            problem_.index.push_back(index);
-        }
+        for (const model::Body& body : model.bodies) problem_.moments.push_back(body.moments);
         angles_ = model.mechanism.angles_start;
     }
 
@@ -129,8 +124,7 @@ private:
         const constraint::Assembly found = assemble(problem_, straight);
         if (!found.is_met) return std::nullopt;
         for (std::size_t i = 0; i < out.points.size(); ++i) {
-            const auto& index = problem_.index[i];
-            if (std::all_of(index.begin(), index.end(), [](int k) { return k < 0; })) continue;
+            if (linear::is_none_free(problem_.dofs.index[i])) continue;
             const Vector3 turn = kinematics::rotation_vector(found.poses[i].rotation * (*poses_t0_)[i].rotation.transpose());
             if (!((turn - out.points[i].rotation_vector).norm() < farthest_turn)) return std::nullopt;
             out.points[i] = {found.poses[i].position, turn};

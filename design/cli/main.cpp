@@ -261,16 +261,24 @@ int run(int argc, char** argv) {
     return finish(common.check_files, command->line.name(), run_command(*command, console), console);
 }
 
-// Ours are the threads: those of libraries of linear algebra, which are loaded later, take tens of megabytes each, and where that cannot
-// be had they wait for ever. What the user has set holds.
-void expect_one_thread_of_libraries() {
+// For libraries of linear algebra, which are loaded later; what the user has set holds.
+// Ours are the threads: theirs take tens of megabytes each, and where that cannot be had they wait for ever.
+// OpenBLAS goes by the processor's model, and takes one that is newer than itself for the oldest of all; by what the processor can do its
+// answers are the same bits on all that can do the same.
+void prepare_linear_algebra() {
     for (const char* name : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS"}) setenv(name, "1", 0);
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
+    else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        setenv("OPENBLAS_CORETYPE", "Haswell", 0);
+#endif
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    expect_one_thread_of_libraries();
+    prepare_linear_algebra();
     expect_failed_writes();
     keep_freed_memory();
     expect_out_of_memory(asks_for_json(argc, argv));

@@ -40,13 +40,8 @@ struct Start {
     std::vector<Pose> written;
     VectorX targets;
     AssemblyProblem problem() const {
-        AssemblyProblem out{model.mechanism.set, model.mechanism.rows, targets, {}, {}, 0, model.diagonal};
-        for (const core::model::Body& body : model.bodies) {
-            out.moments.push_back(body.moments);
-            std::array<int, 6> index{};
-            for (int k = 0; k < 6; ++k) index[static_cast<std::size_t>(k)] = is_free(body, k) ? out.count++ : -1;
-            out.index.push_back(index);
-        }
+        AssemblyProblem out{model.mechanism.set, model.mechanism.rows, targets, {}, free_dofs(model), model.diagonal};
+        for (const core::model::Body& body : model.bodies) out.moments.push_back(body.moments);
         return out;
     }
     Assembly assembled() const {

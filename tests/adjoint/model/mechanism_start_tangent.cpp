@@ -66,7 +66,10 @@ RowChange row_change(const StartChanges& at, std::size_t i, const Changes& poses
 class StartSystem {
 public:
     explicit StartSystem(const StartChanges& at)
-        : at_(at), count_(at.problem.count), rows_(static_cast<int>(at.problem.rows.size())), still_(at.poses.size(), Matrix34::Zero()) {
+        : at_(at),
+          count_(at.problem.dofs.count),
+          rows_(static_cast<int>(at.problem.rows.size())),
+          still_(at.poses.size(), Matrix34::Zero()) {
         for (int i = 0; i < rows_; ++i) along_rest_.push_back(row_change(at_, static_cast<std::size_t>(i), still_, zero_mechanism()));
     }
 
@@ -76,7 +79,7 @@ public:
     void add_along_motions(const Changes& gradient, const std::vector<Matrix3>& rotations, VectorX& out) const {
         for (std::size_t b = 0; b < gradient.size(); ++b)
             for (int k = 0; k < 6; ++k)
-                if (const int place = at_.problem.index[b][static_cast<std::size_t>(k)]; place >= 0)
+                if (const int place = at_.problem.dofs.index[b][static_cast<std::size_t>(k)]; place >= 0)
                     out[place] += gradient[b].cwiseProduct(matrix_of_motion(Vector6::Unit(k), rotations[b])).sum();
     }
 
@@ -111,7 +114,7 @@ public:
     std::vector<Vector6> motions(const VectorX& y, std::vector<Vector6> held) const {
         for (std::size_t b = 0; b < held.size(); ++b)
             for (int k = 0; k < 6; ++k)
-                if (const int place = at_.problem.index[b][static_cast<std::size_t>(k)]; place >= 0) held[b][k] = y[place];
+                if (const int place = at_.problem.dofs.index[b][static_cast<std::size_t>(k)]; place >= 0) held[b][k] = y[place];
         return held;
     }
 

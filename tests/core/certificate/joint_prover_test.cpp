@@ -164,13 +164,11 @@ scene::Scene bolt_and_piston(double h) {
 
 // Where Newton's method puts the bodies on the rows from the path on, in doubles. Contract: no angle leaves (-pi, pi).
 std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::Trajectory& trajectory, int t, double s) {
-    constraint::AssemblyProblem problem{model.mechanism.set, model.mechanism.rows, {}, {}, {}, 0, model.diagonal};
+    constraint::AssemblyProblem problem{model.mechanism.set, model.mechanism.rows, {}, {}, {}, model.diagonal};
     std::vector<kinematics::Pose> poses;
     for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
         problem.moments.push_back(model.bodies[static_cast<std::size_t>(i)].moments);
-        std::array<int, 6> index{};
-        for (int& k : index) k = problem.count++;
-        problem.index.push_back(index);
+        problem.dofs.add_body([](int) { return true; });
         poses.push_back(pose_at(trajectory, t, 0, s, i));
     }
     problem.targets.resize(static_cast<Eigen::Index>(model.mechanism.rows.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The factor by blocks against a dense one, on random graphs of bodies with prescribed coordinates.
-#include "fettle/core/solver/block_cholesky.hpp"
+#include "fettle/core/linear/block_cholesky.hpp"
 #include "fettle/core/base/factorisations.hpp"
 
 #include <Eigen/Cholesky>
@@ -10,25 +10,20 @@
 #include <random>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/solver/linear_solver.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "fettle/core/linear/matrices.hpp"
 
-namespace fettle::core::solver::block_cholesky_test {
-
-using namespace fettle::tests::support;
+namespace fettle::core::linear::block_cholesky_test {
 
 namespace {
 
 FreeDofs some_free(int bodies, std::mt19937& random) {
-    model::Model model;
+    FreeDofs out;
     for (int i = 0; i < bodies; ++i) {
         const bool held = random() % 7 == 0;
-        model::Body body = make_body("b" + std::to_string(i), box_mesh(Vector3::Zero(), Vector3::Ones()), {},
-                                     held ? scene::BodyType::static_body : scene::BodyType::dynamic_body);
-        if (random() % 3 == 0) prescribe(body, static_cast<int>(random() % 6));
-        model.bodies.push_back(body);
+        const int prescribed = random() % 3 == 0 ? static_cast<int>(random() % 6) : -1;
+        out.add_body([&](int k) { return !held && k != prescribed; });
     }
-    return free_dofs(model);
+    return out;
 }
 
 // J J^T over random couplings: positive semi-definite, with `shift` definite.
@@ -68,12 +63,24 @@ TEST_CASE("the factor by blocks solves as a dense one does", "[block_cholesky]")
         if (dofs.count == 0) continue;
         const auto h = coupled(bodies, k % 3 == 0 ? 1.0 : 0.15, 0.1, random);
         BlockCholesky factor;
+        factor.analyse(h, dofs);
         REQUIRE(factor.factorise(h, dofs));
         const MatrixX rhs = MatrixX::Random(dofs.count, 3), matrix = dense(h, dofs);
         const MatrixX expected = matrix.llt().solve(rhs);
         CHECK((factor.solve(rhs, dofs) - expected).norm() <= 1e-11 * expected.norm() * matrix.norm());
         CHECK((matrix * factor.solve(rhs, dofs) - rhs).norm() <= 1e-10 * rhs.norm());
     }
+}
+
+TEST_CASE("a right-hand side has the same solution whatever stands beside it", "[block_cholesky]") {
+    std::mt19937 random(14);
+    const FreeDofs dofs = some_free(40, random);
+    const auto h = coupled(40, 0.15, 0.1, random);
+    BlockCholesky factor;
+    factor.analyse(h, dofs);
+    REQUIRE(factor.factorise(h, dofs));
+    const MatrixX rhs = MatrixX::Random(dofs.count, 21), together = factor.solve(rhs, dofs);
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) CHECK(factor.solve(rhs.col(c), dofs) == together.col(c));
 }
 
 TEST_CASE("a factor of many bodies solves, with the same bits for any number of threads", "[block_cholesky]") {
@@ -86,6 +93,7 @@ TEST_CASE("a factor of many bodies solves, with the same bits for any number of 
     for (const int threads : {1, 2, 4}) {
         const base::ThreadLimit limit(threads);
         BlockCholesky factor;
+        factor.analyse(h, dofs);
         REQUIRE(factor.factorise(h, dofs));
         solutions.push_back(factor.solve(rhs, dofs));
     }
@@ -108,6 +116,7 @@ TEST_CASE("what is not positive definite, or no number, has no factor", "[block_
         const double least = symmetric_eigenvalues<Eigen::Dynamic>(dense(h, dofs))[0];
         if (std::abs(least) < 1e-9) continue;
         BlockCholesky factor;
+        factor.analyse(h, dofs);
         CHECK(factor.factorise(h, dofs) == (least > 0));
         refused += least < 0;
     }
@@ -116,21 +125,22 @@ TEST_CASE("what is not positive definite, or no number, has no factor", "[block_
     auto h = coupled(3, 1, 1, random);
     for (Matrix6& block : h.diagonal) block(2, 2) = std::numeric_limits<double>::quiet_NaN();
     BlockCholesky factor;
+    factor.analyse(h, dofs);
     CHECK((dofs.count == 0 || !factor.factorise(h, dofs)));
 }
 
 TEST_CASE("other couplings are analysed anew", "[block_cholesky]") {
     std::mt19937 random(13);
-    model::Model model;
-    for (int i = 0; i < 9; ++i) model.bodies.push_back(make_body("b", box_mesh(Vector3::Zero(), Vector3::Ones()), {}));
-    const FreeDofs dofs = free_dofs(model);
+    FreeDofs dofs;
+    for (int i = 0; i < 9; ++i) dofs.add_body([](int) { return true; });
     BlockCholesky factor;
     for (const double density : {0.2, 0.2, 0.8, 0.0, 0.5}) {
         const auto h = coupled(9, density, 1, random);
+        factor.analyse(h, dofs);
         REQUIRE(factor.factorise(h, dofs));
         const MatrixX rhs = MatrixX::Random(dofs.count, 1);
         CHECK((dense(h, dofs) * factor.solve(rhs, dofs) - rhs).norm() <= 1e-11 * rhs.norm());
     }
 }
 
-}  // namespace fettle::core::solver::block_cholesky_test
+}  // namespace fettle::core::linear::block_cholesky_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The saddle-point system against a dense solution, definiteness on the rows, dependent rows.
-#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/linear/quasi_definite_factor.hpp"
 #include "fettle/core/base/factorisations.hpp"
 
 #include <Eigen/Dense>
@@ -8,16 +8,16 @@
 #include <random>
 
 #include "fettle/core/constraint/dependent_rows.hpp"
+#include "fettle/core/linear/linear_system.hpp"
 
-namespace fettle::core::constraint::saddle_solver_test {
+namespace fettle::core::linear::quasi_definite_factor_test {
 
 namespace {
 
 struct System {
     kinematics::BlockHessian hessian;
     RowJacobian rows;
-    std::vector<std::array<int, 6>> index;
-    int count = 0;
+    FreeDofs dofs;
     MatrixX dense_h, dense_c;
 };
 
@@ -32,9 +32,7 @@ System ring(int bodies, int rows_a_joint, std::mt19937_64& random) {
         Matrix6 a;
         noise(a);
         s.hessian.diagonal.push_back(a * a.transpose() + 8 * Matrix6::Identity());
-        std::array<int, 6> index{};
-        for (int k = 0; k < 6; ++k) index[k] = i == 1 && k < 2 ? -1 : s.count++;
-        s.index.push_back(index);
+        s.dofs.add_body([&](int k) { return i != 1 || k >= 2; });
     }
     for (int i = 0; i + 1 < bodies; ++i) {
         s.hessian.off_diagonal.push_back({i, i + 1, Matrix6::Zero()});
@@ -49,12 +47,12 @@ System ring(int bodies, int rows_a_joint, std::mt19937_64& random) {
             }
         }
     s.rows.first.push_back(static_cast<int>(s.rows.entries.size()));
-    s.dense_h = MatrixX::Zero(s.count, s.count);
-    s.dense_c = MatrixX::Zero(s.rows.count(), s.count);
+    s.dense_h = MatrixX::Zero(s.dofs.count, s.dofs.count);
+    s.dense_c = MatrixX::Zero(s.rows.count(), s.dofs.count);
     const auto place = [&](int a, int b, const Matrix6& block) {
         for (int i = 0; i < 6; ++i)
             for (int j = 0; j < 6; ++j)
-                if (s.index[a][i] >= 0 && s.index[b][j] >= 0) s.dense_h(s.index[a][i], s.index[b][j]) += block(i, j);
+                if (s.dofs.index[a][i] >= 0 && s.dofs.index[b][j] >= 0) s.dense_h(s.dofs.index[a][i], s.dofs.index[b][j]) += block(i, j);
     };
     for (int i = 0; i < bodies; ++i) place(i, i, s.hessian.diagonal[i]);
     for (const auto& b : s.hessian.off_diagonal) {
@@ -64,13 +62,13 @@ System ring(int bodies, int rows_a_joint, std::mt19937_64& random) {
     for (int row = 0; row < s.rows.count(); ++row)
         for (int k = s.rows.first[row]; k < s.rows.first[row + 1]; ++k)
             for (int i = 0; i < 6; ++i)
-                if (s.index[s.rows.entries[k].body][i] >= 0)
-                    s.dense_c(row, s.index[s.rows.entries[k].body][i]) += s.rows.entries[k].gradient[i];
+                if (s.dofs.index[s.rows.entries[k].body][i] >= 0)
+                    s.dense_c(row, s.dofs.index[s.rows.entries[k].body][i]) += s.rows.entries[k].gradient[i];
     return s;
 }
 
 VectorX dense_solution(const System& s, const VectorX& r, const VectorX& c) {
-    const Eigen::Index n = s.count, m = s.rows.count();
+    const Eigen::Index n = s.dofs.count, m = s.rows.count();
     MatrixX k = MatrixX::Zero(n + m, n + m);
     k.topLeftCorner(n, n) = s.dense_h;
     k.topRightCorner(n, m) = s.dense_c.transpose();
@@ -80,7 +78,7 @@ VectorX dense_solution(const System& s, const VectorX& r, const VectorX& c) {
     return k.fullPivLu().solve(b);
 }
 
-double difference(const SaddleSolver::Solution& x, const VectorX& y) {
+double difference(const LinearSystem::Solution& x, const VectorX& y) {
     VectorX all(y.size());
     all << x.y, x.multipliers;
     return (all - y).norm() / y.norm();
@@ -88,16 +86,17 @@ double difference(const SaddleSolver::Solution& x, const VectorX& y) {
 
 }  // namespace
 
-TEST_CASE("the saddle system's solution is the dense one, whatever changes from one matrix to the next", "[saddle]") {
+TEST_CASE("the saddle system's solution is the dense one, whatever changes from one matrix to the next", "[linear_system]") {
     std::mt19937_64 random(3);
     for (const int bodies : {2, 3, 7, 20}) {
         System s = ring(bodies, 3, random);
-        SaddleSolver solver(s.index, s.count);
+        LinearSystem solver(s.dofs);
         for (int trial = 0; trial < 3; ++trial) {
-            const VectorX r = VectorX::Random(s.count), c = VectorX::Random(s.rows.count());
+            const VectorX r = VectorX::Random(s.dofs.count), c = VectorX::Random(s.rows.count());
             CHECK(solver.factorise(s.hessian, s.rows));
-            const SaddleSolver::Solution x = solver.solve(r, c);
-            CHECK(x.error < 1e-14);
+            const LinearSystem::Solution x = solver.solve_refined(s.hessian, s.rows, r, c);
+            const LinearSystem::Solution left = solver.residual(s.hessian, s.rows, r, c, x);
+            CHECK(left.y.norm() + left.multipliers.norm() < 1e-13 * (r.norm() + c.norm() + x.y.norm() + x.multipliers.norm()));
             CHECK(difference(x, dense_solution(s, r, c)) < 1e-12);
             System other = ring(bodies, trial == 1 ? 2 : 3, random);
             s = other;
@@ -105,7 +104,7 @@ TEST_CASE("the saddle system's solution is the dense one, whatever changes from 
     }
 }
 
-TEST_CASE("what counts is whether H is definite on the rows", "[saddle]") {
+TEST_CASE("what counts is whether H is definite on the rows", "[linear_system]") {
     std::mt19937_64 random(4);
     System s = ring(5, 4, random);
     // Negative across the rows, so that H itself is indefinite by far; on them nothing changes.
@@ -127,12 +126,12 @@ TEST_CASE("what counts is whether H is definite on the rows", "[saddle]") {
         add_blocks(blocks, hessian);
     };
     subtract(50);
-    SaddleSolver solver(s.index, s.count);
+    LinearSystem solver(s.dofs);
     CHECK(solver.factorise(hessian, s.rows));
-    const VectorX r = VectorX::Random(s.count), c = VectorX::Random(s.rows.count());
+    const VectorX r = VectorX::Random(s.dofs.count), c = VectorX::Random(s.rows.count());
     System bent_system = s;
     bent_system.dense_h = bent;
-    CHECK(difference(solver.solve(r, c), dense_solution(bent_system, r, c)) < 1e-10);
+    CHECK(difference(solver.solve_refined(hessian, s.rows, r, c), dense_solution(bent_system, r, c)) < 1e-10);
     // Along the rows: there it counts.
     const MatrixX kernel = s.dense_c.fullPivLu().kernel();
     REQUIRE(kernel.cols() > 0);
@@ -141,11 +140,11 @@ TEST_CASE("what counts is whether H is definite on the rows", "[saddle]") {
     CHECK(!solver.factorise(down, s.rows));
 }
 
-TEST_CASE("rows that are sums of others are found, with what they are sums of", "[saddle]") {
+TEST_CASE("rows that are sums of others are found, with what they are sums of", "[linear_system]") {
     std::mt19937_64 random(5);
     const System s = ring(6, 2, random);
     std::vector<Matrix6> masses = s.hessian.diagonal;
-    CHECK(dependent_rows(masses, s.index, s.count, s.rows).empty());
+    CHECK(constraint::dependent_rows(masses, s.dofs, s.rows).empty());
     // One more row: the third plus half of the fourth.
     RowJacobian more = s.rows;
     for (int k = s.rows.first[2]; k < s.rows.first[3]; ++k) {
@@ -154,13 +153,13 @@ TEST_CASE("rows that are sums of others are found, with what they are sums of", 
         more.entries.push_back(sum);
     }
     more.first.push_back(static_cast<int>(more.entries.size()));
-    const std::vector<DependentRow> found = dependent_rows(masses, s.index, s.count, more);
+    const std::vector<constraint::DependentRow> found = constraint::dependent_rows(masses, s.dofs, more);
     REQUIRE(found.size() == 1);
     std::vector<int> all = found[0].on;
     all.push_back(found[0].row);
     std::sort(all.begin(), all.end());
     CHECK(all == std::vector<int>{2, 3, 12});
-    CHECK(without(more, found).count() == 12);
+    CHECK(constraint::without(more, found).count() == 12);
 }
 
-}  // namespace fettle::core::constraint::saddle_solver_test
+}  // namespace fettle::core::linear::quasi_definite_factor_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/block_cholesky.hpp"
+#include "fettle/core/linear/block_cholesky.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -13,7 +13,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
 
-namespace fettle::core::solver {
+namespace fettle::core::linear {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
@@ -79,12 +79,12 @@ Matrix6 free_part(const Matrix6& block, const std::array<int, 6>& rows, const st
 
 }  // namespace
 
-void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
+bool BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
     const auto is_same = [](const kinematics::OffDiagonalBlock& b, const std::pair<int, int>& known) {
         return b.a == known.first && b.b == known.second;
     };
     const auto& couplings = hessian.off_diagonal;
-    if (analysed_ && std::equal(couplings.begin(), couplings.end(), pattern_.begin(), pattern_.end(), is_same)) return;
+    if (analysed_ && std::equal(couplings.begin(), couplings.end(), pattern_.begin(), pattern_.end(), is_same)) return false;
     std::vector<std::pair<int, int>> pattern;
     pattern.reserve(couplings.size());
     for (const auto& b : couplings) pattern.emplace_back(b.a, b.b);
@@ -94,8 +94,7 @@ void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeD
     std::vector<int> bodies;
     node_of_.assign(dofs.index.size(), -1);
     for (std::size_t body = 0; body < dofs.index.size(); ++body) {
-        const auto& index = dofs.index[body];
-        if (std::none_of(index.begin(), index.end(), [](int k) { return k >= 0; })) continue;
+        if (is_none_free(dofs.index[body])) continue;
         node_of_[body] = static_cast<int>(bodies.size());
         bodies.push_back(static_cast<int>(body));
     }
@@ -119,6 +118,7 @@ void BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeD
         for (int& j : ordered[k]) j = place[at(j)];
     }
     find_columns(ordered);
+    return true;
 }
 
 // The rows of a column: those of the matrix, and those of the columns whose first row it is.
@@ -146,8 +146,6 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
         }
         if (!rows.empty()) sibling[j] = std::exchange(last_child[at(rows.front())], static_cast<int>(j));
     }
-    diagonal_.resize(n);
-    blocks_.resize(at(blocks));
     block_of_.clear();
     for (const auto& [a, b] : pattern_) {
         const int na = node_of_[at(a)], nb = node_of_[at(b)];
@@ -160,11 +158,11 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
             std::lower_bound(column.begin(), column.end(), std::max(na, nb), [](const Entry& e, int row) { return e.row < row; });
         block_of_.push_back(entry->block);
     }
-    std::vector<char> is_coupling(blocks_.size(), 0);
+    std::vector<char> is_coupling(at(blocks), 0);
     for (const int block : block_of_)
         if (block >= 0) is_coupling[at(block)] = 1;
     filled_in_.clear();
-    for (std::size_t block = 0; block < blocks_.size(); ++block)
+    for (std::size_t block = 0; block < is_coupling.size(); ++block)
         if (is_coupling[block] == 0) filled_in_.push_back(static_cast<int>(block));
     find_levels();
 }
@@ -172,7 +170,9 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
 // A column needs those that have a row in it.
 void BlockCholesky::find_levels() {
     constexpr double factor_products = 60, solve_products = 150;  // of blocks, and of blocks with vectors, that a thread takes at a time
+    constexpr double operations_a_product = 2 * 6 * 6 * 6;
     levels_.clear();
+    operations_ = 0;
     std::vector<std::size_t> level(columns_.size(), 0);
     struct Work {
         double factor = 0, solve = 0;
@@ -190,6 +190,7 @@ void BlockCholesky::find_levels() {
         }
         levels_[level[j]].columns.push_back(static_cast<int>(j));
         work[level[j]].factor += static_cast<double>(products);
+        operations_ += operations_a_product * static_cast<double>(products);
         work[level[j]].solve += static_cast<double>(columns_[j].size() + 1);
     }
     for (std::size_t k = 0; k < levels_.size(); ++k) {
@@ -202,6 +203,8 @@ void BlockCholesky::find_levels() {
 void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
     constexpr int blocks_a_piece = 64;
     const auto nodes = static_cast<int>(body_of_.size()), couplings = static_cast<int>(hessian.off_diagonal.size());
+    diagonal_.resize(body_of_.size());
+    blocks_.resize(filled_in_.size() + at(couplings));
     for (const int block : filled_in_) blocks_[at(block)].setZero();
     base::parallel_for(nodes + couplings, blocks_a_piece, [&](int i) {
         if (i < nodes) {
@@ -239,7 +242,6 @@ bool BlockCholesky::eliminate(int column) {
 }
 
 bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
-    analyse(hessian, dofs);
     fill(hessian, dofs);
     for (const Level& level : levels_) {
         std::atomic<bool> is_positive = true;
@@ -251,49 +253,63 @@ bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const Fre
     return true;
 }
 
-// In place, by the nodes: each takes what it needs from those before it, then from those below it, in their order.
-void BlockCholesky::solve_column(std::vector<Vector6>& x) const {
+// In place, `width` right-hand sides side by side, by the nodes: each takes what it needs from those before it, then from those below it,
+// in their order.
+void BlockCholesky::solve_panel(int width, std::vector<Vector6>& x) const {
+    const auto of_node = [&](int k) { return x.data() + at(k) * at(width); };
     for (const Level& level : levels_)
         base::parallel_for(static_cast<int>(level.columns.size()), level.solve_grain, [&](int i) {
-            const std::size_t k = at(level.columns[at(i)]);
-            for (const Entry& before : rows_[k]) x[k] -= blocks_[at(columns_[at(before.row)][at(before.block)].block)] * x[at(before.row)];
-            diagonal_[k].triangularView<Eigen::Lower>().solveInPlace(x[k]);
+            const int k = level.columns[at(i)];
+            Vector6* const mine = of_node(k);
+            for (const Entry& before : rows_[at(k)]) {
+                const Matrix6& block = blocks_[at(columns_[at(before.row)][at(before.block)].block)];
+                const Vector6* const theirs = of_node(before.row);
+                for (int c = 0; c < width; ++c) mine[c] -= block * theirs[c];
+            }
+            for (int c = 0; c < width; ++c) diagonal_[at(k)].triangularView<Eigen::Lower>().solveInPlace(mine[c]);
         });
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
         base::parallel_for(static_cast<int>(level->columns.size()), level->solve_grain, [&](int i) {
-            const std::size_t k = at(level->columns[at(i)]);
-            for (const Entry& entry : columns_[k]) x[k] -= blocks_[at(entry.block)].transpose() * x[at(entry.row)];
-            diagonal_[k].transpose().triangularView<Eigen::Upper>().solveInPlace(x[k]);
+            const int k = level->columns[at(i)];
+            Vector6* const mine = of_node(k);
+            for (const Entry& entry : columns_[at(k)]) {
+                const Matrix6& block = blocks_[at(entry.block)];
+                const Vector6* const theirs = of_node(entry.row);
+                for (int c = 0; c < width; ++c) mine[c] -= block.transpose() * theirs[c];
+            }
+            for (int c = 0; c < width; ++c) diagonal_[at(k)].transpose().triangularView<Eigen::Upper>().solveInPlace(mine[c]);
         });
 }
 
 MatrixX BlockCholesky::solve(const MatrixX& rhs, const FreeDofs& dofs) const {
-    static thread_local std::vector<Vector6> memory;  // stays from call to call
-    std::vector<Vector6>& x = memory;
-    x.resize(columns_.size());
+    constexpr int widest = 8;                    // right-hand sides that share a pass through the factor
+    static thread_local std::vector<Vector6> x;  // stays from call to call
     MatrixX out(rhs.rows(), rhs.cols());
-    const auto of_node = [&](std::size_t k) -> const std::array<int, 6>& { return dofs.index[at(body_of_[k])]; };
-    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const std::array<int, 6>& index = of_node(k);
-            if (are_all_free(index)) {
-                x[k] = rhs.col(c).segment<6>(index[0]);
-                continue;
+    for (int first = 0; first < rhs.cols(); first += widest) {
+        const int width = std::min(widest, static_cast<int>(rhs.cols()) - first);
+        x.resize(columns_.size() * at(width));
+        const auto for_each = [&](const auto& whole, const auto& single) {
+            for (std::size_t k = 0; k < columns_.size(); ++k) {
+                const std::array<int, 6>& index = dofs.index[at(body_of_[k])];
+                for (int c = 0; c < width; ++c) {
+                    Vector6& value = x[k * at(width) + at(c)];
+                    if (are_all_free(index)) {
+                        whole(value, index[0], first + c);
+                        continue;
+                    }
+                    for (int i = 0; i < 6; ++i) single(value[i], index[at(i)], first + c);
+                }
             }
-            for (int i = 0; i < 6; ++i) x[k][i] = index[at(i)] >= 0 ? rhs(index[at(i)], c) : 0;
-        }
-        solve_column(x);
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const std::array<int, 6>& index = of_node(k);
-            if (are_all_free(index)) {
-                out.col(c).segment<6>(index[0]) = x[k];
-                continue;
-            }
-            for (int i = 0; i < 6; ++i)
-                if (index[at(i)] >= 0) out(index[at(i)], c) = x[k][i];
-        }
+        };
+        for_each([&](Vector6& value, int row, int column) { value = rhs.col(column).segment<6>(row); },
+                 [&](double& value, int row, int column) { value = row >= 0 ? rhs(row, column) : 0; });
+        solve_panel(width, x);
+        for_each([&](const Vector6& value, int row, int column) { out.col(column).segment<6>(row) = value; },
+                 [&](double value, int row, int column) {
+                     if (row >= 0) out(row, column) = value;
+                 });
     }
     return out;
 }
 
-}  // namespace fettle::core::solver
+}  // namespace fettle::core::linear

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/saddle_solver.hpp"
+#include "fettle/core/linear/quasi_definite_factor.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -10,14 +10,13 @@
 
 #include "fettle/core/base/contract.hpp"
 
-namespace fettle::core::constraint {
+namespace fettle::core::linear {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // right-hand sides, side by side
 
 constexpr double delta_share = 1e-13;  // of a row's pivot by itself
-constexpr int most_refinements = 6;
-constexpr double refined_enough = 1e-15;  // of what rounding is measured by
 
 // What decides which entries the matrix has.
 struct Pattern {
@@ -56,7 +55,7 @@ std::vector<int> body_order(int bodies, const Pattern& pattern) {
 
 }  // namespace
 
-struct SaddleSolver::Implementation {
+struct QuasiDefiniteFactor::Implementation {
     std::vector<std::array<int, 6>> index;
     int count = 0;  // free degrees of freedom
     int rows = 0;
@@ -65,7 +64,6 @@ struct SaddleSolver::Implementation {
     Sparse matrix;                      // upper triangle, permuted
     std::vector<std::size_t> position;  // of each visited entry in the matrix
     std::vector<int> place;             // of each unknown: its column
-    std::vector<bool> is_row;           // of each column: a multiplier's?
     VectorX delta;                      // per row
     VectorX own_pivot;                  // per row: sum_k C_k^2 / H_kk
     using Factor = Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>>;
@@ -103,7 +101,6 @@ struct SaddleSolver::Implementation {
         // Rows after the last of their bodies of which anything is free; those of none are first.
         std::vector<std::vector<int>> after(index.size());
         place.assign(static_cast<std::size_t>(count + rows), -1);
-        is_row.assign(static_cast<std::size_t>(count + rows), false);
         int next = 0;
         for (int row = 0; row < rows; ++row) {
             int last = -1;
@@ -119,7 +116,6 @@ struct SaddleSolver::Implementation {
                 if (unknown >= 0) place[static_cast<std::size_t>(unknown)] = next++;
             for (const int row : after[k]) place[static_cast<std::size_t>(count + row)] = next++;
         }
-        for (int row = 0; row < rows; ++row) is_row[static_cast<std::size_t>(place[static_cast<std::size_t>(count + row)])] = true;
     }
 
     void analyse(const kinematics::BlockHessian& hessian, const RowJacobian& jacobian) {
@@ -159,8 +155,6 @@ struct SaddleSolver::Implementation {
         delta = (delta_share * own_pivot).cwiseMax(delta_share * delta_share * (largest > 0 ? largest : 1));
     }
 
-    const Factor& factor_in_use() const { return is_augmented ? augmented_factor : factor; }
-
     // Without pivoting, an H that is indefinite across the rows would spoil the factor.
     void augment(const RowJacobian& jacobian) {
         constexpr double share = 10;  // of what a row weighs against the diagonal of H
@@ -180,13 +174,36 @@ struct SaddleSolver::Implementation {
         is_augmented = true;
     }
 
-    // Of the right-hand side in the matrix's order: the same solution with either factor.
-    VectorX through_factor(VectorX rhs) const {
-        if (!is_augmented) return factor.solve(rhs);
-        VectorX c(rows);
-        for (int i = 0; i < rows; ++i) c[i] = weights[i] * rhs[place[count + i]];
+    // Of right-hand sides in the matrix's order: the same solution with either factor.
+    Columns through_factor(Columns rhs) const {
+        if (!is_augmented) return solved_by(factor, std::move(rhs));
+        Columns c(rows, rhs.cols());
+        for (int i = 0; i < rows; ++i) c.row(i) = weights[i] * rhs.row(place[count + i]);
         rhs += gradients.transpose() * c;
-        return augmented_factor.solve(rhs);
+        return solved_by(augmented_factor, std::move(rhs));
+    }
+
+    // All right-hand sides in one pass through L, and one back.
+    static Columns solved_by(const Factor& f, Columns x) {
+        const Sparse& l = f.matrixL().nestedExpression();  // its diagonal is 1
+        const Eigen::Index n = x.rows(), width = x.cols();
+        double* const values = x.data();
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const double* const own = values + j * width;
+            for (Sparse::InnerIterator entry(l, j); entry; ++entry) {
+                double* const other = values + entry.row() * width;
+                for (Eigen::Index c = 0; c < width; ++c) other[c] -= own[c] * entry.value();
+            }
+        }
+        x.array().colwise() *= f.vectorD().array().inverse();
+        for (Eigen::Index j = n; j-- > 0;) {
+            double* const own = values + j * width;
+            for (Sparse::InnerIterator entry(l, j); entry; ++entry) {
+                const double* const other = values + entry.row() * width;
+                for (Eigen::Index c = 0; c < width; ++c) own[c] -= entry.value() * other[c];
+            }
+        }
+        return x;
     }
 
     bool matrix_is_finite() const { return Eigen::Map<const VectorX>(matrix.valuePtr(), matrix.nonZeros()).allFinite(); }
@@ -202,68 +219,17 @@ struct SaddleSolver::Implementation {
             if (!(pivots[place[count + i]] < 0)) return false;
         return true;
     }
-
-    VectorX permuted(const VectorX& r, const VectorX& c) const {
-        VectorX out(count + rows);
-        for (int i = 0; i < count; ++i) out[place[i]] = r[i];
-        for (int i = 0; i < rows; ++i) out[place[count + i]] = c[i];
-        return out;
-    }
-
-    Solution split(const VectorX& x) const {
-        Solution out{VectorX(count), VectorX(rows), 0};
-        for (int i = 0; i < count; ++i) out.y[i] = x[place[i]];
-        for (int i = 0; i < rows; ++i) out.multipliers[i] = x[place[count + i]];
-        return out;
-    }
-
-    // b - A x without delta, and |b| + |A| |x|, which rounding is measured by: of forces and of rows each for themselves, for one may be
-    // far smaller than the other.
-    struct Residual {
-        VectorX value;
-        std::array<double, 2> largest{0, 0}, magnitude{0, 0};
-        double relative() const {
-            double most = 0;
-            for (int k = 0; k < 2; ++k) most = std::max(most, largest[k] > 0 ? largest[k] / magnitude[k] : 0.0);
-            return most;
-        }
-        bool is_half_of(const Residual& before) const {
-            return largest[0] < 0.5 * before.largest[0] || largest[1] < 0.5 * before.largest[1];
-        }
-    };
-    Residual residual(const VectorX& b, const VectorX& x) const {
-        Residual out{b};
-        VectorX magnitude = b.cwiseAbs();
-        for (int j = 0; j < matrix.outerSize(); ++j)
-            for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-                const auto i = entry.row();
-                if (i == j && is_row[static_cast<std::size_t>(i)]) continue;
-                const double forth = entry.value() * x[j], back = entry.value() * x[i];
-                out.value[i] -= forth;
-                magnitude[i] += std::abs(forth);
-                if (i == j) continue;
-                out.value[j] -= back;
-                magnitude[j] += std::abs(back);
-            }
-        for (Eigen::Index i = 0; i < b.size(); ++i) {
-            const int kind = is_row[static_cast<std::size_t>(i)] ? 1 : 0;
-            out.largest[kind] = std::max(out.largest[kind], std::abs(out.value[i]));
-            out.magnitude[kind] = std::max(out.magnitude[kind], magnitude[i]);
-        }
-        return out;
-    }
 };
 
-SaddleSolver::SaddleSolver(std::vector<std::array<int, 6>> index, int count) : implementation_(std::make_unique<Implementation>()) {
-    implementation_->index = std::move(index);
-    implementation_->count = count;
-}
-SaddleSolver::~SaddleSolver() = default;
-SaddleSolver::SaddleSolver(SaddleSolver&&) noexcept = default;
-SaddleSolver& SaddleSolver::operator=(SaddleSolver&&) noexcept = default;
+QuasiDefiniteFactor::QuasiDefiniteFactor() : implementation_(std::make_unique<Implementation>()) {}
+QuasiDefiniteFactor::~QuasiDefiniteFactor() = default;
+QuasiDefiniteFactor::QuasiDefiniteFactor(QuasiDefiniteFactor&&) noexcept = default;
+QuasiDefiniteFactor& QuasiDefiniteFactor::operator=(QuasiDefiniteFactor&&) noexcept = default;
 
-bool SaddleSolver::factorise(const kinematics::BlockHessian& hessian, const RowJacobian& rows) {
+bool QuasiDefiniteFactor::factorise(const BlockHessian& hessian, const RowJacobian& rows, const FreeDofs& dofs) {
     Implementation& self = *implementation_;
+    self.index = dofs.index;
+    self.count = dofs.count;
     self.rows = rows.count();
     self.measure_rows(hessian, rows);
     self.analyse(hessian, rows);
@@ -282,39 +248,17 @@ bool SaddleSolver::factorise(const kinematics::BlockHessian& hessian, const RowJ
     return self.usable && (self.augmented_factor.vectorD().array() > 0).count() == self.count;
 }
 
-bool SaddleSolver::is_usable() const { return implementation_->usable; }
+bool QuasiDefiniteFactor::is_usable() const { return implementation_->usable; }
 
-SaddleSolver::Solution SaddleSolver::solve_roughly(const VectorX& r, const VectorX& c) const {
+MatrixX QuasiDefiniteFactor::solve(const MatrixX& rhs) const {
     const Implementation& self = *implementation_;
     FETTLE_ASSERT(self.usable, "solve without a factorisation");
-    return self.split(self.through_factor(self.permuted(r, c)));
-}
-
-SaddleSolver::Solution SaddleSolver::solve(const VectorX& r, const VectorX& c) const {
-    const Implementation& self = *implementation_;
-    FETTLE_ASSERT(self.usable, "solve without a factorisation");
-    const VectorX rhs = self.permuted(r, c);
-    VectorX x = self.through_factor(rhs);
-    Implementation::Residual residual = self.residual(rhs, x);
-    for (int k = 0; k < most_refinements && residual.relative() > refined_enough; ++k) {
-        const VectorX refined = x + self.through_factor(residual.value);
-        Implementation::Residual left = self.residual(rhs, refined);
-        if (!left.is_half_of(residual)) break;
-        x = refined;
-        residual = std::move(left);
-    }
-    Solution out = self.split(x);
-    out.error = residual.relative();
+    Columns permuted(rhs.rows(), rhs.cols());
+    for (Eigen::Index i = 0; i < rhs.rows(); ++i) permuted.row(self.place[static_cast<std::size_t>(i)]) = rhs.row(i);
+    const Columns x = self.through_factor(std::move(permuted));
+    MatrixX out(rhs.rows(), rhs.cols());
+    for (Eigen::Index i = 0; i < rhs.rows(); ++i) out.row(i) = x.row(self.place[static_cast<std::size_t>(i)]);
     return out;
 }
 
-VectorX SaddleSolver::relative_pivots() const {
-    const Implementation& self = *implementation_;
-    const VectorX pivots = self.factor_in_use().vectorD();
-    VectorX out(self.rows);
-    for (int i = 0; i < self.rows; ++i)
-        out[i] = self.own_pivot[i] > 0 ? std::abs(pivots[self.place[self.count + i]]) / self.own_pivot[i] : 0;
-    return out;
-}
-
-}  // namespace fettle::core::constraint
+}  // namespace fettle::core::linear

@@ -10,17 +10,24 @@
 #include <vector>
 
 #include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/solver/free_dofs.hpp"
+#include "fettle/core/linear/free_dofs.hpp"
 
-namespace fettle::core::solver {
+namespace fettle::core::linear {
 
 class BlockCholesky {
 public:
-    /// The symbolic factor is kept while the same bodies are coupled. @return false if the free part is not positive definite to rounding,
-    /// or not finite (then solve must not be called)
+    /// The symbolic factor, kept while the same bodies are coupled. @return is it another than before?
+    bool analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
+    /// Multiplications and additions that a factor of what was analysed takes.
+    double operations() const { return operations_; }
+    /// Bodies of which anything is free, in the order of elimination.
+    const std::vector<int>& order() const { return body_of_; }
+
+    /// Of what was analysed. @return false if the free part is not positive definite to rounding, or not finite (then solve must not be
+    /// called)
     bool factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
 
-    /// Of the free part, one column per right-hand side.
+    /// Of the free part, one column per right-hand side: the same bits whatever stands beside it.
     MatrixX solve(const MatrixX& rhs, const FreeDofs& dofs) const;
 
 private:
@@ -29,15 +36,15 @@ private:
         int block;  // into blocks_
     };
 
-    void analyse(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
     void find_columns(const std::vector<std::vector<int>>& neighbours);
     void fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
     bool eliminate(int column);
     void find_levels();
-    void solve_column(std::vector<Vector6>& x) const;
+    void solve_panel(int width, std::vector<Vector6>& x) const;
 
     std::vector<std::pair<int, int>> pattern_;  // bodies of the off-diagonal blocks that the analysis saw
     bool analysed_ = false;
+    double operations_ = 0;
     std::vector<int> body_of_;                 // [node] in the order of elimination
     std::vector<int> node_of_;                 // [body] -1: nothing of it is free
     std::vector<std::vector<Entry>> columns_;  // [node] rows below it, ascending
@@ -52,4 +59,4 @@ private:
     std::vector<Level> levels_;
 };
 
-}  // namespace fettle::core::solver
+}  // namespace fettle::core::linear

@@ -1,21 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/free_dofs.hpp"
+#include "fettle/core/linear/free_dofs.hpp"
 
-namespace fettle::core::solver {
-
-FreeDofs free_dofs(const model::Model& model) {
-    FreeDofs dofs;
-    for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
-        std::array<int, 6> index;
-        for (int k = 0; k < 6; ++k) {
-            const bool is_free = model::is_free(model.bodies[i], k);
-            index[k] = is_free ? dofs.count++ : -1;
-            if (!is_free) dofs.prescribed.emplace_back(i, k);
-        }
-        dofs.index.push_back(index);
-    }
-    return dofs;
-}
+namespace fettle::core::linear {
 
 VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values) {
     VectorX out(dofs.count);
@@ -43,4 +29,4 @@ void scatter(const FreeDofs& dofs, const VectorX& free_values, std::vector<Vecto
     }
 }
 
-}  // namespace fettle::core::solver
+}  // namespace fettle::core::linear

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// The one linear system: of a potential's second derivative H over the free degrees of freedom, under rows C (joints, motors) or none,
+///   [ H  C^T ] [ y ]   [ r ]
+///   [ C   0  ] [ m ] = [ c ]
+/// Behind it, by what there is to solve and by the graph of what is coupled alone, so that no bit depends on the number of threads:
+///   without rows   blocks of 6 x 6 (block_cholesky.hpp); above `supernodal_operations` CHOLMOD (supernodal_cholesky.hpp), where it is
+///   there with rows      L D L^T (quasi_definite_factor.hpp) indefinite     L U (indefinite_factor.hpp), for derivatives alone
+/// docs/method.md section 9.
+#pragma once
+
+#include <memory>
+
+#include "fettle/core/linear/free_dofs.hpp"
+#include "fettle/core/linear/matrices.hpp"
+
+namespace fettle::core::linear {
+
+class LinearSystem {
+public:
+    /// Multiplications and additions of the factor by blocks from which on CHOLMOD takes less time.
+    static constexpr double supernodal_operations = 5e8;
+
+    explicit LinearSystem(FreeDofs dofs);
+    ~LinearSystem();
+    LinearSystem(LinearSystem&&) noexcept;
+    LinearSystem& operator=(LinearSystem&&) noexcept;
+
+    const FreeDofs& dofs() const;
+
+    /// For Newton's method: is H positive definite (where C y = 0)? If not, solve must not be called, but with rows, where is_usable() says
+    /// whether it may. The symbolic factor is kept while the same bodies are coupled.
+    bool factorise(const BlockHessian& hessian, const RowJacobian& rows = {});
+
+    /// For derivatives: whatever is invertible. @return false: singular to rounding; solve must not be called
+    bool factorise_any(const BlockHessian& hessian, const RowJacobian& rows = {});
+
+    bool is_usable() const;
+
+    struct Solution {
+        MatrixX y;            ///< over the free degrees of freedom, one column per right-hand side
+        MatrixX multipliers;  ///< per row
+    };
+
+    /// Once through the factor, all right-hand sides in one pass: for steps and corrections that are checked by what they come to.
+    /// @param c  as many columns as r; without rows nothing
+    Solution solve(const MatrixX& r, const MatrixX& c = {}) const;
+
+    /// With refinement by the matrix that was factorised: once without rows, which is enough for how stiff contact makes H; with rows,
+    /// which delta is to be taken out of, until what is left is rounding, or falls no more by half.
+    Solution solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c = {}) const;
+
+    /// r - H y - C^T m and c - C y.
+    Solution residual(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c, const Solution& x) const;
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace fettle::core::linear
