@@ -20,10 +20,9 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Each is called CHOLMOD(x) with its name, without its "cholmod_".
-#define FETTLE_CHOLMOD_FUNCTIONS(CHOLMOD)                                                                                \
-    CHOLMOD(start)                                                                                                       \
-    CHOLMOD(finish) CHOLMOD(nested_dissection) CHOLMOD(analyze_p) CHOLMOD(factorize) CHOLMOD(solve) CHOLMOD(free_factor) \
-        CHOLMOD(free_dense)
+#define FETTLE_CHOLMOD_FUNCTIONS(CHOLMOD) \
+    CHOLMOD(start)                        \
+    CHOLMOD(finish) CHOLMOD(nested_dissection) CHOLMOD(analyze_p) CHOLMOD(factorize) CHOLMOD(solve) CHOLMOD(free_factor) CHOLMOD(free_dense)
 
 struct Library {
 #define FETTLE_CHOLMOD_MEMBER(function) decltype(&cholmod_##function) function = nullptr;
