@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "fettle/tests/support/skip.hpp"
+
 namespace fettle::tests::support {
 
 inline std::filesystem::path shared_folder() {
@@ -30,10 +32,6 @@ inline std::string shared_file(const std::string& path) {
 }  // namespace fettle::tests::support
 
 /// First line of a test case (catch2/catch.hpp included) that reads shared files.
-#define FETTLE_NEEDS_SHARED()                                                                                   \
-    do {                                                                                                        \
-        if (!::fettle::tests::support::has_shared_files()) {                                                    \
-            WARN("skipped: no folder " << ::fettle::tests::support::shared_folder() << " (set FETTLE_SHARED)"); \
-            return;                                                                                             \
-        }                                                                                                       \
-    } while (false)
+#define FETTLE_NEEDS_SHARED()                          \
+    if (!::fettle::tests::support::has_shared_files()) \
+    FETTLE_SKIP("no folder " << ::fettle::tests::support::shared_folder() << " (set FETTLE_SHARED)")

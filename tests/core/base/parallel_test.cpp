@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/tests/support/skip.hpp"
 
 #include <array>
 #include <atomic>
@@ -141,10 +142,7 @@ TEST_CASE("what is to be done meanwhile is done once, on another thread, if ther
         wake_threads(job);
         CHECK(done == 0);
     }
-    if (thread_count() == 1) {
-        WARN("skipped: one thread alone");
-        return;
-    }
+    if (thread_count() == 1) FETTLE_SKIP("one thread alone");
     wake_threads(job);
     const auto begin = std::chrono::steady_clock::now();
     while (done == 0 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60)) std::this_thread::yield();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/program_memory.hpp"
+#include "fettle/tests/support/skip.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -55,10 +56,7 @@ bool system_provides_memory() {
 }  // namespace
 
 TEST_CASE("Memory that another thread had provided is used without a fault of its pages") {
-    if (!system_provides_memory()) {
-        WARN("skipped: this system provides no memory ahead");
-        return;
-    }
+    if (!system_provides_memory()) FETTLE_SKIP("this system provides no memory ahead");
     constexpr std::size_t megabyte = 1 << 20;
     keep_freed_memory();
     const std::function<void()> job = memory_ahead(24 * megabyte);
