@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Every scene of the source paper that we have, as it is: to its own end or, where that is long, at least 200 steps. No NaN, no stall (CTest's
-// time limit), and no intersection by exact predicates at any node nor at instants between each two. Needs ../shared; skipped without it.
+// Every scene of the source paper that we have, as it is: to its own end or, where that is long, at least 200 steps. No NaN, no stall
+// (CTest's time limit), and no intersection by exact predicates at any node nor at instants between each two. Needs ../shared; skipped
+// without it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

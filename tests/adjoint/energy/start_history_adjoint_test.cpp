@@ -6,8 +6,8 @@
 #include <random>
 
 #include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::energy::start_history_adjoint_test {
 
@@ -20,25 +20,9 @@ const Vector3 z_axis = Vector3::UnitZ();
 
 // Two turning bars, with everything that acts along a distance between them. @param held  a coordinate of the first that is driven
 Model bars(int held) {
-    core::scene::Scene scene = scene_of({bar("one", 0.3), bar("two", 0.2, Vector3(0.1, 0.3, 0.2), Vector3(0.4, 0.2, -0.3))}, 0.01);
+    core::scene::Scene scene = loose_bars_scene();
     scene.integrator = core::scene::Integrator::newmark;
-    scene.gravity = Vector3(0.2, 0.1, -0.5);
-    scene.dhat = 0.05;
-    scene.friction.eps_v = 0.5;
-    scene.bodies[0].angular_velocity = Vector3(2, -1, 3);
-    scene.bodies[1].linear_velocity = Vector3(0.2, 0.3, -0.1);
     scene.bodies[1].damping = {0.3, 0.2};
-    core::scene::Spring between, from_world;
-    between.name = "between";
-    between.a = {"one", Vector3(0.3, 0, 0), z_axis};
-    between.b = {"two", Vector3(0.2, 0, 0), z_axis};
-    between.forces = {7, 0.2, 0, 0.3, 0.2, std::array<double, 2>{0.0, 0.42}};
-    from_world.name = "from world";
-    from_world.a = {"", Vector3(0, 0, 0.5), z_axis};
-    from_world.b = {"one", Vector3(0.1, 0, 0), z_axis};
-    from_world.forces = {4, 0.8, 0, 0.1, 0, std::nullopt};
-    scene.mechanism.springs = {between, from_world};
-    scene.mechanism.loads = {{"load", "", "two", Vector3(0.1, 0.02, 0), Vector3(0.1, 0.2, 0.3)}};
     Model model = built(scene);
     if (held >= 0) model.bodies[0].prescribed[static_cast<std::size_t>(held)] = core::scene::MotionCurve{};
     return model;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::model::mechanism_start_tangent_test {
 

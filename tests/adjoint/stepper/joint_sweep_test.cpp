@@ -6,8 +6,8 @@
 #include "fettle/adjoint/stepper/row_multipliers.hpp"
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
 #include "fettle/tests/support/line_check.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::stepper::joint_sweep_test {
 
@@ -57,26 +57,9 @@ SweepScene arm(Integrator integrator = Integrator::implicit_euler) {
     return sweep(integrator == Integrator::bdf2 ? "arm, BDF2" : "arm", scene, 12);
 }
 
-// Two bars that springs with all that they can have act between, and on one of them from the world; no rows.
 SweepScene loose_bars(Integrator integrator) {
-    core::scene::Scene scene = scene_of({bar("one", 0.3), bar("two", 0.2, Vector3(0.1, 0.3, 0.2), Vector3(0.4, 0.2, -0.3))}, 0.01);
+    core::scene::Scene scene = loose_bars_scene();
     scene.integrator = integrator;
-    scene.gravity = Vector3(0.2, 0.1, -0.5);
-    scene.dhat = 0.05;
-    scene.friction.eps_v = 0.5;
-    scene.bodies[0].angular_velocity = Vector3(2, -1, 3);
-    scene.bodies[1].linear_velocity = Vector3(0.2, 0.3, -0.1);
-    core::scene::Spring between, from_world;
-    between.name = "between";
-    between.a = {"one", Vector3(0.3, 0, 0), z_axis};
-    between.b = {"two", Vector3(0.2, 0, 0), z_axis};
-    between.forces = {7, 0.2, 0, 0.3, 0.2, std::array<double, 2>{0.0, 0.42}};
-    from_world.name = "from world";
-    from_world.a = {"", Vector3(0, 0, 0.5), z_axis};
-    from_world.b = {"one", Vector3(0.1, 0, 0), z_axis};
-    from_world.forces = {4, 0.8, 0, 0.1, 0, std::nullopt};
-    scene.mechanism.springs = {between, from_world};
-    scene.mechanism.loads = {{"load", "", "two", Vector3(0.1, 0.02, 0), Vector3(0.1, 0.2, 0.3)}};
     return sweep(integrator == Integrator::bdf2 ? "loose bars, BDF2" : "loose bars, Newmark", scene, 12);
 }
 
@@ -99,18 +82,9 @@ SweepScene spatial_four_bar(Integrator integrator = Integrator::implicit_euler) 
 
 // Crank, rod between balls, slider; quasi-static, with a load and a spring.
 SweepScene slider_crank() {
-    const double start = 0.4, tilt = std::asin(0.1 * std::sin(start) / 0.3);
-    const Vector3 pin(0.1 * std::cos(start), 0.1 * std::sin(start), 0), wrist(pin.x() + 0.3 * std::cos(tilt), 0, 0);
-    core::scene::Scene scene = scene_of(
-        {bar("crank", 0.1, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", 0.3, pin, Vector3(0, 0, -tilt)), bar("slider", 0.05, wrist)},
-        0.02);
+    core::scene::Scene scene = slider_crank_scene();
     scene.integrator = Integrator::quasi_static;
     scene.gravity = Vector3(0, -9.81, 0);
-    scene.mechanism.joints = {
-        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
-        joint("pin", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
-        joint("wrist", JointKind::cylindrical, {"rod", Vector3(0.3, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
-        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
     core::scene::Spring back;
     back.name = "back";
     back.joint = "guide";
@@ -118,7 +92,6 @@ SweepScene slider_crank() {
     back.forces.rest = 0.03;
     back.forces.friction = 0.4;
     scene.mechanism.springs = {back};
-    scene.mechanism.loads = {{"push", "", "slider", Vector3(0.02, 0.01, 0), Vector3(-12, 1, 0.3)}};
     scene.mechanism.motors = {motor("drive", "main", values(core::scene::CurveKind::trapezoid, {0, 0.2}, {0, 1.9}))};
     scene.mechanism.motors[0].curve.rate = 0.7;
     return sweep("slider-crank", scene, 9);

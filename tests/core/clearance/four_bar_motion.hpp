@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::tests::four_bar {
 

@@ -7,7 +7,7 @@
 
 #include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::tests::trees {
 

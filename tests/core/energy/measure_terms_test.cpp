@@ -7,8 +7,8 @@
 
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::energy::measure_terms_test {
 

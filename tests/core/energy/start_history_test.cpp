@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::energy::start_history_test {
 

@@ -7,7 +7,7 @@
 
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/core/model/box_scenes.hpp"
 #include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::model::build_model_test {
@@ -17,26 +17,9 @@ namespace {
 using base::ErrorCode;
 using scene::BodyType;
 
-scene::Body box_body(const std::string& name, const Vector3& low, const Vector3& high) {
-    scene::Body body;
-    body.name = name;
-    body.where = "a.scene.json#/bodies/" + name;
-    body.mesh = tests::box_mesh(low, high);
-    return body;
-}
-
-scene::Scene scene_of(std::vector<scene::Body> bodies) {
-    scene::Scene scene;
-    scene.path = "a.scene.json";
-    scene.bodies = std::move(bodies);
-    return scene;
-}
-
-base::Error only_error(const base::Result<Model>& result) {
-    REQUIRE(result.errors().size() == 1);
-    return result.errors().front();
-}
-
+using fettle::tests::box_body;
+using fettle::tests::only_error;
+using fettle::tests::scene_of;
 using fettle::tests::support::contains;
 
 TEST_CASE("A box gets its mass, frame and sizes", "[model]") {

@@ -9,7 +9,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "fettle/tests/core/model/box_scenes.hpp"
 #include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::model::check_scene_test {
@@ -19,26 +19,9 @@ namespace {
 using base::ErrorCode;
 using scene::BodyType;
 
-scene::Body box_body(const std::string& name, const Vector3& low, const Vector3& high) {
-    scene::Body body;
-    body.name = name;
-    body.where = "a.scene.json#/bodies/" + name;
-    body.mesh = tests::box_mesh(low, high);
-    return body;
-}
-
-scene::Scene scene_of(std::vector<scene::Body> bodies) {
-    scene::Scene scene;
-    scene.path = "a.scene.json";
-    scene.bodies = std::move(bodies);
-    return scene;
-}
-
-base::Error only_error(const base::Result<Model>& result) {
-    REQUIRE(result.errors().size() == 1);
-    return result.errors().front();
-}
-
+using fettle::tests::box_body;
+using fettle::tests::only_error;
+using fettle::tests::scene_of;
 using fettle::tests::support::contains;
 
 TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {

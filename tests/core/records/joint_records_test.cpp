@@ -8,7 +8,7 @@
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/records/trajectory_reader.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::core::records::joint_records_test {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::balance_test {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <numbers>
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::default_accuracy_test {
 

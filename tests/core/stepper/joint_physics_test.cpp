@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::joint_physics_test {
 

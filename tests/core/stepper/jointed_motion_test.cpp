@@ -2,7 +2,7 @@
 // Bodies that joints hold and motors drive, followed without dynamics: closed forms, turns, what is refused.
 #include "fettle/core/stepper/jointed_motion.hpp"
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::jointed_motion_test {
 

@@ -7,6 +7,7 @@
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::tests::physics {
@@ -37,18 +38,7 @@ inline void set_friction(core::model::Model& model, double mu, double eps_v, int
     model.friction.rounds = rounds;
 }
 
-/// A simulation that has to end well, with outputs. @param exactly  each step to rounding level
-inline core::stepper::Simulation run(const core::model::Model& model, int steps, bool exactly = false) {
-    core::stepper::SimulationOptions options;
-    options.steps = steps;
-    options.outputs = true;
-    options.for_gradient = exactly;
-    core::stepper::Simulation out = core::stepper::simulate(model, options);
-    INFO(out.report.message);
-    REQUIRE(out.report.status == core::stepper::SimulationStatus::ok);
-    REQUIRE(static_cast<int>(out.outputs.size()) == steps);
-    return out;
-}
+using mechanisms::run;
 
 inline Vector3 position(const core::stepper::Simulation& run, int step, int body = 0) {
     return run.trajectory.poses[static_cast<std::size_t>(step)][static_cast<std::size_t>(body)].position;

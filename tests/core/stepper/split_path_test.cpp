@@ -2,7 +2,7 @@
 // Nodes between which joints hold: measured gaps, ends that stay, what cannot be done.
 #include "fettle/core/stepper/split_path.hpp"
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::split_path_test {
 

@@ -8,7 +8,7 @@
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::closed_forms_test {
 

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_friction_test {
 

@@ -7,7 +7,7 @@
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_places_test {
 

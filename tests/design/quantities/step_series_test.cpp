@@ -11,7 +11,7 @@
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/tests/core/stepper/mechanism_models.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::quantities::step_series_test {
 
@@ -29,18 +29,9 @@ const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vec
 
 // A slider-crank with a spring that has stops, in space: the rod between balls.
 Design slider_crank(Integrator integrator) {
-    const double start = 0.4, tilt = std::asin(0.1 * std::sin(start) / 0.3);
-    const Vector3 pin(0.1 * std::cos(start), 0.1 * std::sin(start), 0), wrist(pin.x() + 0.3 * std::cos(tilt), 0, 0);
-    core::scene::Scene scene = scene_of(
-        {bar("crank", 0.1, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", 0.3, pin, Vector3(0, 0, -tilt)), bar("slider", 0.05, wrist)},
-        0.02);
+    core::scene::Scene scene = slider_crank_scene();
     scene.integrator = integrator;
     scene.gravity = Vector3(0.2, -9.81, 0.4);
-    scene.mechanism.joints = {
-        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
-        joint("pin", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
-        joint("wrist", JointKind::cylindrical, {"rod", Vector3(0.3, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
-        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
     core::scene::Spring back;
     back.name = "back";
     back.joint = "guide";
@@ -49,7 +40,6 @@ Design slider_crank(Integrator integrator) {
     back.forces.damping = 3;
     back.forces.limits = {-0.3, 1e-5};
     scene.mechanism.springs = {back};
-    scene.mechanism.loads = {{"push", "", "slider", Vector3(0.02, 0.01, 0), Vector3(-12, 1, 0.3)}};
     core::scene::Curve curve;
     curve.kind = core::scene::CurveKind::control_points;
     curve.times = {0, 0.2};

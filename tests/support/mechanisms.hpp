@@ -59,6 +59,59 @@ inline core::scene::Motor motor(const std::string& name, const std::string& of, 
     return out;
 }
 
+/// A spring or damper along a joint's coordinate.
+inline core::scene::Spring spring_of(const std::string& name, const std::string& joint, const core::scene::CoordinateForces& forces) {
+    core::scene::Spring out;
+    out.name = name;
+    out.joint = joint;
+    out.forces = forces;
+    return out;
+}
+
+/// The same between points.
+inline core::scene::Spring spring_between(const std::string& name, const core::scene::Attachment& a, const core::scene::Attachment& b,
+                                          const core::scene::CoordinateForces& forces) {
+    core::scene::Spring out = spring_of(name, "", forces);
+    out.a = a;
+    out.b = b;
+    return out;
+}
+
+/// A slider-crank in space: crank "main", rod between balls "pin" and the slider's "wrist", slider on "guide", with a load that pushes it.
+inline core::scene::Scene slider_crank_scene() {
+    using core::scene::JointKind;
+    const Vector3 x_axis = Vector3::UnitX(), z_axis = Vector3::UnitZ();
+    const double start = 0.4, tilt = std::asin(0.1 * std::sin(start) / 0.3);
+    const Vector3 pin(0.1 * std::cos(start), 0.1 * std::sin(start), 0), wrist(pin.x() + 0.3 * std::cos(tilt), 0, 0);
+    core::scene::Scene scene = scene_of(
+        {bar("crank", 0.1, Vector3::Zero(), Vector3(0, 0, start)), bar("rod", 0.3, pin, Vector3(0, 0, -tilt)), bar("slider", 0.05, wrist)},
+        0.02);
+    scene.mechanism.joints = {
+        joint("main", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"crank", Vector3::Zero(), z_axis}),
+        joint("pin", JointKind::ball, {"crank", Vector3(0.1, 0, 0), z_axis}, {"rod", Vector3::Zero(), z_axis}),
+        joint("wrist", JointKind::cylindrical, {"rod", Vector3(0.3, 0, 0), z_axis}, {"slider", Vector3::Zero(), z_axis}),
+        joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
+    scene.mechanism.loads = {{"push", "", "slider", Vector3(0.02, 0.01, 0), Vector3(-12, 1, 0.3)}};
+    return scene;
+}
+
+/// Two bars that springs with all that they can have act between, and on one of them from the world; no rows.
+inline core::scene::Scene loose_bars_scene() {
+    const Vector3 z_axis = Vector3::UnitZ();
+    core::scene::Scene scene = scene_of({bar("one", 0.3), bar("two", 0.2, Vector3(0.1, 0.3, 0.2), Vector3(0.4, 0.2, -0.3))}, 0.01);
+    scene.gravity = Vector3(0.2, 0.1, -0.5);
+    scene.dhat = 0.05;
+    scene.friction.eps_v = 0.5;
+    scene.bodies[0].angular_velocity = Vector3(2, -1, 3);
+    scene.bodies[1].linear_velocity = Vector3(0.2, 0.3, -0.1);
+    scene.mechanism.springs = {spring_between("between", {"one", Vector3(0.3, 0, 0), z_axis}, {"two", Vector3(0.2, 0, 0), z_axis},
+                                              {7, 0.2, 0, 0.3, 0.2, std::array<double, 2>{0.0, 0.42}}),
+                               spring_between("from world", {"", Vector3(0, 0, 0.5), z_axis}, {"one", Vector3(0.1, 0, 0), z_axis},
+                                              {4, 0.8, 0, 0.1, 0, std::nullopt})};
+    scene.mechanism.loads = {{"load", "", "two", Vector3(0.1, 0.02, 0), Vector3(0.1, 0.2, 0.3)}};
+    return scene;
+}
+
 inline core::scene::Curve at_rate(double rate) {
     core::scene::Curve curve;
     curve.rate = rate;
@@ -74,6 +127,7 @@ inline core::model::Model built(const core::scene::Scene& scene) {
     return std::move(model).value();
 }
 
+/// A simulation that has to end well, with outputs. @param exactly  each step to rounding level
 inline core::stepper::Simulation run(const core::model::Model& model, int steps, bool exactly = false) {
     core::stepper::SimulationOptions options;
     options.steps = steps;
@@ -82,6 +136,7 @@ inline core::stepper::Simulation run(const core::model::Model& model, int steps,
     core::stepper::Simulation out = core::stepper::simulate(model, options);
     INFO(out.report.message);
     REQUIRE(out.report.status == core::stepper::SimulationStatus::ok);
+    REQUIRE(static_cast<int>(out.outputs.size()) == steps);
     return out;
 }
 
