@@ -114,8 +114,8 @@ double SegmentSearch::try_pieces(int interval_index, int a, int b, const Cell& c
     const bool elements = piece_of_a.is_element() && piece_of_b.is_element();
     learn(at_once);
     if (!(at_once >= front_.cutoff()) && (elements || interval.start != interval.end)) {
-        const SegmentBound bound = prepared.along(gap.direction, piece_of_a, piece_of_b, elements ? &corners_a(a) : nullptr,
-                                                  elements ? &corners_b(b) : nullptr, front_.options.deviation_scale);
+        const SegmentBound bound =
+            prepared.along(gap.direction, piece_of_a, piece_of_b, elements ? &corners_a(a) : nullptr, elements ? &corners_b(b) : nullptr);
         if (!elements && can_halve(interval)) {
             const double size = piece_of_a.size + piece_of_b.size;
             entry.halve = bound.at_ends - bound.lower > 0.5 * size || (gap.apart <= 0 && motion > size);
@@ -161,7 +161,7 @@ double SegmentSearch::try_hulls_along(const Entry& whole, const Vector3& n0, con
         c[i] = plane.offset[i] - (a.value + b.value);
     }
     const ReachPair reach{whole_reach(*segment.a, front_.a.radius()), whole_reach(*segment.b, front_.b.radius())};
-    const SegmentBound bound = segment_bound(segment, length(interval), plane, c, reach, front_.options.deviation_scale);
+    const SegmentBound bound = segment_bound(segment, length(interval), plane, c, reach);
     Entry entry = whole;
     entry.beside = front_.are_beside = true;
     entry.halve = false;
@@ -182,7 +182,7 @@ SegmentBound SegmentSearch::elements_bound(const Entry& entry, const Vector3& n0
     const Matrix3 &x = corners_a(entry.a).x, &y = corners_b(entry.b).x;
     const MovingPlane plane = moving_plane(instants_[interval.start], instants_[interval.middle], instants_[interval.end], n0, n1);
     return segment_bound(segment, length(interval), plane, corner_coefficients(plane, x, y),
-                         {corners_reach(*segment.a, x), corners_reach(*segment.b, y)}, front_.options.deviation_scale);
+                         {corners_reach(*segment.a, x), corners_reach(*segment.b, y)});
 }
 
 // The entry's elements with the closest points' directions at the interval's ends.
@@ -281,8 +281,8 @@ void SegmentSearch::measure_elements(const Entry& entry) {
     const Interval interval = intervals_[entry.interval];
     const Vector3 n = measure(entry, instants_[interval.middle]).direction;
     if (interval.start == interval.end) return try_elements(entry, n, n);
-    const SegmentBound bound = bounds_[entry.interval]->along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a),
-                                                              &corners_b(entry.b), front_.options.deviation_scale);
+    const SegmentBound bound =
+        bounds_[entry.interval]->along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a), &corners_b(entry.b));
     if (!front_.is_collecting() && bound.lower >= front_.cutoff()) return keep(entry, bound.lower, {n, n}, true);
     const Vector3 n0 = measure(entry, instants_[interval.start]).direction;
     try_elements(entry, n0, measure(entry, instants_[interval.end]).direction);

@@ -26,7 +26,7 @@ SpanSearch::SpanSearch(SearchFront& front, SegmentSearch& segments)
     : front_(front),
       segments_(segments),
       frame_(better_frame(front.segments, front.a.radius(), front.b.radius())),
-      spans_(front.segments, frame_, moving_tree().radius(), fixed_tree().radius(), front.options.deviation_scale),
+      spans_(front.segments, frame_, moving_tree().radius(), fixed_tree().radius()),
       hulls_(moving_tree(), fixed_tree()) {}
 
 void SpanSearch::try_root() { try_pieces(whole_group(spans_.root(), 0, 0, -infinity)); }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
@@ -18,20 +19,21 @@
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/run_folder.hpp"
+#include "fettle/design/clearance/path_proof.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/growing_tables.hpp"
 #include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/output_folder.hpp"
-#include "fettle/design/cli/path_proof.hpp"
 #include "fettle/design/cli/report_made.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::base::RoundedLengths;
+using core::base::Towards;
 using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
@@ -142,7 +144,7 @@ struct FinishedRun {
     Simulation& simulation;           // nodes may be added to its path
     const Simulation& earlier;        // that it went on with
     std::optional<Writing>& writing;  // with --out
-    PathProver& prover;               // has followed the motion, unless nodes are to be added to it
+    clearance::PathProver& prover;    // has followed the motion, unless nodes are to be added to it
 };
 
 // All of it beside what the folder holds of an earlier run, which may be the one that this run goes on with.
@@ -189,21 +191,21 @@ struct Outcome {
     int exit_code = exit_undecided;
 };
 
-Outcome outcome_of(const core::stepper::SimulationReport& report, const PathProof& proof) {
+Outcome outcome_of(const core::stepper::SimulationReport& report, const clearance::PathProof& proof) {
     if (report.status != SimulationStatus::ok) return {core::stepper::to_string(report.status), report.message, exit_undecided};
     switch (proof.state) {
-        case ProofState::proven:
-        case ProofState::nothing:
+        case clearance::ProofState::proven:
+        case clearance::ProofState::nothing:
             return {"ok", "", exit_done};
-        case ProofState::stopped:
+        case clearance::ProofState::stopped:
             return {"interrupted", "every step was simulated; " + proof.reason, exit_undecided};
-        case ProofState::not_certified:
+        case clearance::ProofState::not_certified:
             break;
     }
     return {"not_certified", "every step was solved, but the path is not proven: " + proof.reason, exit_undecided};
 }
 
-std::string answer_text(const Outcome& outcome, const Simulation& simulation, const PathProof& proof, const std::string& out,
+std::string answer_text(const Outcome& outcome, const Simulation& simulation, const clearance::PathProof& proof, const std::string& out,
                         double length_unit, const Console& console) {
     const RoundedLengths lengths(answers::unit_name(length_unit));
     const auto proven = [&](double distance) {
@@ -214,13 +216,13 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
         core::base::counted(simulation.trajectory.steps.size(), "step") +
         formatted(", %d iterations of the solver, %.3g s\n", simulation.report.newton_iterations, simulation.report.wall_seconds);
     if (!outcome.message.empty()) text += outcome.message + "\n";
-    if (proof.state == ProofState::nothing) {
+    if (proof.state == clearance::ProofState::nothing) {
         text += "smallest distance: none, no two bodies may collide\n";
-    } else if (proof.state == ProofState::proven) {
+    } else if (proof.state == clearance::ProofState::proven) {
         text += "smallest distance of two bodies over the path: " + proven(*proof.lower);
     } else {
         text += "smallest distance of two bodies over the path: not certified\n";
-        if (proof.state == ProofState::stopped && proof.lower)
+        if (proof.state == clearance::ProofState::stopped && proof.lower)
             text += "smallest distance of two bodies over the first " + core::base::counted(static_cast<size_t>(proof.steps), "step") +
                     ": " + proven(*proof.lower);
     }
@@ -244,7 +246,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!options.out.empty() && !writes_out)
         console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
     console.narrate("certifying the path");
-    const PathProof proof = run.prover.finish(simulation);
+    const clearance::PathProof proof = run.prover.finish(simulation);
     Outcome outcome = outcome_of(report, proof);
     if (outcome.status == "ok" && !loose.empty()) outcome = {"joints_part", loose, exit_undecided};
     json["status"] = outcome.status;
@@ -253,7 +255,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     json["newton_iterations"] = report.newton_iterations;
     json["wall_seconds"] = report.wall_seconds;
     json["certify_seconds"] = run.prover.seconds();
-    const bool stopped = proof.state == ProofState::stopped;
+    const bool stopped = proof.state == clearance::ProofState::stopped;
     json["minimum_distance"] = proof.lower && !stopped ? Json(*proof.lower) : Json();
     json["certification"] = to_string(proof.state);
     if (stopped) json["certified_steps"] = proof.steps;
@@ -299,7 +301,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
     std::optional<Writing> writing;
-    PathProver prover(model, interrupted);
+    clearance::PathProver prover(model, interrupted);
     const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then
     simulate_options.on_step = [&](const core::stepper::Progress& p) {
         if (writing) writing->trajectory.write(*p.so_far, console);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -14,16 +15,17 @@
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/certificate_files.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::base::RoundedLengths;
+using core::base::Towards;
 using core::certificate::Certificate;
 using core::certificate::Solids;
 using core::clearance::PairStatus;
@@ -158,7 +160,7 @@ struct SourceCheck {
 
 SourceCheck check_source(const Certificate& certificate, const std::string& path, const CommonOptions& common) {
     if (certificate.source.empty()) return {};
-    const std::filesystem::path source = file_of_certificate(path, certificate.source);
+    const std::filesystem::path source = clearance::file_of_certificate(path, certificate.source);
     const std::string untold = ": whether its meshes have changed since cannot be told";
     if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
     const Result<LoadedModel> loaded = load_model(source.string(), common, false);
@@ -196,7 +198,7 @@ struct ExportCheck {
 ExportCheck check_exports(const Certificate& certificate, const std::string& path) {
     ExportCheck check;
     for (const core::certificate::ExportedFile& exported : certificate.exports) {
-        const std::filesystem::path file = file_of_certificate(path, exported.file);
+        const std::filesystem::path file = clearance::file_of_certificate(path, exported.file);
         const Result<std::string> bytes = core::files::read_file(file);
         const char* status = !bytes ? "not there" : core::files::hash_of(*bytes) == exported.hash ? "same" : "changed";
         check.list.push_back({{"file", exported.file}, {"status", status}, {"rounding", exported.rounding}});
@@ -310,7 +312,7 @@ void tell_remarks(const Json& json, const std::string& file, Console& console) {
 int validate_certificate(const CertificateQuestion& question, const CommonOptions& common, Console& console) {
     const Result<std::optional<double>> minimum = read_minimum(question.minimum);
     if (!minimum) return console.input_errors(minimum.errors());
-    const std::string trajectory = question.trajectory.empty() ? certificate_trajectory(question.path) : question.trajectory;
+    const std::string trajectory = question.trajectory.empty() ? clearance::certificate_trajectory(question.path) : question.trajectory;
     const auto stored = core::records::read_trajectory(trajectory);
     if (!stored) return console.input_errors(stored.errors());
     Answer answer;

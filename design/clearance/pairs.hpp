@@ -17,7 +17,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 struct PairOptions {
     std::string pairs, ignore;
@@ -55,10 +55,14 @@ struct PairSelection {
 /// a pair that may touch and is not there, or has a minimum of its own.
 Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options);
 
+/// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
+/// where nothing moves, all; but never those of one group, nor what a joint joins.
+bool judged_by_default(const core::model::Model& model, int a, int b);
+
 /// "A:B" of each.
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
 
 /// "A:B" of the pairs of bodies that none of the selection's pairs speaks of.
 std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

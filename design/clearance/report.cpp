@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_report.hpp"
+#include "fettle/design/clearance/report.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using core::clearance::ClearanceOptions;
 using core::clearance::PairClearance;
+using core::clearance::PairRequest;
 using core::clearance::PairStatus;
 using core::clearance::Solids;
 using core::clearance::Witness;
@@ -107,93 +103,9 @@ PairStatus status_of(const ReportedPair& pair) {
 }
 
 // Less is worse: how much of what is required there is.
-double share(const ReportedPair& pair) {
+double kept_share(const ReportedPair& pair) {
     const double distance = pair.finding == Finding::below ? pair.least.upper : pair.least.lower;
     return pair.least.minimum > 0 && pair.finding != Finding::contact ? distance / pair.least.minimum : distance;
-}
-
-Json pose_json(const core::kinematics::Pose& pose) {
-    Json rotation = Json::array();
-    for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
-    return {{"position", answers::vector_json(pose.position)}, {"rotation", rotation}};
-}
-
-const char* word(core::clearance::Primitive primitive) {
-    const char* words[] = {"vertex", "edge", "triangle"};
-    return words[static_cast<int>(primitive)];
-}
-
-Json witness_json(const Witness& w) {
-    Json json{{"time", w.time}, {"step", w.step}, {"segment", w.segment}, {"s", w.s}};
-    json["feature_a"] = {{"kind", word(w.kind_a)}, {"index", w.primitive_a}};
-    json["feature_b"] = {{"kind", word(w.kind_b)}, {"index", w.primitive_b}};
-    json["point_a"] = answers::vector_json(w.point_a);
-    json["point_b"] = answers::vector_json(w.point_b);
-    return json;
-}
-
-// Where the least distance is, and how it was found.
-void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
-    const PairClearance& least = pair.least;
-    json["time"] = least.is_clash() ? least.clash_time : least.witness.time;
-    json["point_a"] = answers::vector_json(least.witness.point_a);
-    json["point_b"] = answers::vector_json(least.witness.point_b);
-    json["gap"] = least.is_bounded ? Json(least.upper - least.lower) : Json();
-    if (subject.joints) json["joint_charge"] = subject.joints->joints ? Json(joint_charge(subject, least.a, least.b)) : Json();
-    json["sampled"] = least.sampled;
-    json["complete"] = least.complete;
-    if (!pair.overlap.empty()) json["overlap"] = pair.overlap;
-    if (least.touch) {
-        json["touching"] = {
-            {"area", least.touch->area}, {"depth", least.touch->depth}, {"time", least.touch->time}, {"allowed", pair.spec.may_touch}};
-        if (!least.touch->is_whole) json["touching"]["at_least"] = true;
-    }
-    if (least.is_clash()) json["clash_not_before"] = least.clash_not_before;
-    if (least.overlap) {
-        json["depth"] = {{"lower", least.overlap->depth_lower},
-                         {"upper", least.overlap->depth_upper},
-                         {"time", least.overlap->time},
-                         {"point", least.overlap->depth_lower > 0 ? answers::vector_json(least.overlap->center) : Json()}};
-        json["volume"] = {{"lower", least.overlap->volume_lower}, {"upper", least.overlap->volume_upper}};
-    }
-    if (pair.spec.a.is_group) json["body_a"] = names[static_cast<size_t>(least.a)];
-    if (pair.spec.b.is_group) json["body_b"] = names[static_cast<size_t>(least.b)];
-    json["pose_a"] = pose_json(file_pose(subject, least.witness, least.a));
-    json["pose_b"] = pose_json(file_pose(subject, least.witness, least.b));
-    json["witness"] = witness_json(least.witness);
-    if (least.witnesses.empty()) return;
-    json["witnesses"] = Json::array();
-    for (const Witness& witness : least.witnesses) json["witnesses"].push_back(witness_json(witness));
-}
-
-// Of a pair that stays far enough apart nothing else is known.
-void add_no_witness(Json& json) {
-    json["measured"] = false;
-    for (const char* key : {"time", "point_a", "point_b", "gap", "sampled", "pose_a", "pose_b", "witness"}) json[key] = Json();
-    json["complete"] = true;
-}
-
-Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
-    const PairClearance& least = pair.least;
-    Json json;
-    json["a"] = pair.spec.a.name;
-    json["b"] = pair.spec.b.name;
-    const bool required = !pair.spec.required_by.empty();
-    json["minimum"] = required ? Json(least.minimum) : Json();
-    json["required_by"] = required ? Json(pair.spec.required_by) : Json();
-    json["lower"] = least.is_bounded ? Json(least.lower) : Json();
-    json["upper"] = least.is_far || !least.is_bounded ? Json() : Json(least.upper);
-    json["status"] = core::clearance::to_string(least.status);
-    json["finding"] = to_string(pair.finding);
-    json["solids"] = core::certificate::to_string(least.solids);
-    if (least.status == PairStatus::undecided && !least.reason.empty()) json["reason"] = least.reason;
-    if (least.is_far) {
-        add_no_witness(json);
-    } else {
-        add_witness(json, pair, subject, names);
-    }
-    add_change(json, pair.change);
-    return json;
 }
 
 // Worst first; rows are large, and there may be many.
@@ -202,7 +114,7 @@ void sort(std::vector<ReportedPair>& pairs) {
     std::iota(order.begin(), order.end(), size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) {
         const ReportedPair &x = pairs[i], &y = pairs[j];
-        return x.finding != y.finding ? x.finding < y.finding : share(x) < share(y);
+        return x.finding != y.finding ? x.finding < y.finding : kept_share(x) < kept_share(y);
     });
     std::vector<ReportedPair> sorted;
     sorted.reserve(pairs.size());
@@ -218,26 +130,115 @@ const char* why_none_is_apart(const core::model::Model& model) {
     return has_groups ? "the bodies of every pair are of one group, or a joint joins them" : "a joint joins the bodies of every pair";
 }
 
+std::string why_none_is_judged(const Subject& subject, const PairSelection& selection) {
+    if (subject.model.bodies.size() < 2) return "there are no two bodies";
+    if (!selection.ignored.empty()) return "every pair is ignored";
+    if (selection.left_out.empty()) return why_none_is_apart(subject.model);
+    return std::string("no pair ") + (subject.ranges ? "of bodies may collide" : "may collide in this motion") +
+           "; name pairs with --pairs";
+}
+
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
     std::string message;
     if (stopped) message = "interrupted: what was not looked at is undecided";
     if (!subject.incomplete.empty())
         message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
     if (selection.pairs.empty())
-        message += (message.empty() ? "" : "; ") + std::string("nothing was judged: ") +
-                   (subject.model.bodies.size() < 2 ? "there are no two bodies"
-                    : !selection.ignored.empty()    ? "every pair is ignored"
-                    : !selection.left_out.empty()   ? "no pair may collide in this motion; name pairs with --pairs"
-                                                    : why_none_is_apart(subject.model));
+        message += (message.empty() ? "" : "; ") + std::string("nothing was judged: ") + why_none_is_judged(subject, selection);
     return message;
 }
 
-}  // namespace
+// Of more pairs than this nobody reads each distance: those that nobody named, and that stay twice their minimum apart, are left at that.
+constexpr std::size_t most_measured = 100;
 
-core::kinematics::Pose file_pose(const Subject& subject, const Witness& witness, int body) {
-    const core::kinematics::Pose pose = pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
-    return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[static_cast<size_t>(body)].reference_point)};
+std::vector<PairRequest> requests_of(const PairSelection& selection, bool all_measured) {
+    std::vector<PairRequest> requests;
+    for (const PairSpec& pair : selection.pairs) {
+        for (const auto& [a, b] : pair.body_pairs) {
+            requests.push_back({a, b, pair.minimum});
+            requests.back().may_touch = pair.may_touch;
+            requests.back().touch_depth = pair.touch_depth;
+        }
+    }
+    if (all_measured || requests.size() <= most_measured) return requests;
+    auto request = requests.begin();
+    for (const PairSpec& pair : selection.pairs) {
+        for (std::size_t i = 0; i < pair.body_pairs.size(); ++i, ++request) {
+            if (!pair.named && pair.minimum > 0) request->far = 2 * pair.minimum;
+        }
+    }
+    return requests;
 }
+
+// Those that are not judged: a clash of theirs is found, and they become rows of the report for it.
+std::vector<PairClearance> clashes_of_left_out(const Subject& subject, ClearanceOptions options, PairSelection& selection) {
+    options.margin_curve = options.sample_nodes = false;
+    options.on_pair = nullptr;
+    options.enough = 10 * options.tolerance;
+    std::vector<PairRequest> requests;
+    for (const PairSpec& pair : selection.left_out) {
+        for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0, options.enough});
+    }
+    const auto found = certify(subject, requests, options);
+    std::vector<PairClearance> clashes;
+    std::vector<PairSpec> apart;
+    auto first = found.begin();
+    for (PairSpec& pair : selection.left_out) {
+        const auto last = first + static_cast<std::ptrdiff_t>(pair.body_pairs.size());
+        if (std::any_of(first, last, [](const auto& each) { return each.is_clash(); })) {
+            clashes.insert(clashes.end(), first, last);
+            selection.pairs.push_back(std::move(pair));
+        } else {
+            apart.push_back(std::move(pair));
+        }
+        first = last;
+    }
+    selection.left_out = std::move(apart);
+    return clashes;
+}
+
+// That two touch, which is accepted, is not what a certificate can say: its bounds would call it too close.
+void leave_out_touching(const std::vector<PairClearance>& results, core::certificate::Certificate& certificate) {
+    std::erase_if(certificate.pairs, [&](const core::certificate::PairCertificate& pair) {
+        return std::any_of(results.begin(), results.end(), [&](const PairClearance& each) {
+            return each.a == pair.a && each.b == pair.b && each.touch && each.status == PairStatus::contact;
+        });
+    });
+}
+
+// `results`: one per pair of bodies, in the order of the selection.
+ClearanceReport make_report(const Subject& subject, const PairSelection& selection, const std::vector<PairClearance>& results,
+                            bool stopped) {
+    ClearanceReport report;
+    report.ignored = selection.ignored;
+    report.left_out = pair_names(selection.left_out);
+    size_t next = 0;
+    const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
+    for (const PairSpec& spec : selection.pairs) {
+        ReportedPair pair;
+        pair.spec = spec;
+        for (size_t i = 0; i < spec.body_pairs.size(); ++i) {
+            pair.members.push_back(results[next++]);
+            if (pair.members.back().is_far || subject.ranges) continue;
+            set_time(pair.members.back().witness);  // where times are uneven only the trajectory knows them
+            for (Witness& witness : pair.members.back().witnesses) set_time(witness);
+        }
+        pair.least = least_of(pair.members);
+        if (pair.least.solids == Solids::overlap) pair.overlap = "one lies inside the material of the other";
+        pair.finding = finding_of(subject, pair, stopped);
+        pair.least.status = status_of(pair);
+        if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
+        if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
+        report.pairs.push_back(std::move(pair));
+    }
+    report.uncovered = uncovered_pairs(subject.model, selection);
+    report.message = why_not_judged(subject, selection, stopped);
+    if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
+    sort(report.pairs);
+    return report;
+}
+
+}  // namespace
 
 const char* to_string(Finding finding) {
     switch (finding) {
@@ -257,35 +258,35 @@ const char* to_string(Finding finding) {
     return "clear";
 }
 
-ClearanceReport make_report(const Subject& subject, const PairSelection& selection, const std::vector<PairClearance>& results,
-                            double tolerance, bool stopped) {
-    ClearanceReport report;
-    report.ignored = selection.ignored;
-    report.left_out = pair_names(selection.left_out);
-    report.tolerance = tolerance;
-    size_t next = 0;
-    const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
-    for (const PairSpec& spec : selection.pairs) {
-        ReportedPair pair;
-        pair.spec = spec;
-        for (size_t i = 0; i < spec.body_pairs.size(); ++i) {
-            pair.members.push_back(results[next++]);
-            if (pair.members.back().is_far) continue;
-            set_time(pair.members.back().witness);  // where times are uneven only the trajectory knows them
-            for (Witness& witness : pair.members.back().witnesses) set_time(witness);
-        }
-        pair.least = least_of(pair.members);
-        if (pair.least.solids == Solids::overlap) pair.overlap = "one lies inside the material of the other";
-        pair.finding = finding_of(subject, pair, stopped);
-        pair.least.status = status_of(pair);
-        if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
-        if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
-        report.pairs.push_back(std::move(pair));
+Result<ClearanceReport> judge_clearances(const Subject& subject, const Question& question) {
+    PairOptions pairs = question.pairs;
+    pairs.motion = subject.motion() || subject.ranges;
+    Result<PairSelection> selection = select_pairs(subject.model, pairs);
+    if (!selection) return selection.errors();
+    const std::vector<PairRequest> requests = requests_of(*selection, question.margins);
+    ClearanceOptions options = core::clearance::usual_options(requests, question.tolerance);
+    options.motion = subject.motion();
+    options.margin_curve = question.margins;
+    options.witness_tolerance = question.all_witnesses ? options.tolerance : 0;
+    options.on_pair = question.on_pair;
+    options.should_stop = question.should_stop;
+    core::clearance::ProvenClearances proven;
+    if (question.proof) {
+        proven = certify_with_proof(subject, requests, options);
+        leave_out_touching(proven.pairs, proven.certificate);
+    } else {
+        proven.pairs = certify(subject, requests, options);
     }
-    report.uncovered = uncovered_pairs(subject.model, selection);
-    report.message = why_not_judged(subject, selection, stopped);
-    if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
-    sort(report.pairs);
+    if (!subject.ranges) {
+        const auto clashes = clashes_of_left_out(subject, options, *selection);
+        proven.pairs.insert(proven.pairs.end(), clashes.begin(), clashes.end());
+    }
+    ClearanceReport report = make_report(subject, *selection, proven.pairs, question.should_stop());
+    report.tolerance = options.tolerance;
+    report.notes = subject.notes;
+    if (question.pairs.minimum && !question.pairs.process.empty())
+        report.notes.push_back("--minimum applies; what --process " + question.pairs.process + " requires was not judged");
+    if (question.proof) report.certificate = std::move(proven.certificate);
     return report;
 }
 
@@ -294,37 +295,4 @@ void compare_with(Baseline baseline, ClearanceReport& report) {
     report.baseline = std::move(baseline);
 }
 
-Json report_json(const ClearanceReport& report, const Subject& subject) {
-    const std::vector<std::string> names = answers::body_names(subject.model);
-    double minimum = std::numeric_limits<double>::infinity(), least = minimum;
-    Json list = Json::array();
-    int unmeasured = 0;
-    bool is_bounded = true;
-    for (const ReportedPair& pair : report.pairs) {
-        if (!pair.spec.required_by.empty()) minimum = std::min(minimum, pair.least.minimum);
-        least = std::min(least, pair.least.lower);
-        is_bounded = is_bounded && pair.least.is_bounded;
-        unmeasured += pair.least.is_far ? 1 : 0;
-        list.push_back(pair_json(pair, subject, names));
-    }
-    Json json;
-    json["status"] = core::clearance::to_string(report.status);
-    json["minimum"] = std::isfinite(minimum) ? Json(minimum) : Json();
-    json["least"] = report.pairs.empty() || !is_bounded ? Json() : Json(least);
-    json["tolerance"] = report.tolerance;
-    json["motion"] = subject.motion();
-    json["source"] = to_string(subject.source);
-    json["steps"] = subject.trajectory.steps.size();
-    json["pairs"] = std::move(list);
-    json["not_measured"] = unmeasured;
-    json["ignored"] = report.ignored;
-    json["left_out"] = report.left_out;
-    json["uncovered"] = report.uncovered;
-    json["notes"] = subject.notes;
-    if (!subject.warnings.empty()) json["warnings"] = subject.warnings;
-    if (!report.message.empty()) json["message"] = report.message;
-    if (report.baseline) json["baseline"] = report.baseline->json();
-    return json;
-}
-
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -6,9 +6,7 @@
 
 #include "fettle/core/base/bound_text.hpp"
 
-namespace fettle::design::cli {
-
-using core::base::Towards;
+namespace fettle::core::base {
 
 class RoundedLengths {
 public:
@@ -31,4 +29,4 @@ private:
     int decimals_;
 };
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::core::base

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_pairs.hpp"
+#include "fettle/design/clearance/pairs.hpp"
 
 #include <algorithm>
 #include <set>
@@ -8,10 +8,9 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/cli/clearance_subject.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 namespace {
 
@@ -334,6 +333,17 @@ private:
 
 Result<PairSelection> select_pairs(const Model& model, const PairOptions& options) { return Selector(model, options).select(); }
 
+bool judged_by_default(const core::model::Model& model, int a, int b) {
+    const auto dynamic = [](const core::model::Body& body) { return body.type == core::scene::BodyType::dynamic_body; };
+    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
+    const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
+    if (a == b || (first.group >= 0 && first.group == second.group)) return false;
+    const auto& joined_bodies = model.mechanism.not_colliding;
+    if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
+    const auto still = [](const core::model::Body& body) { return body.type == core::scene::BodyType::static_body; };
+    return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
+}
+
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
     std::vector<std::string> names;
     for (const PairSpec& pair : pairs) names.push_back(pair.a.name + ":" + pair.b.name);
@@ -353,4 +363,4 @@ std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection
     return list;
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/path_proof.hpp"
+#include "fettle/design/clearance/path_proof.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,13 +7,12 @@
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 namespace {
 
@@ -39,9 +38,10 @@ std::string open_pair(const core::model::Model& model, const PairClearance& pair
     const std::string who = name(pair.a) + " and " + name(pair.b);
     if (pair.intersecting) return who + " pass through each other";
     if (pair.lower > model.dmin) return "of " + who + ": " + core::clearance::why_not_apart(pair.solids);
-    const RoundedLengths lengths(answers::unit_name(model.length_unit));
-    return who + " are proven only to stay " + lengths.fixed(pair.lower, Towards::down) + " " + lengths.unit() + " apart or more (" +
-           lengths.fixed(pair.upper, Towards::up) + " " + lengths.unit() + " was found), which must be more than " +
+    const core::base::RoundedLengths lengths(answers::unit_name(model.length_unit));
+    return who + " are proven only to stay " + lengths.fixed(pair.lower, core::base::Towards::down) + " " + lengths.unit() +
+           " apart or more (" + lengths.fixed(pair.upper, core::base::Towards::up) + " " + lengths.unit() +
+           " was found), which must be more than " +
            (model.dmin > 0 ? "`dmin`, " + core::base::length_text(model.dmin, model.length_unit) : std::string("nothing"));
 }
 
@@ -242,4 +242,4 @@ PathProof prove_path(const core::model::Model& model, const core::stepper::Simul
     return PathProver(model, should_stop).finish(simulation);
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

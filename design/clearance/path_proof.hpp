@@ -9,7 +9,7 @@
 
 #include "fettle/core/stepper/simulation.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 enum class ProofState {
     proven,         ///< every pair that may collide stays farther apart than dmin, and neither lies in the other
@@ -71,4 +71,4 @@ private:
 PathProof prove_path(const core::model::Model& model, const core::stepper::Simulation& simulation,
                      const std::function<bool()>& should_stop);
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

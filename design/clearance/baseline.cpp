@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_baseline.hpp"
+#include "fettle/design/clearance/baseline.hpp"
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/json_document.hpp"
-#include "fettle/design/cli/answers.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
+
+using core::base::formatted;
 
 namespace {
 
@@ -80,4 +81,4 @@ void add_change(nlohmann::ordered_json& row, const Change& change) {
         row["before"] = {{"status", change.before->status}, {"lower", change.before->lower}, {"upper", change.before->upper}};
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -4,8 +4,12 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
-namespace fettle::design::cli {
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/certificate/certificate.hpp"
+
+namespace fettle::design::clearance {
 
 /// "fit.certificate.json" or "fit.json" -> "fit.trajectory.json".
 std::string certificate_trajectory(const std::string& certificate);
@@ -16,4 +20,7 @@ std::string name_from_certificate(const std::string& certificate, const std::str
 /// Where a file is that a certificate names so.
 std::filesystem::path file_of_certificate(const std::string& certificate, const std::string& name);
 
-}  // namespace fettle::design::cli
+/// The files as a certificate names them, relative to its folder where they lie below it. Errors: a file that cannot be read.
+Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate);
+
+}  // namespace fettle::design::clearance

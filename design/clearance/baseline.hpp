@@ -11,7 +11,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 /// A pair in an earlier report.
 struct Before {
@@ -54,4 +54,4 @@ private:
 /// The keys of a row that tell of its change.
 void add_change(nlohmann::ordered_json& row, const Change& change);
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_subject.hpp"
+#include "fettle/design/clearance/read_subject.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,14 @@
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/mesh_subject.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 namespace {
 
+using core::base::formatted;
+using core::base::joined;
 using core::scene::BodyType;
 
 // What moves without dynamics is kinematic, what does not move is static: whoever reads the stored trajectory then knows.
@@ -39,6 +39,7 @@ void mark_as_scripted(Subject& subject) {
 }
 
 Result<Subject> from_trajectory(const SubjectOptions& options) {
+    if (options.ranges) return Error{ErrorCode::unsupported, options.path, "a trajectory has no joints: --ranges wants a scene or design"};
     if (!options.poses.empty() || options.kinematic)
         return Error{ErrorCode::inconsistent, options.path,
                      "a trajectory has its motion; --poses and --kinematic go with a scene or design"};
@@ -120,17 +121,28 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
     return {};
 }
 
-void simulate(int steps, Subject& subject, Console& console) {
+void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
     core::stepper::SimulationOptions simulate_options;
     simulate_options.steps = steps;
-    simulate_options.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
-    simulate_options.should_stop = interrupted;
+    simulate_options.on_step = watch.on_step;
+    simulate_options.should_stop = watch.should_stop;
     core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
     subject.trajectory = std::move(simulation.trajectory);
     subject.source = SubjectSource::simulated;
     const std::string status = core::stepper::to_string(simulation.report.status), &why = simulation.report.message;
     if (simulation.report.status != core::stepper::SimulationStatus::ok)
         subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
+}
+
+// Of a scene or design, whose joints have ranges.
+Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel& loaded) {
+    Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(loaded.model);
+    if (!ranges) {
+        Errors errors = ranges.errors();
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        return errors;
+    }
+    return subject_over(std::move(loaded.model), *std::move(ranges));
 }
 
 std::vector<std::string> all_paths(const SubjectOptions& options) {
@@ -149,6 +161,8 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
             {ErrorCode::inconsistent, options.steps >= 0 ? "--steps" : "--time",
              "is of a motion that is made here: add --motion or --kinematic (as assembled nothing moves; a trajectory or poses are judged "
              "whole)"}};
+    if (options.ranges && !options.more.empty())
+        return {{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}};
     if (meshes) return {};
     if (!options.more.empty())
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
@@ -157,13 +171,13 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     return {};
 }
 
-Result<LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common,
-                                  Subject& subject) {
-    Result<MeshSubject> meshes = load_meshes(paths, unit, common);
+Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const std::string& unit,
+                                           const reading::InputOptions& input, Subject& subject) {
+    Result<MeshParts> meshes = load_meshes(paths, unit, input);
     if (!meshes) return meshes.errors();
     subject.files = std::move(meshes->files);
-    LoadedModel loaded;
-    loaded.kind = FileKind::mesh;
+    reading::LoadedModel loaded;
+    loaded.kind = reading::FileKind::mesh;
     loaded.model = std::move(meshes->model);
     loaded.warnings = std::move(meshes->warnings);
     return loaded;
@@ -171,34 +185,31 @@ Result<LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const s
 
 }  // namespace
 
-const char* to_string(SubjectSource source) {
-    switch (source) {
-        case SubjectSource::as_assembled:
-            return "as assembled";
-        case SubjectSource::simulated:
-            return "over the simulated motion";
-        case SubjectSource::scripted:
-            return "over the scripted motion, without dynamics";
-        case SubjectSource::poses:
-            return "over the poses read";
-        case SubjectSource::trajectory:
-            return "over the trajectory";
-    }
-    return "";
-}
-
-Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions& common, Console& console) {
+Result<Subject> read_subject(const SubjectOptions& options, const reading::InputOptions& input, const SubjectWatch& watch) {
     const std::vector<std::string> paths = all_paths(options);
-    const bool meshes = are_meshes(paths);
+    std::error_code ignored;
+    if (options.ranges && options.more.empty() && std::filesystem::is_directory(options.path, ignored))
+        return Error{ErrorCode::unsupported, options.path, "is a folder: --ranges wants a scene or design, whose joints have ranges"};
+    const bool meshes = are_meshes(paths) && !(options.ranges && options.more.empty());
     if (const Errors errors = check_inputs(options, meshes); !errors.empty()) return errors;
-    if (!meshes && file_kind(options.path) == FileKind::trajectory) return from_trajectory(options);
+    if (!meshes && reading::file_kind(options.path) == reading::FileKind::trajectory) return from_trajectory(options);
     Subject subject;
-    Result<LoadedModel> loaded = meshes ? loaded_meshes(paths, options.unit, common, subject) : load_model(options.path, common, false);
+    reading::InputOptions any_start = input;
+    any_start.check_start = false;
+    Result<reading::LoadedModel> loaded =
+        meshes ? loaded_meshes(paths, options.unit, input, subject) : reading::load_model(options.path, any_start);
     if (!loaded) return loaded.errors();
-    tell_warnings(console, loaded->warnings, options.path);
+    if (watch.on_warnings) watch.on_warnings(loaded->warnings);
+    if (options.ranges) {
+        Result<Subject> over = from_ranges(options, *loaded);
+        if (!over) return over;
+        subject = *std::move(over);
+    } else {
+        subject.model = std::move(loaded->model);
+    }
     subject.warnings = std::move(loaded->warnings);
-    subject.model = std::move(loaded->model);
     subject.scene_path = loaded->scene_path;
+    if (subject.ranges) return subject;
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
     const int steps = options.steps >= 0  ? options.steps
@@ -222,7 +233,7 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
         Errors errors = core::model::check_start(subject.model);
         for (Error& error : errors) error.where = options.path + ": " + error.where;
         if (!errors.empty()) return errors;
-        simulate(steps, subject, console);
+        simulate(steps, watch, subject);
     } else {
         subject.trajectory = core::clearance::as_assembled(subject.model);
     }
@@ -231,31 +242,4 @@ Result<Subject> load_subject(const SubjectOptions& options, const CommonOptions&
     return subject;
 }
 
-std::vector<core::clearance::PairClearance> certified(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
-                                                      const core::clearance::ClearanceOptions& certify) {
-    if (!subject.joints) return core::clearance::certify_clearance(subject.model, subject.trajectory, pairs, certify);
-    return core::clearance::certify_jointed(subject.model, subject.trajectory, pairs, certify, *subject.joints);
-}
-
-double joint_charge(const Subject& subject, int a, int b) {
-    if (!subject.joints || !subject.joints->joints) return 0;
-    return core::certificate::joint_charge(*subject.joints->joints, a, b);
-}
-
-bool judged_by_default(const core::model::Model& model, int a, int b) {
-    const auto dynamic = [](const core::model::Body& body) { return body.type == BodyType::dynamic_body; };
-    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
-    const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
-    if (a == b || (first.group >= 0 && first.group == second.group)) return false;
-    const auto& joined_bodies = model.mechanism.not_colliding;
-    if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
-    const auto still = [](const core::model::Body& body) { return body.type == BodyType::static_body; };
-    return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
-}
-
-bool may_push(const Subject& subject, int a, int b) {
-    const bool dynamics = subject.source == SubjectSource::simulated || subject.source == SubjectSource::trajectory;
-    return dynamics && subject.motion() && core::model::may_collide(subject.model, a, b);
-}
-
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/rounded_lengths.hpp"
+#include "fettle/core/base/rounded_lengths.hpp"
 
 #include <charconv>
 #include <cmath>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
-#include "fettle/design/cli/answers.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::core::base {
 
 RoundedLengths::RoundedLengths(const std::string& unit, int decimals)
-    : unit_(unit), metres_(core::base::metres_per_unit(unit).value()), exact_(roundl(metres_ * 1e7L) / 1e7L), decimals_(decimals) {}
+    : unit_(unit), metres_(metres_per_unit(unit).value()), exact_(roundl(metres_ * 1e7L) / 1e7L), decimals_(decimals) {}
 
 std::string RoundedLengths::fixed(double x, Towards towards, int more) const {
     const int decimals = decimals_ + more;
-    return core::base::bound_text(x, metres_, exact_, towards, [&](double y) {
+    return bound_text(x, metres_, exact_, towards, [&](double y) {
         const auto round = [&](double z) { return towards == Towards::down ? std::floor(z) : std::ceil(z); };
         const double scale = std::pow(10.0, decimals);
         if (std::abs(y) * scale >= 10) return formatted("%.*f", decimals, round(y * scale) / scale);
@@ -24,11 +24,11 @@ std::string RoundedLengths::fixed(double x, Towards towards, int more) const {
 }
 
 std::string RoundedLengths::shortest(double x, Towards towards) const {
-    return core::base::bound_text(x, metres_, exact_, towards, [](double y) {
+    return bound_text(x, metres_, exact_, towards, [](double y) {
         char buffer[32];
         const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, y);
         return std::string(buffer, code == std::errc() ? end : buffer);
     });
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::core::base

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/mesh_subject.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/design/cli/certificate_files.hpp"
-#include "fettle/design/cli/inputs.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 namespace {
 
@@ -26,7 +22,8 @@ std::vector<std::string> meshes_in(const fs::path& folder) {
     std::vector<std::string> files;
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code))
-        if (entry.is_regular_file(code) && file_kind(entry.path().string()) == FileKind::mesh) files.push_back(entry.path().string());
+        if (entry.is_regular_file(code) && core::mesh_files::has_mesh_extension(entry.path().string()))
+            files.push_back(entry.path().string());
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -55,7 +52,7 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
                                       ") and no trajectory.json; folders below it are not looked into"});
             for (const std::string& below : folders_left_out(path))
                 warnings.push_back(below + ": the meshes in this folder are left out; name it too if they belong together");
-        } else if (file_kind(path) == FileKind::mesh) {
+        } else if (core::mesh_files::has_mesh_extension(path)) {
             files.push_back(path);
         } else if (!fs::exists(path, code)) {
             errors.push_back({ErrorCode::file_not_found, path, "no such file"});
@@ -83,14 +80,14 @@ std::string body_name(const std::string& of_file, core::files::UniqueNames& name
     return names.unique(name);
 }
 
-core::scene::Body body_of(Mesh mesh, const std::string& path, const CommonOptions& common, core::files::UniqueNames& names,
+core::scene::Body body_of(Mesh mesh, const std::string& path, const reading::InputOptions& input, core::files::UniqueNames& names,
                           std::vector<std::string>& warnings) {
     core::scene::Body body;
     body.name = body_name(mesh.name, names);
     body.where = path;
     body.type = core::scene::BodyType::static_body;
     body.density_given = false;
-    if (!common.strict) {
+    if (!input.strict) {
         body.mesh_policy = core::scene::MeshPolicy::tolerant;
         for (const std::string& done : core::geometry::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
     }
@@ -112,11 +109,11 @@ bool are_meshes(const std::vector<std::string>& paths) {
     std::error_code code;
     const fs::path first = paths.front();
     if (fs::is_directory(first, code)) return !trajectory_in(first.string());
-    return file_kind(paths.front()) == FileKind::mesh;
+    return core::mesh_files::has_mesh_extension(paths.front());
 }
 
-Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common) {
-    MeshSubject subject;
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input) {
+    MeshParts subject;
     const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
     if (!files) return files.errors();
     core::scene::Scene scene;
@@ -135,10 +132,10 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
             errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
             continue;
         }
-        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, interrupted});
+        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, input.should_stop});
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
-        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, common, names, subject.warnings));
+        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
     }
     if (!errors.empty()) return errors;
     core::model::BuildOptions options;
@@ -148,21 +145,8 @@ Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std
     subject.model = std::move(*model);
     const auto& more = subject.model.warnings;
     subject.warnings.insert(subject.warnings.end(), more.begin(), more.end());
-    if (common.strict && !subject.warnings.empty()) return as_errors(subject.warnings, paths.front());
+    if (input.strict && !subject.warnings.empty()) return reading::as_errors(subject.warnings, paths.front());
     return subject;
 }
 
-Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate) {
-    std::vector<core::certificate::ExportedFile> named;
-    Errors errors;
-    for (const std::string& file : files) {
-        const Result<std::string> bytes = core::files::read_file(file);
-        errors.insert(errors.end(), bytes.errors().begin(), bytes.errors().end());
-        if (!bytes) continue;
-        named.push_back({name_from_certificate(certificate, file), core::files::hash_of(*bytes), 0});
-    }
-    if (!errors.empty()) return errors;
-    return named;
-}
-
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/model/model.hpp"
-#include "fettle/design/cli/session.hpp"
+#include "fettle/design/reading/model_file.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::clearance {
 
 /// The trajectory of a run's folder, a killed run's too; nothing where the path is none.
 std::optional<std::string> trajectory_in(const std::string& path);
@@ -19,7 +18,7 @@ std::optional<std::string> trajectory_in(const std::string& path);
 /// Meshes by their extension, or a folder that has no trajectory. Of a list the first decides.
 bool are_meshes(const std::vector<std::string>& paths);
 
-struct MeshSubject {
+struct MeshParts {
     core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
     std::vector<std::string> files;
     std::vector<std::string> warnings;
@@ -32,9 +31,6 @@ struct MeshSubject {
 /// @param unit  of files that state none: "mm"; empty: not given.
 /// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
 /// neither a mesh nor a folder among meshes).
-Result<MeshSubject> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const CommonOptions& common);
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input);
 
-/// The files as a certificate names them, relative to its folder where they lie below it. Errors: a file that cannot be read.
-Result<std::vector<core::certificate::ExportedFile>> named_files(const std::vector<std::string>& files, const std::string& certificate);
-
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::clearance

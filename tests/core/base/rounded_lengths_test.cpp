@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/rounded_lengths.hpp"
+#include "fettle/core/base/rounded_lengths.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-namespace fettle::design::cli::rounded_lengths_test {
+namespace fettle::core::base::rounded_lengths_test {
 
 TEST_CASE("A bound that is printed is still a bound, in every unit") {
     std::mt19937 random(2);
@@ -35,4 +35,4 @@ TEST_CASE("A bound that is printed is still a bound, in every unit") {
     CHECK(millimetres.fixed(0, Towards::down) == "0");
 }
 
-}  // namespace fettle::design::cli::rounded_lengths_test
+}  // namespace fettle::core::base::rounded_lengths_test
