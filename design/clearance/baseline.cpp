@@ -2,7 +2,6 @@
 #include "fettle/design/clearance/baseline.hpp"
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/json_document.hpp"
@@ -64,21 +63,11 @@ std::vector<std::string> Baseline::missing() const {
     return names;
 }
 
-nlohmann::ordered_json Baseline::json() const {
-    return {{"file", file_}, {"new", new_}, {"existing", existing_}, {"resolved", resolved_}, {"missing", missing()}};
-}
-
 std::string Baseline::text() const {
     std::string text = formatted("against %s: %d new, %d existing, %d resolved\n", file_.c_str(), new_, existing_, resolved_);
     const std::vector<std::string> names = missing();
     if (!names.empty()) text += "found there and not judged now: " + core::base::joined(names) + "\n";
     return text;
-}
-
-void add_change(nlohmann::ordered_json& row, const Change& change) {
-    if (!change.word.empty()) row["change"] = change.word;
-    if (change.before)
-        row["before"] = {{"status", change.before->status}, {"lower", change.before->lower}, {"upper", change.before->upper}};
 }
 
 }  // namespace fettle::design::clearance

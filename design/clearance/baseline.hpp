@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +32,13 @@ public:
     /// Of a pair, named in either order, that is judged now; counts it.
     Change compare(const std::string& a, const std::string& b, core::clearance::PairStatus now);
 
-    /// `baseline` of docs/interface.md, once all pairs have been compared.
-    nlohmann::ordered_json json() const;
+    /// Once all pairs have been compared.
     std::string text() const;
+    const std::string& file() const { return file_; }
+    int new_ones() const { return new_; }
+    int existing() const { return existing_; }
+    int resolved() const { return resolved_; }
+    std::vector<std::string> missing() const;  ///< findings whose pairs are not judged now
 
 private:
     struct Row {
@@ -43,15 +46,10 @@ private:
         Before before;
         bool judged = false;  ///< now
     };
-    std::vector<std::string> missing() const;  ///< findings whose pairs are not judged now
-
     std::string file_;
     std::vector<Row> rows_;
     std::map<std::string, std::size_t> by_pair_;
     int new_ = 0, existing_ = 0, resolved_ = 0;
 };
-
-/// The keys of a row that tell of its change.
-void add_change(nlohmann::ordered_json& row, const Change& change);
 
 }  // namespace fettle::design::clearance

@@ -32,7 +32,7 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 class Selector {
 public:
-    Selector(const Model& model, const PairOptions& options) : model_(model), options_(options) {}
+    Selector(const Model& model, const PairOptions& options, bool moves) : model_(model), options_(options), moves_(moves) {}
 
     Result<PairSelection> select() {
         for (size_t i = 0; i < model_.bodies.size(); ++i) bodies_.push_back({model_.bodies[i].name, {static_cast<int>(i)}, false});
@@ -218,7 +218,7 @@ private:
 
     // Patterns of --pairs ask for whatever they match.
     bool is_judged(int i, int j) const {
-        if (!options_.pairs.empty() || !options_.motion) return !is_one_group(i, j);
+        if (!options_.pairs.empty() || !moves_) return !is_one_group(i, j);
         return judged_by_default(model_, i, j);
     }
 
@@ -323,6 +323,7 @@ private:
 
     const Model& model_;
     const PairOptions& options_;
+    bool moves_;
     std::vector<Unit> bodies_, groups_, units_;  // units: rows of the report by default
     PairSelection selection_;
     std::unordered_map<std::string, size_t> places_;  // in selection_.pairs while it grows, by key()
@@ -331,7 +332,9 @@ private:
 
 }  // namespace
 
-Result<PairSelection> select_pairs(const Model& model, const PairOptions& options) { return Selector(model, options).select(); }
+Result<PairSelection> select_pairs(const Model& model, const PairOptions& options, bool moves) {
+    return Selector(model, options, moves).select();
+}
 
 bool judged_by_default(const core::model::Model& model, int a, int b) {
     const auto dynamic = [](const core::model::Body& body) { return body.type == core::scene::BodyType::dynamic_body; };

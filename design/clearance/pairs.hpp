@@ -24,7 +24,6 @@ struct PairOptions {
     std::vector<std::string> groups, touches;
     std::optional<double> minimum;  ///< [m], per side
     std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it, which the report says
-    bool motion = false;            ///< over a motion
 };
 
 /// A body, or a group.
@@ -51,9 +50,10 @@ struct PairSelection {
 };
 
 /// Without any minimum only distances are wanted, and no pair has one.
+/// @param moves  over a motion, or over ranges of joints; false: as assembled
 /// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one,
 /// a pair that may touch and is not there, or has a minimum of its own.
-Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options);
+Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options, bool moves);
 
 /// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
 /// where nothing moves, all; but never those of one group, nor what a joint joins.

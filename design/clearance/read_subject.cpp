@@ -192,12 +192,13 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         return Error{ErrorCode::unsupported, options.path, "is a folder: --ranges wants a scene or design, whose joints have ranges"};
     const bool meshes = are_meshes(paths) && !(options.ranges && options.more.empty());
     if (const Errors errors = check_inputs(options, meshes); !errors.empty()) return errors;
-    if (!meshes && reading::file_kind(options.path) == reading::FileKind::trajectory) return from_trajectory(options);
+    const reading::FileKind kind = meshes ? reading::FileKind::mesh : reading::file_kind(options.path);
+    if (kind == reading::FileKind::trajectory) return from_trajectory(options);
     Subject subject;
     reading::InputOptions any_start = input;
     any_start.check_start = false;
     Result<reading::LoadedModel> loaded =
-        meshes ? loaded_meshes(paths, options.unit, input, subject) : reading::load_model(options.path, any_start);
+        meshes ? loaded_meshes(paths, options.unit, input, subject) : reading::load_model(options.path, kind, any_start);
     if (!loaded) return loaded.errors();
     if (watch.on_warnings) watch.on_warnings(loaded->warnings);
     if (options.ranges) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// The one question about clearance, over a path and over ranges of joints alike: which pairs are judged, what becomes of each, and the
-/// report: pairs worst first, as JSON, and against an earlier one.
+/// report: pairs worst first, and against an earlier one. As JSON: report_json.hpp.
 #pragma once
 
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,7 +50,7 @@ struct ClearanceReport {
 };
 
 struct Question {
-    PairOptions pairs;                ///< its `motion` is of no matter
+    PairOptions pairs;
     std::optional<double> tolerance;  ///< [m]; nothing: core::clearance::usual_options()
     bool margins = false;             ///< certified bounds for each stretch of the path: then every pair is measured
     bool all_witnesses = false;       ///< all that come as close, to within the tolerance
@@ -67,8 +66,5 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
 
 /// Marks findings as new, existing or resolved.
 void compare_with(Baseline baseline, ClearanceReport& report);
-
-/// Keys: docs/interface.md. SI.
-nlohmann::ordered_json report_json(const ClearanceReport& report, const Subject& subject);
 
 }  // namespace fettle::design::clearance

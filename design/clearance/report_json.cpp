@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/report_json.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/clearance/report.hpp"
 
 namespace fettle::design::clearance {
 
@@ -144,7 +145,9 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     } else {
         add_witness(json, pair, subject, names);
     }
-    add_change(json, pair.change);
+    if (!pair.change.word.empty()) json["change"] = pair.change.word;
+    if (const auto& before = pair.change.before)
+        json["before"] = {{"status", before->status}, {"lower", before->lower}, {"upper", before->upper}};
     return json;
 }
 
@@ -179,7 +182,12 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["notes"] = report.notes;
     if (!subject.warnings.empty()) json["warnings"] = subject.warnings;
     if (!report.message.empty()) json["message"] = report.message;
-    if (report.baseline) json["baseline"] = report.baseline->json();
+    if (const auto& before = report.baseline)
+        json["baseline"] = {{"file", before->file()},
+                            {"new", before->new_ones()},
+                            {"existing", before->existing()},
+                            {"resolved", before->resolved()},
+                            {"missing", before->missing()}};
     return json;
 }
 

@@ -7,14 +7,15 @@
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/clearance/read_subject.hpp"
+#include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/cli/clearance_folder.hpp"
 #include "fettle/design/cli/clearance_text.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::cli {
@@ -111,13 +112,13 @@ void leave_proof(const ClearanceArguments& options, const Subject& subject, core
 Errors try_files(const ClearanceArguments& options) {
     for (const std::string& file : {options.csv, options.certificate}) {
         if (file.empty()) continue;
-        if (Errors errors = try_output_file(file); !errors.empty()) return errors;
+        if (Errors errors = answers::try_output_file(file); !errors.empty()) return errors;
     }
     if (!options.certificate.empty() && !core::records::is_trajectory_file(options.subject.path)) {  // a trajectory is written beside it
         if (Errors errors = answers::others_file(clearance::certificate_trajectory(options.certificate)); !errors.empty()) return errors;
     }
     if (!options.out.empty()) {
-        if (Errors errors = try_run_folder(options.out); !errors.empty()) return errors;
+        if (Errors errors = answers::try_run_folder(options.out); !errors.empty()) return errors;
     }
     return {};
 }

@@ -11,9 +11,9 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/clearance/pairs.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/picture.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
@@ -168,7 +168,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     if (!png && !svg) return console.input_errors({{ErrorCode::unsupported, "--out", "a picture is .png or .svg, found " + options.out}});
     const auto size = picture_size(options.size);
     if (!size) return console.input_errors(size.errors());
-    if (const Errors errors = try_output_file(options.out); !errors.empty()) return console.input_errors(errors);
+    if (const Errors errors = answers::try_output_file(options.out); !errors.empty()) return console.input_errors(errors);
     const Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
     const auto view = exports::projection_view(options.view, shown->assembly.up, "--view");

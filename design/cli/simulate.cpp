@@ -18,13 +18,13 @@
 #include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/growing_tables.hpp"
+#include "fettle/design/answers/growing_trajectory.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/clearance/path_proof.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/growing_tables.hpp"
-#include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/report_made.hpp"
 
 namespace fettle::design::cli {
@@ -135,8 +135,8 @@ struct Writing {
     Writing(const SimulateArguments& options, const LoadedModel& loaded)
         : trajectory(options.out, loaded.model, loaded.scene_path, options.earlier), tables(options.out, loaded.model) {}
 
-    GrowingTrajectory trajectory;
-    GrowingTables tables;
+    answers::GrowingTrajectory trajectory;
+    answers::GrowingTables tables;
 };
 
 struct FinishedRun {
@@ -152,7 +152,7 @@ Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core
     const std::filesystem::path file = std::filesystem::path(options.out) / "trajectory.json";
     const Simulation& simulation = run.simulation;
     const core::model::Model& model = run.loaded.model;
-    const std::string kept = name_for_longer_run(file, simulation.trajectory.steps.size());
+    const std::string kept = answers::name_for_longer_run(file, simulation.trajectory.steps.size());
     if (!kept.empty()) {
         console.narrate("warning: a longer run was there, which is kept as " + kept);
         files.keep_as(file, kept);
@@ -180,8 +180,8 @@ Result<Simulation> read_earlier(const SimulateArguments& options, const core::mo
 }
 
 Errors try_outputs(const SimulateArguments& options) {
-    Errors errors = options.out.empty() ? Errors{} : try_run_folder(options.out, {running_file});
-    if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
+    Errors errors = options.out.empty() ? Errors{} : answers::try_run_folder(options.out, {answers::running_file});
+    if (errors.empty() && !options.poses.empty()) errors = answers::try_output_file(options.poses);
     return errors;
 }
 
@@ -282,7 +282,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
     if (written && !options.no_report)
         leave_report(options.out, common, console, json, told,
-                     report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path});
+                     {.motion = report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path}});
     const CheckOutcome checked = outcome.exit_code == exit_done ? CheckOutcome::passed : CheckOutcome::undecided;
     console.found({"the motion is simulated and proven", checked, outcome.status, outcome.message, options.path});
     console.result(json, told);
@@ -290,7 +290,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
 }
 
 int run_simulate(SimulateArguments options, const CommonOptions& common, Console& console) {
-    options.earlier = run_to_continue(options.earlier);
+    options.earlier = answers::run_to_continue(options.earlier);
     const auto begin = std::chrono::steady_clock::now();
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
@@ -304,8 +304,11 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     clearance::PathProver prover(model, interrupted);
     const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then
     simulate_options.on_step = [&](const core::stepper::Progress& p) {
-        if (writing) writing->trajectory.write(*p.so_far, console);
-        if (writing) writing->tables.write(*p.so_far);
+        if (writing) {
+            const std::string fault = writing->trajectory.write(*p.so_far);
+            if (!fault.empty()) console.narrate("warning: " + fault + "; a run that is killed from here on leaves less");
+            writing->tables.write(*p.so_far);
+        }
         if (!adds_nodes) prover.follow(*p.so_far);
         console.progress("simulating", p.step, p.steps);
     };

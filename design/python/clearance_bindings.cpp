@@ -7,7 +7,7 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/design/clearance/report.hpp"
+#include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"

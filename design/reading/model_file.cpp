@@ -2,18 +2,18 @@
 #include "fettle/design/reading/model_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
 
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -100,30 +100,31 @@ Result<LoadedModel> load_scene(const std::string& path, const InputOptions& opti
 }  // namespace
 
 FileKind file_kind(const std::string& path) {
+    using namespace std::string_view_literals;
+    static constexpr std::array keys{"fettle_scene"sv, "fettle_design"sv, "fettle_trajectory"sv, "fettle_certificate"sv,
+                                     "fettle_range_certificate"sv};
+    static constexpr std::array kinds{FileKind::scene, FileKind::design, FileKind::trajectory, FileKind::certificate,
+                                      FileKind::certificate};
     if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
-    if (core::records::is_trajectory_file(path)) return FileKind::trajectory;
-    if (core::certificate::is_certificate_file(path)) return FileKind::certificate;
-    return core::files::has_top_level_key(path, "fettle_design") ? FileKind::design : FileKind::scene;
+    const auto key = std::find(keys.begin(), keys.end(), core::files::top_level_key(path, keys));
+    return key == keys.end() ? FileKind::scene : kinds[static_cast<std::size_t>(key - keys.begin())];
 }
 
-Errors or_other_kind(const std::string& path, const std::string& wanted, const Errors& errors) {
-    std::error_code code;
-    if (!std::filesystem::is_regular_file(path, code)) return errors;
-    const FileKind kind = file_kind(path);
-    if (kind == FileKind::trajectory)
-        return {
-            {ErrorCode::unsupported, path, "is a trajectory, not a " + wanted + "; clearance, draw and export to other formats take it"}};
-    if (kind == FileKind::certificate)
-        return {
-            {ErrorCode::unsupported, path, "is a certificate, not a " + wanted + "; validate, draw and export to other formats take it"}};
-    return errors;
+Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {
+    if (kind != FileKind::trajectory && kind != FileKind::certificate) return {};
+    const bool is_trajectory = kind == FileKind::trajectory;
+    return {{ErrorCode::unsupported, path,
+             std::string("is a ") + (is_trajectory ? "trajectory" : "certificate") + ", not a " + wanted + "; " +
+                 (is_trajectory ? "clearance" : "validate") + ", draw and export to other formats take it"}};
 }
 
-Result<LoadedModel> load_model(const std::string& path, const InputOptions& options) {
+Result<LoadedModel> load_model(const std::string& path, const InputOptions& options) { return load_model(path, file_kind(path), options); }
+
+Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options) {
     if (is_foreign(path)) return foreign_error(path);
-    const bool design = core::files::has_top_level_key(path, "fettle_design");
-    Result<LoadedModel> loaded = design ? load_design(path, options) : load_scene(path, options);
-    if (!loaded) return design ? loaded.errors() : or_other_kind(path, "scene", loaded.errors());
+    if (Errors errors = not_wanted(path, kind, "scene"); !errors.empty()) return errors;
+    Result<LoadedModel> loaded = kind == FileKind::design ? load_design(path, options) : load_scene(path, options);
+    if (!loaded) return loaded.errors();
     const auto& more = loaded->model.warnings;
     loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
     if (options.strict && !loaded->warnings.empty()) return as_errors(loaded->warnings, path);
@@ -133,7 +134,10 @@ Result<LoadedModel> load_model(const std::string& path, const InputOptions& opti
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options) {
     if (is_foreign(path)) return foreign_error(path);
     Result<DesignFile> file = read_design(path, {options.mesh_dirs, options.programs});
-    if (!file) return or_other_kind(path, "design", file.errors());
+    if (!file) {
+        Errors errors = not_wanted(path, file_kind(path), "design");
+        return errors.empty() ? file.errors() : errors;
+    }
     if (!options.strict) return file;
     Errors errors = strict_faults(file->scene_path, options);
     if (!errors.empty()) return errors;

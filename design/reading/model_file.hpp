@@ -18,8 +18,8 @@ enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);
 
-/// Why `path` was not read as a `wanted` ("scene"): that it is a trajectory or a certificate, if it is one; else `errors`.
-Errors or_other_kind(const std::string& path, const std::string& wanted, const Errors& errors);
+/// That the file is a trajectory or a certificate, where a `wanted` ("scene") is: empty, if it is neither.
+Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted);
 
 struct InputOptions {
     std::vector<std::string> mesh_dirs;     ///< also looked in for meshes
@@ -40,7 +40,8 @@ struct LoadedModel {
 };
 
 /// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
-/// what is read instead; with `strict` its warnings too.
+/// what is read instead; with `strict` its warnings too. @param kind  of the file
+Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options);
 Result<LoadedModel> load_model(const std::string& path, const InputOptions& options);
 
 /// A design, for what takes nothing else. Errors: a file that is something else by its name and first character is told with what is read

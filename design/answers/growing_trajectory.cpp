@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/growing_trajectory.hpp"
+#include "fettle/design/answers/growing_trajectory.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 namespace fs = std::filesystem;
 
@@ -46,8 +46,8 @@ Errors GrowingTrajectory::begin(const std::string& text) {
     return {};
 }
 
-void GrowingTrajectory::write(const core::stepper::Simulation& so_far, Console& console) {
-    if (failed_) return;
+std::string GrowingTrajectory::write(const core::stepper::Simulation& so_far) {
+    if (failed_) return {};
     const bool first = !lines_;
     if (first) lines_ = std::make_unique<core::records::TrajectoryLines>(so_far.trajectory, model_);
     std::string text;
@@ -67,7 +67,7 @@ void GrowingTrajectory::write(const core::stepper::Simulation& so_far, Console& 
     }
     steps_ = so_far.trajectory.steps.size();
     failed_ = !fault.empty();
-    if (failed_) console.narrate("warning: " + file_.string() + ": " + fault + "; a run that is killed from here on leaves less");
+    return failed_ ? file_.string() + ": " + fault : "";
 }
 
 void GrowingTrajectory::remove() {
@@ -75,4 +75,4 @@ void GrowingTrajectory::remove() {
     if (lines_) fs::remove(file_, ignored);
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 
 #include <unistd.h>
 
@@ -14,7 +14,7 @@
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 namespace {
 
@@ -51,7 +51,7 @@ Errors try_output_folder(const fs::path& folder) {
 }
 
 Errors try_run_folder(const fs::path& folder, const std::vector<std::string>& more) {
-    Errors errors = answers::others_files(folder, more);
+    Errors errors = others_files(folder, more);
     return errors.empty() ? try_output_folder(folder) : errors;
 }
 
@@ -74,4 +74,4 @@ std::string name_for_longer_run(const fs::path& file, std::size_t steps) {
     return core::files::free_name(file).string();
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers

@@ -7,10 +7,11 @@
 #include <memory>
 #include <string>
 
+#include "fettle/core/base/result.hpp"
 #include "fettle/core/records/trajectory_lines.hpp"
-#include "fettle/design/cli/console.hpp"
+#include "fettle/core/stepper/simulation.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 /// In the folder of a run that is not whole.
 inline constexpr const char* running_file = "trajectory.running.json";
@@ -30,7 +31,8 @@ public:
     GrowingTrajectory& operator=(const GrowingTrajectory&) = delete;
 
     /// Writes what the simulation has and the file has not. Contract: always of the same simulation, which stays where it is.
-    void write(const core::stepper::Simulation& so_far, Console& console);
+    /// @return why it cannot be written, told once: nothing is written from then on; empty: it is
+    std::string write(const core::stepper::Simulation& so_far);
 
     /// Once the whole run is in a file of its own: takes the running file away.
     void remove();
@@ -49,4 +51,4 @@ private:
     bool failed_ = false;
 };
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers

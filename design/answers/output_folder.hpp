@@ -10,7 +10,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 /// Can files be made in `folder`? It is made if it is not there; a file is written in it and taken away again.
 /// Errors: file_unwritable, with the reason. Call it when the input has been read, before minutes of work.
@@ -28,4 +28,4 @@ namespace fettle::design::cli {
 /// trajectory.2.json, ... that is free. Else empty.
 std::string name_for_longer_run(const std::filesystem::path& file, std::size_t steps);
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/growing_tables.hpp"
+#include "fettle/design/answers/growing_tables.hpp"
 
 #include <cstddef>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 using core::stepper::Simulation;
 
@@ -22,7 +22,7 @@ GrowingTables::GrowingTables(const std::filesystem::path& folder, const core::mo
         std::string header = text(Simulation());
         tables_.push_back({name, std::move(text), core::files::NewFile(folder / name), std::move(header)});
     };
-    const std::vector<std::string> names = answers::body_names(model);
+    const std::vector<std::string> names = body_names(model);
     add("steps.csv", core::records::steps_csv);
     add("contacts.csv", [names](const Simulation& simulation) { return core::records::contacts_csv(simulation, names); });
     add("drives.csv", [names](const Simulation& simulation) { return core::records::drives_csv(simulation, names); });
@@ -61,4 +61,4 @@ Errors GrowingTables::add_to(core::files::FilesTogether& files) {
     return errors;
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers

@@ -11,7 +11,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/simulation.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::answers {
 
 class GrowingTables {
 public:
@@ -36,4 +36,4 @@ private:
     std::vector<Table> tables_;
 };
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::answers
