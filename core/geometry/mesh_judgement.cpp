@@ -127,13 +127,14 @@ private:
     /// Of the lesser of the mass as it is told and as it is meant, if the volume told is too much by `over` or too little by `under`.
     std::string share(double over, double under) const {
         if (!(over < volume_)) return unbounded;
-        return "which changes its mass by at most " + base::percent(std::min(std::max(over / (volume_ - over), under / volume_), 1e6));
+        return "which changes its mass by at most " + base::percent(std::min(std::max(over / (volume_ - over), under / volume_), 1e6)) +
+               " of the smaller of the two, as it is read and as it is meant";
     }
 
     void look_at_intersections() {
         const auto pairs = self_intersections(mesh_, most_pairs);
         if (pairs.empty()) {
-            if (as_solid_ && closed_) look_at_nesting();
+            if (as_solid_ ? closed_ : bounds_a_solid(mesh_)) look_at_nesting();
             return;
         }
         const bool all = static_cast<int>(pairs.size()) < most_pairs;
@@ -151,10 +152,16 @@ private:
     void look_at_nesting() {
         for (const Shell& shell : shells_of(mesh_)) {
             const std::string name = "shell \"" + mesh_.shell_names[static_cast<std::size_t>(shell.index)] + "\"";
-            if (shell.volume_sign == 0) warn(name + " encloses no volume; no effect on the mass");
+            if (shell.volume_sign == 0 && as_solid_) warn(name + " encloses no volume; no effect on the mass");
             if (shell.volume_sign == 0 || shell.is_oriented()) continue;
-            const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
             const bool counts_as_hole = shell.depth % 2 == 0;
+            if (!as_solid_) {
+                warn(name + (counts_as_hole ? " is inside out, so that it counts as a hole"
+                                            : " is a solid within a solid, and no cavity: what lies in it lies in material; for a cavity "
+                                              "reverse its triangles"));
+                continue;
+            }
+            const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
             warn(name +
                  (counts_as_hole ? " is inside out, so that it counts as a hole"
                                  : " is a solid within a solid, so that its volume counts twice; for a cavity reverse its triangles") +

@@ -19,7 +19,8 @@ struct MeshFindings {
 /// Errors: vertices that are not finite, indices out of range; of a solid also: openings too large to cap (is_nearly_closed), triangles
 /// turned over, no positive volume. Warnings: triangles without area, edges of more than two triangles, loose edges and points, openings
 /// (capped for the mass), triangles that intersect, solids within solids.
-/// @param as_solid  Its mass is that of the volume that it encloses. Else (static bodies, shells, wires) nothing is said of mass.
+/// @param as_solid  Its mass is that of the volume that it encloses. Else (static bodies, shells, wires) nothing is said of mass; solids
+///                  within solids are told all the same, of a mesh that is closed: they decide what is inside.
 /// Contract: connectivity built, unless indices are out of range.
 MeshFindings judge_mesh(const Mesh& mesh, bool as_solid);
 

@@ -29,6 +29,10 @@ std::string place_of(const scene::Scene& scene, const scene::Body& body) {
     return body.where.empty() ? (scene.path.empty() ? "" : scene.path + ": ") + "body `" + body.name + "`" : body.where;
 }
 
+std::string named(const scene::Scene& scene, const scene::Body& body) {
+    return place_of(scene, body) + (body.where.empty() ? ": " : ": body `" + body.name + "`: ");
+}
+
 /// What every mesh must have, whatever the policy: the rest of the program indexes and divides by it.
 Errors check_usable(const scene::Body& body, const std::string& where) {
     const geometry::Mesh& mesh = body.mesh;
@@ -309,11 +313,52 @@ void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
         ", which is hardly meant; is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths (9.81 on the Earth)");
 }
 
-/// A size, a density or a gravity that is possible, but hardly meant: a unit that is another one than was thought makes a factor of 1000.
-/// Scenes of the source paper are taken as they are.
+/// Contact across a good part of a body. Of the default nothing is said: it goes with the size of what moves.
+void doubt_contact_distance(const scene::Scene& scene, SceneCheck& check) {
+    constexpr double share = 0.05;
+    if (!scene.dhat) return;
+    const scene::Body* smallest = nullptr;
+    for (const scene::Body& body : scene.bodies) {
+        if (body.type != BodyType::dynamic_body || !(longest_side(body) > 0)) continue;
+        if (smallest == nullptr || longest_side(body) < longest_side(*smallest)) smallest = &body;
+    }
+    if (smallest == nullptr || !(*scene.dhat > share * longest_side(*smallest))) return;
+    check.warnings.push_back((scene.path.empty() ? "scene" : scene.path + "#") + "/contact/dhat: the contact distance is " +
+                             in_metres(*scene.dhat) + ", which is hardly meant beside `" + smallest->name + "`, whose size is " +
+                             in_metres(longest_side(*smallest)) +
+                             ": parts push each other from there on, and fits of less play are never free; is its unit right? It should be "
+                             "well below the play of the fits (if it is not given: " +
+                             in_metres(1e-3 * scene::moving_diagonal(scene)) + ")");
+}
+
+/// More than a turn in each time step. (Of motors half a turn is refused: build_mechanism.hpp.)
+void doubt_turns(const scene::Scene& scene, SceneCheck& check) {
+    const auto doubt = [&](const std::string& of, double rate) {
+        const double turns = std::abs(rate) * scene.timestep / (2 * M_PI);
+        if (!(turns > 1)) return;
+        check.warnings.push_back(of + " makes " +
+                                 (turns < 1.5 ? "more than a turn" : std::to_string(std::llround(std::min(turns, 1e15))) + " turns") +
+                                 " in each time step of " + base::format_quantity(scene.timestep, "s", 3) +
+                                 ", which is hardly meant; is its unit right (in a file: degrees per second)?");
+    };
+    for (const scene::Body& body : scene.bodies) {
+        if (body.mesh_policy == MeshPolicy::lenient) continue;
+        const std::string name = named(scene, body) + "its ";
+        doubt(name + "angular velocity", body.angular_velocity.norm());
+        for (std::size_t k = 3; k < body.prescribed.size(); ++k)
+            if (body.prescribed[k]) doubt(name + "prescribed rate about " + "xyz"[k - 3], body.prescribed[k]->rate);
+    }
+}
+
+/// A size, a density, a gravity, a contact distance or a rate that is possible, but hardly meant: a unit that is another one than was
+/// thought makes a factor of 1000. Scenes of the source paper are taken as they are.
 void doubt_units(const scene::Scene& scene, SceneCheck& check) {
     const auto lenient = [](const scene::Body& body) { return body.mesh_policy == MeshPolicy::lenient; };
-    if (!std::all_of(scene.bodies.begin(), scene.bodies.end(), lenient)) doubt_gravity(scene, check);
+    if (!std::all_of(scene.bodies.begin(), scene.bodies.end(), lenient)) {
+        doubt_gravity(scene, check);
+        doubt_contact_distance(scene, check);
+        doubt_turns(scene, check);
+    }
     constexpr double largest = 3, largest_static = 10;                   // [m]; a ground may be large
     const double smallest = scene.length_unit < 10e-6 ? 10e-6 : 0.1e-3;  // [m]; whoever chose micrometres has small parts
     constexpr double mistaken = 250;                    // times as large or small as the others: nearer to 1000 than to them
@@ -321,7 +366,7 @@ void doubt_units(const scene::Scene& scene, SceneCheck& check) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const scene::Body& body = scene.bodies[i];
         if (lenient(body)) continue;
-        const std::string name = place_of(scene, body) + ": body `" + body.name + "`: ";
+        const std::string name = named(scene, body);
         const bool moves = body.type == BodyType::dynamic_body, solid = moves && !body.inertial && body.mass_kind == MassKind::volume;
         const double size = longest_side(body), times = times_the_others(scene.bodies, i);
         const bool stranger = times > mistaken ? body.type != BodyType::static_body : times < 1 / mistaken && scene.bodies.size() > 2;

@@ -45,7 +45,8 @@ public:
     std::string plain(double x) const { return formatted("%.6g", x / metres_); }
     std::string rough(double x) const { return formatted("%.2g", x / metres_); }
     std::string point(const Vector3& x) const {
-        return formatted("(%.6g, %.6g, %.6g) %s", x.x() / metres_, x.y() / metres_, x.z() / metres_, unit_.c_str());
+        const auto told = [&](double coordinate) { return std::abs(coordinate) < 1e-14 ? 0 : coordinate / metres_; };  // rounding of 0
+        return formatted("(%.6g, %.6g, %.6g) %s", told(x.x()), told(x.y()), told(x.z()), unit_.c_str());
     }
     const std::string& unit() const { return unit_; }
     double metres() const { return metres_; }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <sstream>
@@ -18,7 +19,8 @@ namespace {
 
 std::string shown(double number) {
     char text[40];
-    std::snprintf(text, sizeof text, "%g", number);
+    const bool whole = std::abs(number) < 1e15 && std::floor(number) == number;
+    std::snprintf(text, sizeof text, whole ? "%.0f" : "%g", number);
     return text;
 }
 

@@ -236,9 +236,9 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     if (!report.measured) return "roughness: not measured" + (report.failures.empty() ? "" : ", " + report.failures.front()) + "\n";
     Eigen::Index most = 0;
     report.direction.cwiseAbs().maxCoeff(&most);
-    std::string text = formatted("along the objective's gradient, as %s moves (most):\n%-40s %12s %12s %14s %14s\n",
+    std::string text = formatted("how far the gradient holds along the objective's, as %s moves (most):\n%-40s %12s %12s %14s %14s\n",
                                  design.parameters[static_cast<size_t>(most)].name.c_str(), "quantity", "noise", "tolerance",
-                                 "gradient holds", "no longer over");
+                                 "holds within", "fails beyond");
     std::string rough;
     for (const QuantityRoughness& quantity : report.quantities) {
         const bool bound = quantity.noise.status == optimisers::NoiseStatus::spacing_too_large;
@@ -336,7 +336,8 @@ std::string check_text(const Design& design, const CheckReport& report) {
     if (!report.left_out.empty()) text += "\n";
     text += along_text(design, report);
     text += report.sweeps.failure.empty()
-                ? formatted("backwards and forwards through the simulation agree to %.2g\n", report.sweeps.disagreement)
+                ? formatted("the gradient, computed backwards and forwards through the simulation, differs by %.2g of its size\n",
+                            report.sweeps.disagreement)
                 : "backwards and forwards not compared: " + report.sweeps.failure + "\n";
     const bool resolved = std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved; }) &&
                           std::all_of(report.along.begin(), report.along.end(), [](const auto& row) { return row.resolved; });

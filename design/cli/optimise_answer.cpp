@@ -92,8 +92,8 @@ std::string terms_text(const Design& design, const OptimiseOutcome& outcome) {
         const description::ObjectiveTerm& term = design.objective[k];
         const double value = outcome.final.terms[k].value;
         const std::string unit = core::base::unit_name(term.quantity->dimension(), term.unit);
-        text += formatted("  %-40s %s, counts %.6g\n", term.name.c_str(), description::amount_text(value, term.unit, unit).c_str(),
-                          term.weight * value / term.unit);
+        text += formatted("  %-40s %s, counts %.6g in the objective\n", term.name.c_str(),
+                          description::amount_text(value, term.unit, unit).c_str(), term.weight * value / term.unit);
     }
     return text;
 }

@@ -8,6 +8,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/scene/place.hpp"
+#include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::problem {
 
@@ -99,9 +100,17 @@ private:
     }
 
     void check_parameter(const Parameter& parameter) {
-        const bool in_order = parameter.lower <= parameter.value && parameter.value <= parameter.upper;
-        if (!in_order || !std::isfinite(parameter.lower) || !std::isfinite(parameter.upper))
-            add(ErrorCode::out_of_range, place(parameter), "its bounds are finite, and its value lies within them");
+        const bool finite = std::isfinite(parameter.lower) && std::isfinite(parameter.upper);
+        const auto told = [&](double si) {
+            return description::amount_text(si, core::base::to_si(1, parameter.unit), std::string(parameter.unit.name));
+        };
+        if (!finite)
+            add(ErrorCode::out_of_range, place(parameter),
+                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are wanted");
+        else if (!(parameter.lower <= parameter.value && parameter.value <= parameter.upper))
+            add(ErrorCode::out_of_range, place(parameter),
+                "its value " + told(parameter.value) + " does not lie within its bounds, " + told(parameter.lower) + " to " +
+                    told(parameter.upper));
         for (const Move& move : parameter.moves) {
             const Result<core::scene::Place> found = core::scene::find_place(scene_, move.place);
             for (const Error& error : found.errors()) add(error.code, place(parameter) + ": " + error.where, error.message);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
@@ -133,7 +134,10 @@ void bind_ranges(py::module_& module) {
         module, "JointRanges", "Which coordinates a model's joints have, and within which limits: where --ranges looks.")
         .def_property_readonly(
             "coordinates", [](const JointRanges& self) { return self.linkage.coordinates; }, "RangeCoordinates, in the linkage's order")
-        .def_readonly("held", &JointRanges::held, "Bodies that could move, and stay where they start.");
+        .def_readonly("held", &JointRanges::held, "Bodies that could move, and stay where they start.")
+        .def("__repr__", [](const JointRanges& self) {
+            return "JointRanges(" + core::base::counted(self.linkage.coordinates.size(), "coordinate") + ")";
+        });
     module.def(
         "joint_ranges",
         [](const Model& model) { return std::make_shared<JointRanges>(value_or_raise(core::clearance::joint_ranges(model))); },

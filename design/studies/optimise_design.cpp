@@ -117,7 +117,8 @@ private:
         if (smoother_.empty()) return;
         std::string names;
         for (const problem::SmootherDesign& model : smoother_) names += (names.empty() ? "" : ", then ") + model.name;
-        narrate("parts rattle in the play of their fits: the search begins with wider contact, in which they do not (" + names + ")");
+        narrate("parts rattle in the play of their fits: the search begins with contact that reaches farther, in which they do not (" +
+                names + ")");
     }
 
     void watch_refusals(optimisers::Problem& seen) {

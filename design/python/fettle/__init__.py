@@ -19,7 +19,10 @@ Long calls let other threads run, and end on Ctrl-C.
 In a notebook fettle.view(model, simulation.trajectory) shows the parts and their motion. A pickle can run code when it is read: load none
 but your own.
 """
+import types as _types
+
 # `X as X`: for type checkers the name is public.
+from ._calls import in_plain_words as _in_plain_words
 from ._fettle import (
     Certificate as Certificate,
     DesignProblem as DesignProblem,
@@ -159,6 +162,10 @@ from .scene import (
     Spring as Spring,
     held as held,
 )
+
+for _name, _function in list(globals().items()):
+    if isinstance(_function, _types.BuiltinFunctionType):
+        globals()[_name] = _in_plain_words(_function)
 
 _MODULES = ("design", "errors", "exploration", "notebook", "results", "scene")
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _MODULES]

@@ -20,7 +20,10 @@ class View:
 
     def save(self, path: "Union[str, os.PathLike[str]]") -> str:
         """Writes the page for any browser; its path."""
-        pathlib.Path(path).write_text(self.page, encoding="utf-8")
+        try:
+            pathlib.Path(path).write_text(self.page, encoding="utf-8")
+        except OSError as error:  # of a full disk it names no file
+            raise OSError(error.errno, error.strerror, os.fspath(path)) from None
         return os.fspath(path)
 
     def __repr__(self) -> str:

@@ -3,11 +3,14 @@
 // near.
 #include "fettle/core/contact/safe_step.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/stop.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
@@ -181,6 +184,45 @@ TEST_CASE("no pair of edges comes within dmin on the safe part of random paths")
         if (step.fraction < 1) REQUIRE(step.limiting_a + step.limiting_b == 1);
     }
     CHECK(stopped > 15);
+}
+
+TEST_CASE("the search for pairs and the longest safe step end when that is asked for, whichever thread works on them") {
+    const geometry::Mesh box = box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+    const model::Model model = model_of({box, box, box});
+    const std::vector<PathSegment> segments{segment({0, 0, 0}, {0, 0, 0}), segment({1.01, 0.1, 0.2}, {-0.5, 0, 0}, {0.1, 0.2, 0.3}),
+                                            segment({-1.01, 0.1, 0.2}, {0.5, 0, 0}, {0.3, 0.1, 0.2})};
+    for (const int threads : {1, 2}) {
+        const base::ThreadLimit limit(threads);
+        Candidates candidates;
+        cover(model, segments, model.dhat, candidates);
+        REQUIRE(longest_safe_step(model, candidates, segments).fraction < 1);
+        std::atomic<int> asked = 0;
+        // Asked for at the k-th time of asking, until there are no more: it ends there.
+        const auto times = [&](const auto& work) {
+            for (int k = 0;; ++k) {
+                asked = 0;
+                const base::StopScope scope([&, k] { return asked++ >= k; });
+                try {
+                    work();
+                    return k;
+                } catch (const base::Stopped&) {
+                }
+            }
+        };
+        // More often than there are pieces of loops: within bodies, within pairs of primitives.
+        CHECK(times([&] {
+                  Candidates fresh;
+                  cover(model, segments, model.dhat, fresh);
+              }) > 2 * 3);
+        CHECK(times([&] { longest_safe_step(model, candidates, segments); }) > 20);
+    }
+    const auto ccd = [&] {
+        const PairVertices X{Vector3(0.5, 0, 0), Vector3(-0.5, -1, -1), Vector3(-0.5, 1, -1), Vector3(-0.5, 0, 1)};
+        return curved_ccd(PairType::point_triangle, segments[0], segments[1], X, 0);
+    };
+    CHECK(ccd().hit);
+    const base::StopScope scope([] { return true; });
+    CHECK_THROWS_AS(ccd(), base::Stopped);
 }
 
 TEST_CASE("a path that is not finite is not safe") {

@@ -229,8 +229,12 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     CHECK(repair_mesh(mesh).empty());
     const std::vector<std::string> warnings = judge_mesh(mesh, true).warnings;
     CHECK(mentions(warnings, "a solid within a solid, so that its volume counts twice"));
-    CHECK(mentions(warnings, "which changes its mass by at most 55%"));  // 125 + 27 for 125 - 27
-    CHECK(point_in_solid({2, 2, 2}, mesh.vertices, mesh.triangles));     // its parity would say outside
+    CHECK(mentions(warnings, "which changes its mass by at most 55% of the smaller of the two"));  // 125 + 27 for 125 - 27
+    const std::vector<std::string> unweighed = judge_mesh(mesh, false).warnings;                   // a static body's
+    CHECK(unweighed.size() == 1);
+    CHECK(mentions(unweighed, "a solid within a solid, and no cavity"));
+    CHECK_FALSE(mentions(unweighed, "mass"));
+    CHECK(point_in_solid({2, 2, 2}, mesh.vertices, mesh.triangles));  // its parity would say outside
     CHECK(winding_number({2, 2, 2}, mesh.vertices, mesh.triangles) == 2);
 }
 

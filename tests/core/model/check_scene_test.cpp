@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/model/build_model.hpp"
@@ -96,6 +98,10 @@ TEST_CASE("A size or a density that is hardly meant is a warning, with its place
     CHECK(build_model(heavy)->warnings == std::vector<std::string>{"a.scene.json#/gravity: gravity is 9810 m/s^2, which is hardly meant; "
                                                                    "is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths "
                                                                    "(9.81 on the Earth)"});
+    scene::Scene unwritten = scene_of({box("rod", 58, 0)});  // of a program: it is named once
+    unwritten.path.clear();
+    unwritten.bodies[0].where.clear();
+    CHECK(build_model(unwritten)->warnings.front().rfind("body `rod`: its size is 58 m", 0) == 0);
     // What is meant: parts of all usual sizes, and a large ground under small ones.
     CHECK(warnings({box("pin", 5e-3, -1), box("crank", 0.3, -2), box("frame", 1, 0)}).empty());
     scene::Body ground = box("ground", 9, 0);
@@ -112,6 +118,52 @@ TEST_CASE("A size or a density that is hardly meant is a warning, with its place
     scene::Body paper = box("rod", 58, 0);  // scenes of the source paper are taken as they are
     paper.mesh_policy = scene::MeshPolicy::lenient;
     CHECK(warnings({paper}).empty());
+}
+
+TEST_CASE("A contact distance that is a good part of a body is a warning", "[model]") {
+    const auto warnings = [](std::optional<double> dhat) {
+        scene::Scene scene = scene_of({box_body("rod", {0, 0, 0}, {0.06, 0.01, 0.01}), box_body("pin", {0.1, 0, 0}, {0.132, 0.02, 0.02})});
+        scene.dhat = dhat;
+        return build_model(scene).value().warnings;
+    };
+    const std::vector<std::string> told = warnings(5e-3);
+    REQUIRE(told.size() == 1);
+    CHECK(contains(told[0],
+                   "a.scene.json#/contact/dhat: the contact distance is 5 mm, which is hardly meant beside `pin`, whose size is 32 mm"));
+    CHECK(contains(told[0], "well below the play of the fits (if it is not given: 135 um)"));
+    CHECK(warnings(1.5e-3).empty());
+    CHECK(warnings(std::nullopt).empty());
+}
+
+TEST_CASE("More than a turn in each time step is a warning", "[model]") {
+    scene::Scene scene = scene_of({box_body("crank", {0, 0, 0}, {0.1, 0.1, 0.1})});
+    scene.timestep = 5e-3;
+    scene::Body& crank = scene.bodies[0];
+    const auto warnings = [&] { return build_model(scene).value().warnings; };
+    crank.prescribed[5] = scene::MotionCurve{};
+    crank.prescribed[5]->rate = 1e7 * M_PI / 180;
+    REQUIRE(warnings().size() == 1);
+    CHECK(contains(warnings()[0],
+                   "body `crank`: its prescribed rate about z makes 139 turns in each time step of 0.005 s, which is hardly meant"));
+    crank.prescribed[5]->rate = -2 * M_PI * 150;  // 9,000 turns per minute
+    CHECK(warnings().empty());
+    crank.prescribed[5].reset();
+    crank.angular_velocity.x() = 2 * M_PI * 400;
+    REQUIRE(warnings().size() == 1);
+    CHECK(contains(warnings()[0], "its angular velocity makes 2 turns"));
+}
+
+TEST_CASE("A time step of more than a day is refused: it is in seconds", "[model]") {
+    scene::Scene scene = scene_of({box_body("cube", {0, 0, 0}, {0.1, 0.1, 0.1})});
+    scene.timestep = 86400;
+    CHECK(build_model(scene));
+    for (const double step : {86401.0, 99999999999.0}) {
+        scene.timestep = step;
+        const base::Error error = only_error(build_model(scene));
+        CHECK(error.code == ErrorCode::out_of_range);
+        CHECK(error.where == "a.scene.json#/timestep");
+        CHECK(contains(error.message, "at most a day"));
+    }
 }
 
 TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `fettle gradient --check` of designs that a file can ask for, as users have it.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "fettle/tests/design/small_design.hpp"
@@ -67,6 +69,22 @@ TEST_CASE("gradient --check: torques on a body and of a motor, the size of a par
                 CHECK(row.at("adjoint").get<double>() ==
                       Approx(told.at("gradient").at(row.at("parameter").get<std::string>()).get<double>()));
     }
+}
+
+TEST_CASE("gradient --check counts in the design's units, as the lines above it do") {
+    const DesignFolder folder(turned_design, turned_scene);
+    const Answer answer = run("gradient " + folder.design() + " --check");
+    CAPTURE(answer.out);
+    // "  d/d length    NUMBER per mm" above, "objective    length [mm]    NUMBER ..." in the table.
+    const auto number_after = [&](const std::string& first, const std::string& second) {
+        const std::size_t line = answer.out.find(first), at = line == std::string::npos ? line : answer.out.find(second, line);
+        return at == std::string::npos ? std::nan("") : std::atof(answer.out.c_str() + at + second.size());
+    };
+    const double above = number_after("  d/d length ", "length "), in_table = number_after("\nobjective  ", "length [mm]");
+    CHECK(above != 0);
+    CHECK(in_table == Approx(above).epsilon(1e-5));
+    CHECK(number_after("\nobjective  ", "stop [deg]") == Approx(number_after("  d/d stop ", "stop ")).epsilon(1e-5));
+    CHECK(answer.says(" [mm/s] "));  // a constraint's, in the table and in that of noise and tolerance
 }
 
 }  // namespace fettle::design::cli::gradient_command_test

@@ -141,6 +141,25 @@ TEST_CASE("clearance: a part in a mesh that is not closed is not clear of it, no
     CHECK(beside.pair("open", "lid")["solids"] == "not closed");
 }
 
+TEST_CASE("clearance: a cavity that is the wrong way round is told, once of each mesh") {
+    const Boxes boxes;
+    core::geometry::Mesh block = box_mesh({0, 0, 0}, {0.01, 0.01, 0.01}), inner = box_mesh({0.002, 0.002, 0.002}, {0.008, 0.008, 0.008});
+    Matrix3X vertices(3, 16);
+    vertices << block.vertices, inner.vertices;
+    for (const core::geometry::Triangle& triangle : inner.triangles)
+        block.triangles.push_back({triangle[0] + 8, triangle[1] + 8, triangle[2] + 8});
+    block = core::geometry::make_mesh("block", vertices, block.triangles);
+    boxes.write("block.stl", core::mesh_files::stl_bytes({{"block", &block}}));
+    const std::string command = "clearance " + boxes.file("block.stl") + " " + boxes.file("cad/arm.obj") + " --unit mm --minimum 0.1mm";
+    const Answer answer = run(command, true);
+    CAPTURE(answer.out);
+    const std::string warning = "is a solid within a solid, and no cavity";
+    const std::size_t first = answer.out.find(warning);
+    REQUIRE(first != std::string::npos);
+    CHECK(answer.out.find(warning, first + 1) == std::string::npos);
+    CHECK(answer.code == 0);
+}
+
 TEST_CASE("clearance: a lid on its base is told as touching, is accepted where that is allowed, and found where it is in it") {
     const Boxes boxes;
     const auto written = [&](const std::string& name, const Vector3& low, const Vector3& high) {

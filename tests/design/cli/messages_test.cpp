@@ -212,6 +212,13 @@ TEST_CASE("messages: each evaluation says which requirement it misses, by how mu
         CHECK_FALSE(answer.says(strange));
 }
 
+TEST_CASE("messages: limits are whole numbers, and a coordinate that is 0 but for rounding is 0") {
+    CHECK(run("optimise examples/slider_crank/slider_crank.design.json --seed -1", true).says("-1 is not allowed: 0 to 2000000000 is"));
+    const Answer explained = run("clearance examples/follower/follower.scene.json --minimum 0.3mm --explain");
+    CHECK(explained.says(", at ("));
+    CHECK_FALSE(explained.says("e-17, "));
+}
+
 TEST_CASE("requirements in words") {
     using description::Bounds;
     CHECK(description::required_text({.lower = 3e-4, .unit = 1e-3}, "mm") == "at least 0.3 mm");

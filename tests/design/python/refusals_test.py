@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What Python hands in and cannot be used: refused with a code, a place and what is allowed; what is no number is no evaluation."""
 import math
+import os
 import pickle
 
 import numpy as np
@@ -63,6 +64,41 @@ def test_numbers_of_other_calls(tmp_path):
     refused(lambda: fettle.export_files(str(tmp_path), "stl", model, in_place=True), "inconsistent", "in_place", "parts")
     refused(lambda: fettle.draw_picture(model, size=(-3, 100)), "out_of_range", "size", "16 to 16384")
     refused(lambda: fettle.to_si(1, "mmm"), "out_of_range", "unit", "mm")
+
+
+def test_bounds_of_parameters():
+    for members, words in (
+        ({"lower": -INFINITY}, "its bounds are -inf mm and"),
+        ({"value": 1.0}, "its value 1000 mm does not lie within its bounds, "),
+    ):
+        parameters = tilted_plate().parameters
+        for name, value in members.items():
+            setattr(parameters[0], name, value)
+        refused(changed(parameters=parameters), "out_of_range", "parameter `height`", words)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
+def test_a_view_that_cannot_be_written_names_its_file():
+    with pytest.raises(OSError, match="/dev/full"):
+        fettle.View("page" * 10000).save("/dev/full")
+
+
+def test_arguments_that_a_function_cannot_take():
+    model = falling_cube()
+    refused(lambda: fettle.simulate(model, steps=99999999999), "out_of_range", "steps", "-2147483648 to 2147483647")
+    refused(lambda: fettle.simulate(model, steps="3"), "wrong_type", "steps", "'3', of type str: a whole number, or None is wanted")
+    refused(lambda: fettle.simulate(model, stepps=3), "unknown_key", "simulate", "did you mean 'steps'?")
+    refused(lambda: fettle.simulate(None), "wrong_type", "model", "None: a fettle.Model is wanted")
+    refused(lambda: fettle.read_scene(3), "wrong_type", "path", "3, of type int: a path, str or os.PathLike is wanted")
+    refused(lambda: fettle.read_scene("a", mesh_dirs=[1]), "wrong_type", "mesh_dirs", "a list is wanted")
+    refused(lambda: fettle.to_si(1), "missing_key", "unit", "is missing: a text is wanted")
+    refused(lambda: fettle.to_si("0.3mm"), "wrong_type", "number", "'0.3mm', of type str: a number is wanted")
+    refused(lambda: fettle.ThreadLimit(0), "out_of_range", "threads")
+    with pytest.raises(fettle.Error) as found:
+        fettle.read_scene(3, strict_meshes="no")
+    assert [fault.where for fault in found.value.errors] == ["path", "strict_meshes"] and len(str(found.value)) < 200
+    assert pickle.loads(pickle.dumps(fettle.simulate)) is fettle.simulate
+    assert fettle.to_si.__doc__ and len(fettle.simulate(model, steps=2).trajectory) == 2
 
 
 def changed(**members):

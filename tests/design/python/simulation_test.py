@@ -156,6 +156,7 @@ def arm():
 def test_clearance_over_the_ranges_of_joints(tmp_path):
     model = arm()
     ranges = fettle.joint_ranges(model)
+    assert repr(ranges).startswith(f"JointRanges({len(ranges.coordinates)} coordinate")
     (hinge,) = ranges.coordinates
     assert hinge.joints[0].joint == "hinge" and hinge.joints[0].is_angle and not hinge.is_whole_turn
     assert (hinge.low, hinge.high) == pytest.approx((-np.pi / 3, np.pi / 3)) and ranges.held == []

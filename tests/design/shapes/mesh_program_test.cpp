@@ -11,7 +11,9 @@
 
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::shapes::mesh_program_test {
 
@@ -137,6 +139,28 @@ TEST_CASE("no program runs from a file alone") {
     // volume = length * 10 * 10 / 6 mm^3; grams per metre of length
     CHECK(at.gradient[0] == Approx(1000.0 * 1e-4 / 6 * 1000).epsilon(1e-6));
     CHECK(shop.runs("12.5") == 1);  // read, checked, built and simulated
+}
+
+TEST_CASE("fettle's own threads are all that it has: libraries of linear algebra, and programs, are told to have one") {
+    const tests::support::TemporaryFolder folder;
+    const std::string seen = folder.file("seen");
+    const std::string path =
+        folder.write("a.scene.json", R"({ "fettle_scene": 1, "units": "mm", "bodies": [ { "name": "part", "density": 1000, "shape": {
+            "program": ["sh", "-c", "echo $OPENBLAS_NUM_THREADS $OMP_NUM_THREADS $MKL_NUM_THREADS $BLIS_NUM_THREADS > ')" +
+                                         seen +
+                                         R"('; cp part.off $0; : $1", "{out}", "{length}"],
+            "format": "off", "dimensions": { "length": 12.5 } } } ] })");
+    folder.write("part.off", "OFF\n4 4 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+    const auto told = [&](const std::string& before) {
+        std::filesystem::remove(seen);
+        const auto answer = tests::support::run("validate " + path + " --allow-programs", true, before);
+        CAPTURE(answer.out);
+        CHECK(answer.code == 0);
+        return tests::support::contents(seen);
+    };
+    const std::string unset = "unset OPENBLAS_NUM_THREADS OMP_NUM_THREADS MKL_NUM_THREADS BLIS_NUM_THREADS; ";
+    CHECK(told(unset) == "1 1 1 1\n");
+    CHECK(told(unset + "export OPENBLAS_NUM_THREADS=3; ") == "3 1 1 1\n");  // what the user has set holds
 }
 
 TEST_CASE("parts that are alike are made once") {
