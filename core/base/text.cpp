@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdio>
 
@@ -166,6 +167,19 @@ std::string unit_name(Dimension dimension, double si) {
 std::string length_text(double metres, double length_unit, int digits) {
     const std::string unit = unit_name(Dimension::length, length_unit);
     return format_length(metres, unit.empty() ? "m" : unit, digits);
+}
+
+std::string formatted(const char* format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    const int length = std::vsnprintf(nullptr, 0, format, arguments);
+    va_end(arguments);
+    std::string text(static_cast<std::size_t>(std::max(0, length)) + 1, '\0');
+    std::vsnprintf(text.data(), text.size(), format, again);
+    va_end(again);
+    text.pop_back();
+    return text;
 }
 
 }  // namespace fettle::core::base

@@ -41,6 +41,9 @@ std::string csv_cell(std::string_view word);
 /// Without the ' that csv_cell began it with; quotes have been taken off before.
 std::string csv_word(std::string_view field);
 
+/// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
 /// 0.0123 -> "1.2%", 1.234 -> "123%": two digits, and whole numbers from ten on.
 std::string percent(double share);
 

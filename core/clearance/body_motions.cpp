@@ -74,4 +74,17 @@ std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<
     return shapes;
 }
 
+std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
+    std::vector<int> bodies;
+    for (const PairRequest& pair : pairs) {
+        FETTLE_ASSERT(pair.a >= 0 && pair.a < count && pair.b >= 0 && pair.b < count && pair.a != pair.b,
+                      "a pair of two bodies of the model");
+        bodies.push_back(pair.a);
+        bodies.push_back(pair.b);
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    return bodies;
+}
+
 }  // namespace fettle::core::clearance

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "fettle/core/clearance/pair_clearance.hpp"
 #include "fettle/core/clearance/pair_details.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
@@ -25,6 +26,9 @@ kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const 
 /// (certificate/interval_motion.hpp).
 std::vector<char> have_usable_numbers(const model::Model& model, const stepper::Trajectory& trajectory,
                                       const std::vector<PathPlace>& places);
+
+/// Those that some pair is of, each once, increasing. Contract: pairs of two of `count` bodies.
+std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count);
 
 /// Bodies are taken so many at a time, all at one place after another: as their poses lie in memory.
 inline constexpr int bodies_at_once = 32;

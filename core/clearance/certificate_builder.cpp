@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
@@ -115,6 +116,10 @@ void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& 
         const auto path = [&](int body) { return certificate::body_path(pair.trajectory, segment.step, segment.segment, body); };
         proof = certificate::thinned(proof, a, b, path(certificate.a), path(certificate.b), certificate.lower + room);
     });
+}
+
+void drop_unmeasured(certificate::Certificate& certificate) {
+    std::erase_if(certificate.pairs, [](const auto& pair) { return !std::isfinite(pair.upper) || pair.point_a.index < 0; });
 }
 
 }  // namespace fettle::core::clearance

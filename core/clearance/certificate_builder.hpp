@@ -28,6 +28,9 @@ certificate::CertifiedPoint certified_witness(const PieceTree& tree, int element
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
 void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate);
 
+/// Of what could not be measured there is nothing to certify.
+void drop_unmeasured(certificate::Certificate& certificate);
+
 /// The bodies as the certificate cuts them; empty ones for those of no pair.
 std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Certificate& certificate, const model::Model& model);
 

@@ -66,25 +66,6 @@ WindowMinimum window_minimum(PairMotion pair, std::size_t begin, std::size_t end
             found.nearest.segment == count - 1 && found.nearest.s == 1};
 }
 
-std::vector<int> bodies_of(const std::vector<PairRequest>& pairs, int count) {
-    std::vector<int> bodies;
-    for (const PairRequest& pair : pairs) {
-        FETTLE_ASSERT(pair.a >= 0 && pair.a < count && pair.b >= 0 && pair.b < count && pair.a != pair.b,
-                      "a pair of two bodies of the model");
-        bodies.push_back(pair.a);
-        bodies.push_back(pair.b);
-    }
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    return bodies;
-}
-
-// Of what could not be measured there is nothing to certify.
-void drop_unbounded(certificate::Certificate& certificate) {
-    const auto unbounded = [](const certificate::PairCertificate& pair) { return !std::isfinite(pair.upper) || pair.point_a.index < 0; };
-    certificate.pairs.erase(std::remove_if(certificate.pairs.begin(), certificate.pairs.end(), unbounded), certificate.pairs.end());
-}
-
 }  // namespace
 
 const char* to_string(PairStatus status) {
@@ -128,8 +109,13 @@ namespace {
 class Certification {
 public:
     Certification(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
-                  const ClearanceOptions& options)
-        : model_(model), trajectory_(trajectory), pairs_(pairs), options_(options), places_(path_places(trajectory, options.motion)) {}
+                  const ClearanceOptions& options, certificate::Certificate* record)
+        : model_(model),
+          trajectory_(trajectory),
+          pairs_(pairs),
+          options_(options),
+          record_(record),
+          places_(path_places(trajectory, options.motion)) {}
 
     std::vector<PairClearance> run() {
         const std::vector<int> bodies = bodies_of(pairs_, static_cast<int>(model_.bodies.size()));
@@ -158,18 +144,18 @@ public:
             const std::lock_guard<std::mutex> lock(report);
             options_.on_pair(++done, count);
         });
-        if (is_recorded()) drop_unbounded(*options_.certificate);
+        if (is_recorded()) drop_unmeasured(*record_);
         return results;
     }
 
 private:
-    bool is_recorded() const { return options_.certificate != nullptr; }
+    bool is_recorded() const { return record_ != nullptr; }
 
     void start_record() {
         std::vector<const PieceTree*> trees;
         trees.reserve(motions_.size());
         for (const BodyMotion& motion : motions_) trees.push_back(motion.shape.tree.get());
-        certificate::Certificate& certificate = *options_.certificate;
+        certificate::Certificate& certificate = *record_;
         certificate = start_certificate(model_, trajectory_, trees, options_.motion && !trajectory_.steps.empty(), pairs_.size());
         certificate.is_of_path = true;
         certified_ = certified_bodies(certificate, model_);
@@ -179,7 +165,7 @@ private:
         const PairRequest& request = pairs_[i];
         std::optional<PairRecord> record;
         if (is_recorded()) {
-            record.emplace(PairRecord{options_.certificate->pairs[i], certified_[static_cast<std::size_t>(request.a)],
+            record.emplace(PairRecord{record_->pairs[i], certified_[static_cast<std::size_t>(request.a)],
                                       certified_[static_cast<std::size_t>(request.b)]});
             record->certificate.a = request.a;
             record->certificate.b = request.b;
@@ -207,6 +193,7 @@ private:
     const stepper::Trajectory& trajectory_;
     const std::vector<PairRequest>& pairs_;
     const ClearanceOptions& options_;
+    certificate::Certificate* record_;  // null: none is wanted
     std::vector<PathPlace> places_;
     std::vector<std::optional<PairClearance>> far_;
     std::vector<int> indices_;  // of the pairs to look at one by one
@@ -214,13 +201,35 @@ private:
     std::vector<certificate::CertifiedBody> certified_;
 };
 
+std::vector<PairClearance> certify(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options, certificate::Certificate* record) {
+    FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
+                  "a trajectory of the model's bodies");
+    return Certification(model, trajectory, pairs, options, record).run();
+}
+
 }  // namespace
 
 std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
-    FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
-                  "a trajectory of the model's bodies");
-    return Certification(model, trajectory, pairs, options).run();
+    return certify(model, trajectory, pairs, options, nullptr);
+}
+
+ProvenClearances certify_clearance_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
+                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+    ProvenClearances proven;
+    proven.pairs = certify(model, trajectory, pairs, options, &proven.certificate);
+    return proven;
+}
+
+ClearanceOptions usual_options(const std::vector<PairRequest>& pairs, std::optional<double> tolerance) {
+    ClearanceOptions options;
+    options.tolerance = tolerance.value_or(1e-6);
+    if (tolerance) return options;
+    options.coarse = 0.01;
+    for (const PairRequest& pair : pairs)
+        if (pair.minimum > 0) options.tolerance = std::min(options.tolerance, 1e-3 * pair.minimum);
+    return options;
 }
 
 namespace {
@@ -393,7 +402,6 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
                             double reach, ClearanceOptions options) {
     FETTLE_ASSERT(!trajectory.poses.empty() && trajectory.poses.front().size() == model.bodies.size(),
                   "a trajectory of the model's bodies");
-    FETTLE_ASSERT(options.certificate == nullptr, "a certificate speaks of whole paths");
     const NearWindows near = near_windows(model, trajectory, places, reach);
     options.enough = std::min(options.enough, reach);
     return {WindowSearch(model, trajectory, places, near.windows, options).run(), near.everything};

@@ -16,6 +16,10 @@ namespace fettle::core::clearance {
 std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
+/// The same with its certificate, which leaves out what could not be measured.
+ProvenClearances certify_clearance_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
+                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
+
 struct NearClearances {
     /// Of pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
     /// pairs, then of time. A pair can have several parts.
@@ -25,7 +29,6 @@ struct NearClearances {
 
 /// The least distance of all pairs that may collide at once: what is not in `windows` is proven to be at least `reach` apart, by boxes
 /// round whole bodies that hold them for a while; what is, is searched as certify_clearance() does, up to `reach` (`enough`).
-/// Contract: no certificate is asked for.
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options);
 
 /// Steps [first, last) of a trajectory.

@@ -176,36 +176,57 @@ JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion
     return out;
 }
 
-std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
-                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
-                                           const JointedPath& path) {
-    std::vector<PairRequest> asked = pairs;
-    const auto charge_of = [&](const PairRequest& pair) { return path.joints ? joint_charge(*path.joints, pair.a, pair.b) : 0; };
-    for (PairRequest& pair : asked) {
-        const double charge = charge_of(pair);
+namespace {
+
+double charge_of(const JointedPath& path, const PairRequest& pair) { return path.joints ? joint_charge(*path.joints, pair.a, pair.b) : 0; }
+
+std::vector<PairRequest> widened(std::vector<PairRequest> pairs, const JointedPath& path) {
+    for (PairRequest& pair : pairs) {
+        const double charge = charge_of(path, pair);
         if (pair.minimum > 0) pair.minimum += charge;
         pair.far += charge;
         pair.charge = charge;
     }
-    std::vector<PairClearance> results = certify_clearance(model, trajectory, asked, options);
-    const auto is_unproven = [&](int a, int b) {
-        const auto has = [&](int body) { return std::binary_search(path.bodies.begin(), path.bodies.end(), body); };
-        return !path.joints && (has(a) || has(b));
-    };
+    return pairs;
+}
+
+// Of a pair that nothing is proven of, for want of joints.
+bool is_unproven(const JointedPath& path, int a, int b) {
+    const auto has = [&](int body) { return std::binary_search(path.bodies.begin(), path.bodies.end(), body); };
+    return !path.joints && (has(a) || has(b));
+}
+
+void judge_jointed(const std::vector<PairRequest>& pairs, const JointedPath& path, std::vector<PairClearance>& results) {
     for (std::size_t i = 0; i < results.size(); ++i) {
-        if (is_unproven(pairs[i].a, pairs[i].b)) {
+        if (is_unproven(path, pairs[i].a, pairs[i].b)) {
             results[i] =
                 unbounded(std::move(results[i]), required_gap(pairs[i]),
                           "where joints met at all times have the bodies between the nodes of the path is not proven: " + path.refusal);
         } else {
-            results[i] = charged(std::move(results[i]), required_gap(pairs[i]), charge_of(pairs[i]));
+            results[i] = charged(std::move(results[i]), required_gap(pairs[i]), charge_of(path, pairs[i]));
         }
     }
-    if (options.certificate == nullptr) return results;
-    options.certificate->joints = path.joints;
-    options.certificate->is_of_path = !path.joints;
-    std::erase_if(options.certificate->pairs, [&](const certificate::PairCertificate& pair) { return is_unproven(pair.a, pair.b); });
+}
+
+}  // namespace
+
+std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
+                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
+                                           const JointedPath& path) {
+    std::vector<PairClearance> results = certify_clearance(model, trajectory, widened(pairs, path), options);
+    judge_jointed(pairs, path, results);
     return results;
+}
+
+ProvenClearances certify_jointed_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
+                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
+                                            const JointedPath& path) {
+    ProvenClearances proven = certify_clearance_with_proof(model, trajectory, widened(pairs, path), options);
+    judge_jointed(pairs, path, proven.pairs);
+    proven.certificate.joints = path.joints;
+    proven.certificate.is_of_path = !path.joints;
+    std::erase_if(proven.certificate.pairs, [&](const certificate::PairCertificate& pair) { return is_unproven(path, pair.a, pair.b); });
+    return proven;
 }
 
 }  // namespace fettle::core::clearance

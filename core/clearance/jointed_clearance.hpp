@@ -31,9 +31,13 @@ JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion
 
 /// As certify_clearance, of the bodies where the joints have them: of each pair lower less its charge, upper more; clear or violated only
 /// where that is proven of these, too. Where it is not proven where the joints have a body, a pair of it has no bounds and is undecided;
-/// other pairs do not depend on joints. A recorded certificate has the path's own bounds, and the joints beside them; nothing of pairs
-/// without bounds.
+/// other pairs do not depend on joints.
 std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options, const JointedPath& path);
+
+/// The same with its certificate: it has the path's own bounds, and the joints beside them; nothing of pairs without bounds.
+ProvenClearances certify_jointed_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
+                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
+                                            const JointedPath& path);
 
 }  // namespace fettle::core::clearance

@@ -96,9 +96,15 @@ struct ClearanceOptions {
     bool measure_overlap = true;                    ///< fill PairClearance::overlap of a clash, ::touch: a fraction of a second each
     bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
     double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
-    certificate::Certificate* certificate = nullptr;          ///< optional: the proofs are recorded here; `lower` is what they claim
     std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
+    // Over ranges of joints, which are asked for nothing else than the tolerance and the two functions:
+    double coarse = 0;            ///< tolerance of pairs that more than two coordinates move, as a share of the bodies' radii; 0: as others
+    long max_bounds = 4'000'000;  ///< per pair of bodies; beyond it: undecided with true bounds
 };
+
+/// What is wanted where nothing is said: to 1 um, or to 0.1% of the least minimum if that is less; of pairs that more than two coordinates
+/// of joints move, whose search grows with the power of these, to 1% of the bodies' radii. A tolerance that is given holds for all.
+ClearanceOptions usual_options(const std::vector<PairRequest>& pairs, std::optional<double> tolerance = std::nullopt);
 
 /// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
 struct PairClearance {
@@ -120,8 +126,19 @@ struct PairClearance {
     double sampled = 0;  ///< least distance at the nodes of the path: what a tool that samples would say [m]; infinite if not asked for
     std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
     std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
+    // Over ranges of joints:
+    double tolerance = 0;          ///< that was asked for, of this pair [m]
+    std::vector<int> coordinates;  ///< of the linkage: those that move one body against the other
+    std::vector<double> at;        ///< their values at the witness
+    long bounds = 0;               ///< computed
 
     bool is_clash() const { return intersecting || solids == Solids::overlap; }
+};
+
+/// With the proofs as data. `lower` of a pair is what its proof claims: less than was found by at most the tolerance.
+struct ProvenClearances {
+    std::vector<PairClearance> pairs;
+    certificate::Certificate certificate;
 };
 
 }  // namespace fettle::core::clearance

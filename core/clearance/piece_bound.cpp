@@ -64,12 +64,12 @@ double IntervalBound::motion(const Piece& a, const Piece& b) const {
     return (drift_ + rate_a_ * a.radius + rate_b_ * b.radius) * rounded_up;
 }
 
-SegmentBound IntervalBound::along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b,
-                                  double deviation_scale) const {
+SegmentBound IntervalBound::along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a,
+                                  const Corners* element_b) const {
     const Functionals fa = n[0] * of_a_[0] + n[1] * of_a_[1] + n[2] * of_a_[2];
     const Functionals fb = n[0] * of_b_[0] + n[1] * of_b_[1] + n[2] * of_b_[2];
     const Values offset = n[0] * offset_[0] + n[1] * offset_[1] + n[2] * offset_[2];
-    const double rest = deviation_scale * (rest_a_ * a.radius + rest_b_ * b.radius) * rounded_up + 2 * slack_;
+    const double rest = (rest_a_ * a.radius + rest_b_ * b.radius) * rounded_up + 2 * slack_;
     const auto bound = [&](const Values& c) {
         SegmentBound result;
         result.at_ends = least_of(c[0], c[3]);

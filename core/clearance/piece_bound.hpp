@@ -28,8 +28,7 @@ public:
     double motion(const Piece& a, const Piece& b) const;
 
     /// Lower bound along n: of two elements by their corners, of boxes if these are null. Rests, slack and all. Contract: |n| <= 1.
-    SegmentBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b,
-                       double deviation_scale) const;
+    SegmentBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b) const;
 
 private:
     using Functionals = Eigen::Matrix<double, 4, 3>;

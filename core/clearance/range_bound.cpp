@@ -172,12 +172,11 @@ void BoxBound::add_losses(const View& view, const Radii& r, const std::vector<Ve
     }
 }
 
-RangeBound BoxBound::bound(const std::array<double, 1 << most_coordinates>& values, double at_middle, const Losses& losses,
-                           double loss_scale) const {
+RangeBound BoxBound::bound(const std::array<double, 1 << most_coordinates>& values, double at_middle, const Losses& losses) const {
     RangeBound out;
     double low = std::numeric_limits<double>::infinity(), widest = -1;
     for (int c = 0; c < corners(); ++c) low = least_of(low, values[static_cast<std::size_t>(c)]);
-    out.lower = low - loss_scale * losses.total * base::rounded_up - pair_.slack;
+    out.lower = low - losses.total * base::rounded_up - pair_.slack;
     out.loosened = at_middle - out.lower;
     for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) {
         double spread = losses.along[k];
@@ -190,8 +189,7 @@ RangeBound BoxBound::bound(const std::array<double, 1 << most_coordinates>& valu
     return out;
 }
 
-RangeBound BoxBound::along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b,
-                           double loss_scale) const {
+RangeBound BoxBound::along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b) const {
     Losses losses;
     const std::vector<Vector3> normals{n};
     if (pair_.count > 0) {
@@ -206,11 +204,10 @@ RangeBound BoxBound::along(const Vector3& n, const Piece& a, const Piece& b, con
         const auto i = static_cast<std::size_t>(c);
         values[i] = apart(a_.corners[i], b_.corners[i]);
     }
-    return bound(values, apart(a_.middle, b_.middle), losses, loss_scale);
+    return bound(values, apart(a_.middle, b_.middle), losses);
 }
 
-RangeBound BoxBound::along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b,
-                           double loss_scale) const {
+RangeBound BoxBound::along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b) const {
     const Piece none;
     Coordinates change{};
     std::array<double, 1 << most_coordinates> values{};
@@ -225,7 +222,7 @@ RangeBound BoxBound::along(const std::vector<Vector3>& normals, const Corners& e
     Losses losses;
     add_losses(a_, radii(a_, none, &element_a), normals, change, losses);
     add_losses(b_, radii(b_, none, &element_b), normals, change, losses);
-    return bound(values, most, losses, loss_scale);
+    return bound(values, most, losses);
 }
 
 }  // namespace fettle::core::clearance

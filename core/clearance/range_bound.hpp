@@ -82,12 +82,10 @@ public:
     /// Distance of two elements at a corner, or at the middle (-1); points in the world.
     ElementPairDistance distance(const Corners& a, const Corners& b, int corner) const;
 
-    /// Along one vector. Elements by their corners, of boxes these are null. Contract: |n| <= 1. @param loss_scale  1 but in tests that
-    /// show that a bound without its losses is found out.
-    RangeBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b,
-                     double loss_scale) const;
+    /// Along one vector. Elements by their corners, of boxes these are null. Contract: |n| <= 1.
+    RangeBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b) const;
     /// Of two elements, along one vector per corner.
-    RangeBound along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b, double loss_scale) const;
+    RangeBound along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b) const;
 
 private:
     using Radii = std::array<double, most_screws>;
@@ -105,8 +103,7 @@ private:
     View view_of(const ScrewedBody& body, const CoordinateBox& box) const;
     Radii radii(const View& view, const Piece& piece, const Corners* element) const;
     void add_losses(const View& view, const Radii& r, const std::vector<Vector3>& normals, const Coordinates& change, Losses& losses) const;
-    RangeBound bound(const std::array<double, 1 << most_coordinates>& values, double at_middle, const Losses& losses,
-                     double loss_scale) const;
+    RangeBound bound(const std::array<double, 1 << most_coordinates>& values, double at_middle, const Losses& losses) const;
 
     const ScrewedPair& pair_;
     Coordinates half_{};

@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/clearance/body_motions.hpp"
@@ -37,32 +36,22 @@ Witness range_witness(const ScrewedPair& pair, const RangeEncounter& nearest) {
     return w;
 }
 
-std::vector<int> bodies_named(const std::vector<PairRequest>& pairs) {
-    std::vector<int> bodies;
-    for (const PairRequest& pair : pairs) {
-        bodies.push_back(pair.a);
-        bodies.push_back(pair.b);
-    }
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    return bodies;
-}
-
 class RangeCertification {
 public:
     RangeCertification(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                       const RangeClearanceOptions& options)
+                       const ClearanceOptions& options, certificate::Certificate* certificate)
         : model_(model),
           ranges_(ranges),
           pairs_(pairs),
           options_(options),
+          certificate_(certificate),
           start_(as_assembled(model)),
           usable_(have_usable_numbers(model, start_, {{}})),
-          shapes_(body_shapes(model, bodies_named(pairs))) {}
+          shapes_(body_shapes(model, bodies_of(pairs, static_cast<int>(model.bodies.size())))) {}
 
-    std::vector<RangeClearance> run() {
-        if (options_.certificate != nullptr) start_record();
-        std::vector<RangeClearance> results(pairs_.size());
+    std::vector<PairClearance> run() {
+        if (certificate_ != nullptr) start_record();
+        std::vector<PairClearance> results(pairs_.size());
         std::mutex report;
         int done = 0;
         const auto count = static_cast<int>(pairs_.size());
@@ -73,10 +62,7 @@ public:
             const std::lock_guard<std::mutex> lock(report);
             options_.on_pair(++done, count);
         });
-        if (options_.certificate != nullptr) {  // of what could not be measured there is nothing to certify
-            auto& list = options_.certificate->pairs;
-            std::erase_if(list, [](const auto& pair) { return !std::isfinite(pair.upper) || pair.point_a.index < 0; });
-        }
+        if (certificate_ != nullptr) drop_unmeasured(*certificate_);
         return results;
     }
 
@@ -84,13 +70,13 @@ private:
     void start_record() {
         std::vector<const PieceTree*> trees;
         for (const BodyShape& shape : shapes_) trees.push_back(shape.tree.get());
-        *options_.certificate = start_certificate(model_, start_, trees, false, pairs_.size());
-        options_.certificate->linkage = ranges_.linkage;
+        *certificate_ = start_certificate(model_, start_, trees, false, pairs_.size());
+        certificate_->linkage = ranges_.linkage;
     }
 
-    RangeClearance certified(std::size_t i) const {
+    PairClearance certified(std::size_t i) const {
         const PairRequest& request = pairs_[i];
-        RangeClearance out{unmeasured({request.a, request.b, request.minimum}, ""), 0, {}, {}, 0};
+        PairClearance out = unmeasured({request.a, request.b, request.minimum}, "");
         const certificate::LinkedPair linked = linked_pair(ranges_.linkage, request.a, request.b);
         out.coordinates = linked.coordinates;
         for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[static_cast<std::size_t>(k)].start);
@@ -114,7 +100,7 @@ private:
 
     const kinematics::Pose& start(int body) const { return start_.poses.front()[static_cast<std::size_t>(body)]; }
 
-    void measure(const certificate::LinkedPair& linked, std::size_t index, RangeClearance& out) const {
+    void measure(const certificate::LinkedPair& linked, std::size_t index, PairClearance& out) const {
         const BodyShape &shape_a = shapes_[static_cast<std::size_t>(out.a)], &shape_b = shapes_[static_cast<std::size_t>(out.b)];
         const ScrewedPair pair = screwed_pair(*shape_a.tree, *shape_b.tree, ranges_.linkage, linked, start(out.a), start(out.b));
         const double size = pair.a.radius() + pair.b.radius();
@@ -124,7 +110,7 @@ private:
             return;
         }
         RangeSearchOptions search;
-        search.tolerance = options_.certificate != nullptr ? 0.75 * out.tolerance : out.tolerance;
+        search.tolerance = certificate_ != nullptr ? 0.75 * out.tolerance : out.tolerance;
         search.minimum = out.minimum;
         search.max_bounds = options_.max_bounds;
         search.should_stop = options_.should_stop;
@@ -138,13 +124,13 @@ private:
             for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
             out.witness = out.witnesses.front() = range_witness(pair, found.nearest);
         }
-        if (options_.certificate != nullptr) record(pair, found, search, out, options_.certificate->pairs[index]);
+        if (certificate_ != nullptr) record(pair, found, search, out, certificate_->pairs[index]);
         decide_solids(out);
-        if (options_.certificate != nullptr) options_.certificate->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
+        if (certificate_ != nullptr) certificate_->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
         judge(out, {out.a, out.b, out.minimum}, 0, false);
     }
 
-    void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, RangeClearance& out,
+    void record(const ScrewedPair& pair, const RangeSearchResult& found, const RangeSearchOptions& search, PairClearance& out,
                 certificate::PairCertificate& record) const {
         record.a = out.a;
         record.b = out.b;
@@ -171,7 +157,7 @@ private:
     }
 
     // Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box.
-    void decide_solids(RangeClearance& out) const {
+    void decide_solids(PairClearance& out) const {
         if (out.intersecting || !(out.lower > 0)) return;
         out.solids = certificate::solids_of(*shapes_[static_cast<std::size_t>(out.a)].solid,
                                             *shapes_[static_cast<std::size_t>(out.b)].solid, {start_, -1, 0, out.a, out.b}, out.lower);
@@ -182,7 +168,8 @@ private:
     const model::Model& model_;
     const JointRanges& ranges_;
     const std::vector<PairRequest>& pairs_;
-    const RangeClearanceOptions& options_;
+    const ClearanceOptions& options_;
+    certificate::Certificate* certificate_;  // null: none is wanted
     const stepper::Trajectory start_;
     const std::vector<char> usable_;  // [body]
     const std::vector<BodyShape> shapes_;
@@ -190,25 +177,19 @@ private:
 
 }  // namespace
 
-RangeClearanceOptions usual_options(const std::vector<PairRequest>& pairs) {
-    RangeClearanceOptions options;
-    options.tolerance = 1e-5;
-    options.coarse = 0.01;
-    for (const PairRequest& pair : pairs)
-        if (pair.minimum > 0) options.tolerance = std::min(options.tolerance, 0.01 * pair.minimum);
-    return options;
+std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                          const ClearanceOptions& options) {
+    return RangeCertification(model, ranges, pairs, options, nullptr).run();
 }
 
-std::vector<RangeClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                           const RangeClearanceOptions& options) {
-    const auto count = static_cast<int>(model.bodies.size());
-    for (const PairRequest& pair : pairs)
-        FETTLE_ASSERT(pair.a >= 0 && pair.a < count && pair.b >= 0 && pair.b < count && pair.a != pair.b,
-                      "a pair of two bodies of the model");
-    return RangeCertification(model, ranges, pairs, options).run();
+ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                           const ClearanceOptions& options) {
+    ProvenClearances proven;
+    proven.pairs = RangeCertification(model, ranges, pairs, options, &proven.certificate).run();
+    return proven;
 }
 
-kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const RangeClearance& pair, int body) {
+kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body) {
     const certificate::Linkage& linkage = ranges.linkage;
     const auto parent = [&](int of) { return linkage.bodies[static_cast<std::size_t>(of)].parent; };
     // What moves both of the pair stays as at the start, for all bodies.

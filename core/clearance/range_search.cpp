@@ -54,10 +54,10 @@ public:
                     .direction;
         }
         CellProof proof{0, {n}};
-        RangeBound best = box.along(n, a, b, element_a, element_b, 1);
+        RangeBound best = box.along(n, a, b, element_a, element_b);
         if (elements && pair_.count > 0 && !(best.lower >= wanted)) {
             std::vector<Vector3> normals = corner_normals(box, cell, *element_a, *element_b);
-            const RangeBound other = box.along(normals, *element_a, *element_b, 1);
+            const RangeBound other = box.along(normals, *element_a, *element_b);
             if (other.lower > best.lower) {
                 best = other;
                 proof.normals = std::move(normals);

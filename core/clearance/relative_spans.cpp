@@ -298,8 +298,7 @@ NodesAt nodes_at(const SpanGroup& group, const SpanMiddles* middles, const Turni
     }
 }
 
-// With the spans' rests and steps times `scale`.
-[[gnu::always_inline]] inline void fill(const RelativeChain& chain, double scale, SpanGroup& group) {
+[[gnu::always_inline]] inline void fill(const RelativeChain& chain, SpanGroup& group) {
     std::array<std::array<double, most_spans + 2>, RelativeChain::entries> nodes;
     for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
         const double* values = chain.entry(static_cast<int>(k));
@@ -323,28 +322,20 @@ NodesAt nodes_at(const SpanGroup& group, const SpanMiddles* middles, const Turni
         }
     }
     group.rest_turn[most_spans] = group.rest_shift[most_spans] = group.step_turn[most_spans] = group.step_shift[most_spans] = 0;
-    for (Lanes* lengths : {&group.rest_turn, &group.rest_shift, &group.step_turn, &group.step_shift}) *lengths *= scale * rounded_up;
+    for (Lanes* lengths : {&group.rest_turn, &group.rest_shift, &group.step_turn, &group.step_shift}) *lengths *= rounded_up;
 }
 
-// With what lies beside the chord times `scale`.
-void fill_middles(const RelativeChain& chain, double scale, const SpanGroup& group, SpanMiddles& out) {
+void fill_middles(const RelativeChain& chain, const SpanGroup& group, SpanMiddles& out) {
     for (std::size_t k = 0; k < RelativeChain::entries; ++k) {
-        const double *nodes = chain.entry(static_cast<int>(k)) + group.first_segment,
-                     *middles = chain.middle(static_cast<int>(k)) + group.first_segment;
         Lanes& lanes = k < 9 ? out.rotation[k] : out.offset[k - 9];
-        std::memcpy(lanes.data(), middles, sizeof lanes);
-        if (scale == 1) continue;
-        for (int j = 0; j < most_spans; ++j) {
-            const double chord = 0.5 * (nodes[j] + nodes[j + 1]);
-            lanes[j] = chord + scale * (lanes[j] - chord);
-        }
+        std::memcpy(lanes.data(), chain.middle(static_cast<int>(k)) + group.first_segment, sizeof lanes);
     }
     std::memcpy(out.rest_turn.data(), chain.parabola_rest_turns() + group.first_segment, sizeof(Lanes));
     std::memcpy(out.rest_shift.data(), chain.parabola_rest_shifts() + group.first_segment, sizeof(Lanes));
-    for (Lanes* lengths : {&out.rest_turn, &out.rest_shift}) *lengths *= scale * rounded_up;
+    for (Lanes* lengths : {&out.rest_turn, &out.rest_shift}) *lengths *= rounded_up;
 }
 
-FETTLE_WIDE void fill_wide(const RelativeChain& chain, double scale, SpanGroup& group) { fill(chain, scale, group); }
+FETTLE_WIDE void fill_wide(const RelativeChain& chain, SpanGroup& group) { fill(chain, group); }
 
 }  // namespace
 
@@ -361,8 +352,7 @@ Separation separation(const RelativePose& at, const Piece& a, const Piece& b) {
     return box_separation(at.rotation * a.center + at.offset - b.center, at.rotation * a.axes, a.half_extent, b.axes, b.half_extent);
 }
 
-RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b,
-                             double deviation_scale) {
+RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b) {
     const RelativeChain chain(segments, frame, radius_a, radius_b);
     radius_ = radius_a;
     const double norm = chain.base_norm();
@@ -386,10 +376,10 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
             group.length = length;
             group.segments = total;
             if (base::has_wide_instructions())
-                fill_wide(chain, deviation_scale, group);
+                fill_wide(chain, group);
             else
-                fill(chain, deviation_scale, group);
-            if (level == 0) fill_middles(chain, deviation_scale, group, middles_.emplace_back());
+                fill(chain, group);
+            if (level == 0) fill_middles(chain, group, middles_.emplace_back());
         }
         if (groups == 1) break;
         begin = static_cast<int>(groups_.size()) - groups;

@@ -107,8 +107,7 @@ struct SpanBounds {
 
 class RelativeSpans {
 public:
-    /// `deviation_scale`: of what leaves chords and of the steps, 1 but in tests that show that a bound without them is found out.
-    RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b, double deviation_scale = 1);
+    RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b);
 
     const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }
     /// The group that holds all segments.

@@ -24,7 +24,7 @@ namespace fettle::core::clearance {
 /// What is no number proves nothing: a bound that every comparison takes for the worst.
 inline double proven(double lower) { return std::isnan(lower) ? -std::numeric_limits<double>::infinity() : lower; }
 
-enum class EntryKind { segment, spans };  ///< segment_search.hpp, span_search.hpp
+enum class EntryKind { segment, spans };  ///< what SegmentSearch and SpanSearch have made
 
 /// Entries that come and go, at places that stay.
 template <class Entry>

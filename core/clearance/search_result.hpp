@@ -16,7 +16,6 @@ namespace fettle::core::clearance {
 struct SearchOptions {
     double tolerance = 1e-6;
     long max_evaluations = 50'000'000;
-    double deviation_scale = 1;                                 ///< less than 1 breaks the proof: for tests that must notice
     std::function<bool()> should_stop;                          ///< optional
     double enough = std::numeric_limits<double>::infinity();    ///< a lower bound of this much ends the search, whatever the gap [m]
     double refuted = -std::numeric_limits<double>::infinity();  ///< an upper bound below this ends the search, whatever the gap [m]

@@ -139,12 +139,11 @@ Coefficients corner_coefficients(const MovingPlane& plane, const Matrix3& a, con
     return c;
 }
 
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach,
-                           double deviation_scale) {
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach) {
     const auto& [a, b] = reach;
     const double rest_a = std::max(third_derivative(*segment.a, plane.n0, a), third_derivative(*segment.a, plane.n1, a));
     const double rest_b = std::max(third_derivative(*segment.b, plane.n0, b), third_derivative(*segment.b, plane.n1, b));
-    const double rest = deviation_scale * h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;
+    const double rest = h * h * h * (rest_a + rest_b) * (rounded_up / 36) + 2 * segment.slack;
     SegmentBound bound;
     bound.at_ends = least_of(c[0], c[3]);
     bound.lower = h > 0 ? least_value({c[0], c[1] - rest, c[2] - rest, c[3]}, bound.dip) : bound.at_ends;

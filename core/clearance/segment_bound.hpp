@@ -120,8 +120,7 @@ struct ReachPair {
     Reach a, b;
 };
 
-/// `h`: length of the interval. `deviation_scale` is 1 but in tests that show that a bound without the rest is found out.
-SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach,
-                           double deviation_scale = 1);
+/// `h`: length of the interval.
+SegmentBound segment_bound(const PairSegment& segment, double h, const MovingPlane& plane, const Coefficients& c, const ReachPair& reach);
 
 }  // namespace fettle::core::clearance

@@ -19,9 +19,12 @@ bool ends_or_escapes(char c) { return c == '"' || c == '\\'; }
 // Takes a file's text, piece by piece.
 class KeyFinder {
 public:
-    explicit KeyFinder(std::string_view key) : key_(key) {}
+    explicit KeyFinder(std::span<const std::string_view> keys) : keys_(keys) {
+        for (const std::string_view key : keys) longest_ = std::max(longest_, key.size());
+    }
 
-    bool found() const { return found_; }
+    /// Empty: none.
+    std::string_view found() const { return found_; }
     /// False: there is nothing more to look for.
     bool take(std::string_view text) {
         for (std::size_t i = 0; i < text.size(); ++i) {
@@ -49,9 +52,10 @@ private:
         } else if (c == '}' || c == ']') {
             --depth_;
         } else if (c == ':') {
-            found_ = depth_ == 1 && text_ == key_;
+            if (depth_ == 1)
+                if (const auto key = std::find(keys_.begin(), keys_.end(), text_); key != keys_.end()) found_ = *key;
         }
-        if (depth_ > 0) return !found_;
+        if (depth_ > 0) return found_.empty();
         // Before the object only white space and a byte order mark may stand, after it nothing is of interest.
         return !in_string_ && (c == ' ' || c == '\t' || c == '\n' || c == '\r' || static_cast<unsigned char>(c) >= 0x80);
     }
@@ -62,27 +66,31 @@ private:
             return;
         }
         escaped_ = !escaped_ && c == '\\';
-        if (depth_ == 1 && text_.size() <= key_.size()) text_ += c;
+        if (depth_ == 1 && text_.size() <= longest_) text_ += c;
     }
 
-    std::string_view key_;
-    std::string text_;  // of the last string, if at the top; cut off behind the key's length
+    std::span<const std::string_view> keys_;
+    std::size_t longest_ = 0;
+    std::string_view found_;
+    std::string text_;  // of the last string, if at the top; cut off behind the longest key's length
     long depth_ = 0;
-    bool in_string_ = false, escaped_ = false, found_ = false;
+    bool in_string_ = false, escaped_ = false;
 };
 
 }  // namespace
 
-bool has_top_level_key(const std::filesystem::path& path, std::string_view key) {
+std::string_view top_level_key(const std::filesystem::path& path, std::span<const std::string_view> keys) {
     std::ifstream file(path, std::ios::binary);
-    KeyFinder finder(key);
+    KeyFinder finder(keys);
     std::array<char, 65536> block;
     while (file) {
         file.read(block.data(), static_cast<std::streamsize>(block.size()));
         if (!finder.take({block.data(), static_cast<std::size_t>(file.gcount())})) return finder.found();
     }
-    return false;
+    return {};
 }
+
+bool has_top_level_key(const std::filesystem::path& path, std::string_view key) { return !top_level_key(path, {&key, 1}).empty(); }
 
 std::string misspelt_key(const JsonNode& object, const std::vector<std::string_view>& formats) {
     if (!object.is_object()) return {};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,8 +13,12 @@ namespace fettle::core::files {
 
 class JsonNode;
 
-/// Has the file's outermost object this key? Reads up to where it stands. False for what cannot be read or is no object; of a file that is
-/// not JSON the answer may be either, for its reader to say what is wrong. Contract: a key without characters that JSON escapes.
+/// Which of these keys the file's outermost object has first; empty: none. Reads up to where it stands. None of what cannot be read or is
+/// no object; of a file that is not JSON the answer may be either, for its reader to say what is wrong. Contract: keys without characters
+/// that JSON escapes.
+std::string_view top_level_key(const std::filesystem::path& path, std::span<const std::string_view> keys);
+
+/// Is there this one?
 bool has_top_level_key(const std::filesystem::path& path, std::string_view key);
 
 /// Of an object that has none of the keys that say a format: "; did you mean `fettle_scene`, where `fetle_scene` stands?". Empty: none of

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/answers/run_folder.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,13 @@ bool is_ours(const std::filesystem::path& file) {
     return text.find(mark_of(name)) != std::string::npos;
 }
 
+// As JSON is written.
+void without_infinities(Json& json) {
+    if (json.is_number_float() && !std::isfinite(json.get<double>())) json = nullptr;
+    if (json.is_structured())
+        for (Json& member : json) without_infinities(member);
+}
+
 }  // namespace
 
 Errors others_file(const std::filesystem::path& file) {
@@ -64,10 +72,15 @@ Errors others_files(const std::filesystem::path& folder, const std::vector<std::
     return errors;
 }
 
-Errors add_result(core::files::FilesTogether& files, const std::string& folder, Json answer, const std::string& command) {
+Json result_json(Json answer, const std::string& command) {
     answer["program"] = core::base::version();
     answer["command"] = command;
-    const std::string text = answer.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    without_infinities(answer);
+    return answer;
+}
+
+Errors add_result(core::files::FilesTogether& files, const std::string& folder, Json answer, const std::string& command) {
+    const std::string text = result_json(std::move(answer), command).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     return files.add(std::filesystem::path(folder) / "result.json", text);
 }
 
@@ -84,6 +97,13 @@ void replace_motion(core::files::FilesTogether& files, const std::string& folder
 Errors add_animation(core::files::FilesTogether& files, const std::string& folder, const core::model::Model& model,
                      const core::stepper::Trajectory& trajectory) {
     return files.add(std::filesystem::path(folder) / "motion.glb", exports::glb_bytes(exports::assembly_of(model, trajectory)));
+}
+
+Errors add_outcome(core::files::FilesTogether& files, const std::string& folder, const problem::DesignEvaluation& final, const Json& answer,
+                   const std::string& command) {
+    replace_motion(files, folder);
+    Errors errors = final.usable ? add_animation(files, folder, *final.model, final.simulation.trajectory) : Errors{};
+    return errors.empty() ? add_result(files, folder, answer, command) : errors;
 }
 
 }  // namespace fettle::design::answers

@@ -12,8 +12,12 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
+
+/// The answer as result.json has it: with `program` (the version) and `command` (that made it), and null for what is no number.
+nlohmann::ordered_json result_json(nlohmann::ordered_json answer, const std::string& command);
 
 /// FOLDER/result.json: `answer`, and `program` (the version) and `command` (that made it). The last file of the set.
 [[nodiscard]] Errors add_result(core::files::FilesTogether& files, const std::string& folder, nlohmann::ordered_json answer,
@@ -24,6 +28,10 @@ void replace_answer(core::files::FilesTogether& files, const std::string& folder
 
 /// The same of its motion, where another one takes its place: also motion.glb, trajectory.start.json and the tables of the steps.
 void replace_motion(core::files::FilesTogether& files, const std::string& folder);
+
+/// What an optimisation leaves beside its design and trajectory: FOLDER/result.json, and of a design that could be simulated motion.glb.
+[[nodiscard]] Errors add_outcome(core::files::FilesTogether& files, const std::string& folder, const problem::DesignEvaluation& final,
+                                 const nlohmann::ordered_json& answer, const std::string& command);
 
 /// FOLDER/motion.glb, the animated parts.
 [[nodiscard]] Errors add_animation(core::files::FilesTogether& files, const std::string& folder, const core::model::Model& model,

@@ -3,10 +3,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <cstdarg>
-#include <cstdio>
-
 #include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::cli {
@@ -28,19 +24,6 @@ long peak_memory_bytes() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
     return usage.ru_maxrss * 1024L;
-}
-
-std::string formatted(const char* format, ...) {
-    va_list arguments, again;
-    va_start(arguments, format);
-    va_copy(again, arguments);
-    const int length = std::vsnprintf(nullptr, 0, format, arguments);
-    va_end(arguments);
-    std::string text(static_cast<size_t>(std::max(0, length)) + 1, '\0');
-    std::vsnprintf(text.data(), text.size(), format, again);
-    va_end(again);
-    text.pop_back();
-    return text;
 }
 
 }  // namespace fettle::design::cli

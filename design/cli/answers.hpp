@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/cli/console.hpp"
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/optimisers/problem.hpp"
@@ -16,7 +17,6 @@ std::string relations_text(const description::Design& design, const optimisers::
 /// Largest resident memory of this process so far [bytes].
 long peak_memory_bytes();
 
-/// printf into a string.
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+using core::base::formatted;
 
 }  // namespace fettle::design::cli

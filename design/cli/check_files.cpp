@@ -14,7 +14,7 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
-#include "fettle/design/cli/output_folder.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 
 namespace fettle::design::cli {
 
@@ -223,7 +223,7 @@ Errors prepare_check_files(CheckFiles& files) {
     Errors errors;
     for (std::string* file : {&files.junit, &files.sarif, &files.markdown}) {
         if (file->empty()) continue;
-        if (const Errors found = try_output_file(*file); !found.empty()) {
+        if (const Errors found = answers::try_output_file(*file); !found.empty()) {
             errors.insert(errors.end(), found.begin(), found.end());
             file->clear();
         } else if (file == &files.markdown && is_job_summary(*file)) {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/report_made.hpp"
 
 namespace fettle::design::cli {
@@ -37,7 +37,7 @@ Errors write_folder(const ClearanceFolder& folder, report::Motion motion, const 
     if (std::filesystem::equivalent(folder.judged, file, ignored)) {
         answers::replace_answer(files, folder.out);
     } else {
-        const std::string kept = name_for_longer_run(file, motion.trajectory.steps.size());
+        const std::string kept = answers::name_for_longer_run(file, motion.trajectory.steps.size());
         if (!kept.empty()) {
             console.narrate("warning: a longer run was there, which is kept as " + kept);
             files.keep_as(file, kept);
@@ -50,7 +50,7 @@ Errors write_folder(const ClearanceFolder& folder, report::Motion motion, const 
     Errors errors = answers::add_result(files, folder.out, answer, common.command);
     if (errors.empty()) errors = files.take_names();
     if (!errors.empty()) return errors;
-    if (!folder.no_report) leave_report(folder.out, common, console, answer, told, std::move(motion));
+    if (!folder.no_report) leave_report(folder.out, common, console, answer, told, {.motion = std::move(motion)});
     return {};
 }
 

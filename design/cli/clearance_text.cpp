@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The report of `fettle clearance` for people: a table, explanations, and the margin curves as CSV.
+#include "fettle/design/cli/clearance_text.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -7,21 +8,30 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <numbers>
 #include <span>
 
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/clearance_report.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
+using clearance::ClearanceReport;
+using clearance::Finding;
+using clearance::ReportedPair;
+using clearance::Subject;
+using core::base::joined;
+using core::base::RoundedLengths;
+using core::base::Towards;
 using core::clearance::PairClearance;
 using core::clearance::Witness;
+
+constexpr double degrees = 180 / std::numbers::pi;
 
 // Numbers of a table in one unit: enough decimals to show the tolerance; three digits of what is smaller than that.
 class Lengths {
@@ -46,6 +56,16 @@ private:
     double metres_;
     int decimals_ = 0;
 };
+
+// "left_shoulder -90 deg, lift 3 mm": the joints' positions where a pair is worst.
+std::string position_text(const core::clearance::JointRanges& ranges, const PairClearance& pair, const Lengths& lengths) {
+    std::vector<std::string> parts;
+    clearance::for_joints(ranges, pair, [&](const auto& joint, double value, const auto&) {
+        parts.push_back(joint.joint +
+                        (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
+    });
+    return parts.empty() ? "nothing moves one against the other" : joined(parts);
+}
 
 std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" + pair.spec.b.name; }
 
@@ -76,14 +96,19 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
     const auto bound = [&](const ReportedPair& pair, bool is_lower) {
         if (!has_distance(pair)) return std::string("-");
         if (!pair.least.is_bounded) return std::string("not proven");
+        if (subject.ranges && !is_lower && !std::isfinite(pair.least.upper)) return std::string("-");
         return is_lower ? lengths.down(pair.least.lower) : lengths.up(pair.least.upper);
     };
     size_t width = 4;
     for (const ReportedPair& pair : report.pairs)
         if (!pair.least.is_far) width = std::max(width, pair_name(pair).size());
     const int w = static_cast<int>(width);
-    std::string text = formatted("%-*s %12s %14s %14s  %-16s%s   (lengths in %s, times in s)\n", w, "pair", "required", "at least",
-                                 "at most", "status", subject.motion() ? "  when" : "", lengths.unit().c_str());
+    std::string text =
+        formatted("%-*s %12s %14s %14s  %-16s%s   (lengths in %s%s)\n", w, "pair", "required", "at least", "at most", "status",
+                  subject.ranges     ? "  worst at"
+                  : subject.motion() ? "  when"
+                                     : "",
+                  lengths.unit().c_str(), subject.ranges ? "" : ", times in s");
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
         if (least.is_far) continue;
@@ -93,7 +118,8 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), bound(pair, true).c_str(),
                           bound(pair, false).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
-        if (pair.finding == Finding::clash) text += "  " + overlapped(pair, lengths);
+        if (subject.ranges) text += "  " + position_text(*subject.ranges, least, lengths);
+        if (pair.finding == Finding::clash && !subject.ranges) text += "  " + overlapped(pair, lengths);
         if (least.touch) text += (pair.finding == Finding::touching ? "  " : "  touching ") + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
         text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
@@ -154,9 +180,12 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
     std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
     text += (!has_distance(pair) ? std::string("   the parts ") + (pair.finding == Finding::clash ? "share material" : "touch")
-             : least.is_bounded  ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
-                                      lengths.unit() + " (the bounds are " + lengths.rough(least.upper - least.lower) + " apart)"
+             : !std::isfinite(least.upper) && least.is_bounded ? std::string("   nothing is measured")
+             : least.is_bounded ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
+                                      lengths.unit() + (subject.ranges ? " over every combination" : "") + " (the bounds are " +
+                                      lengths.rough(least.upper - least.lower) + " apart)"
                                 : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
+            (subject.ranges ? "; worst at " + position_text(*subject.ranges, least, lengths) : "") +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     if (const double charge = joint_charge(subject, least.a, least.b); charge > 0)
@@ -166,7 +195,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     if (least.touch)
         text += "   they touch " + touched(pair, lengths) + ", and are nowhere deeper in each other than " +
                 lengths.up(least.touch->depth, 3) + " " + lengths.unit() + "\n";
-    if (least.solids == core::clearance::Solids::overlap && !least.intersecting) return text;
+    if ((least.solids == core::clearance::Solids::overlap && !least.intersecting) || !std::isfinite(least.upper)) return text;
     if (w.step >= 0) {
         text += formatted("   %s at %.9g s, in step %d", least.is_clash() ? "first" : "closest", w.time, w.step + 1);
         const int segments = core::stepper::segment_count(subject.trajectory, w.step);
@@ -175,7 +204,8 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     }
     text += "   " + feature(w.kind_a, w.primitive_a) + " of " + a + ", at " + lengths.point(w.point_a) + "\n";
     text += "   " + feature(w.kind_b, w.primitive_b) + " of " + b + ", at " + lengths.point(w.point_b) + "\n";
-    text += pose_line(a, file_pose(subject, w, least.a), lengths) + pose_line(b, file_pose(subject, w, least.b), lengths);
+    text += pose_line(a, pose_where_nearest(subject, least, least.a), lengths) +
+            pose_line(b, pose_where_nearest(subject, least, least.b), lengths);
     if (subject.motion())
         text += "   least distance at the ends of the steps, which is what sampling sees: " + lengths.plain(least.sampled) + " " +
                 lengths.unit() + "\n";
@@ -222,11 +252,55 @@ std::string shortest(double x) {
     return {buffer, code == std::errc() ? end : buffer};
 }
 
+std::string margins_csv(const ClearanceReport& report, const Subject& subject, const RoundedLengths& lengths) {
+    const std::string& unit = lengths.unit();
+    std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
+    for (const ReportedPair& pair : report.pairs) {
+        for (const PairClearance& member : pair.members) {
+            const std::string names = core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
+                                      core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
+            for (const core::clearance::MarginInterval& m : member.margin) {
+                const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
+                text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +
+                        shortest(core::stepper::time_at(subject.trajectory, m.step, m.segment, 0)) + "," + shortest(end) + "," +
+                        lengths.shortest(m.lower, Towards::down) + "," + lengths.shortest(m.upper, Towards::up) + "\n";
+            }
+        }
+    }
+    return text;
+}
+
+std::string positions_csv(const ClearanceReport& report, const core::clearance::JointRanges& ranges, const RoundedLengths& lengths) {
+    const std::string& unit = lengths.unit();
+    std::vector<std::string> joints;
+    std::string text = "a,b,required[" + unit + "],lower[" + unit + "],upper[" + unit + "],finding";
+    for (const auto& coordinate : ranges.linkage.coordinates) {
+        for (const auto& joint : coordinate.joints) {
+            joints.push_back(joint.joint);
+            text += "," + core::base::csv_cell(joint.joint + (joint.is_angle ? "[deg]" : "[" + unit + "]"));
+        }
+    }
+    text += "\n";
+    for (const ReportedPair& pair : report.pairs) {
+        const PairClearance& least = pair.least;
+        text += core::base::csv_cell(pair.spec.a.name) + "," + core::base::csv_cell(pair.spec.b.name) + "," +
+                (pair.spec.required_by.empty() ? "" : formatted("%.9g", least.minimum / lengths.metres())) + "," +
+                lengths.shortest(least.lower, Towards::down) + "," +
+                (std::isfinite(least.upper) ? lengths.shortest(least.upper, Towards::up) : "") + "," + to_string(pair.finding);
+        std::map<std::string, std::string> places;
+        clearance::for_joints(ranges, least, [&](const auto& joint, double value, const auto&) {
+            places[joint.joint] = formatted("%.9g", joint.is_angle ? value * degrees : value / lengths.metres());
+        });
+        for (const std::string& joint : joints) text += "," + places[joint];
+        text += "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
-std::string report_text(const ClearanceReport& report, const Subject& subject, const std::string& unit, int explain,
-                        const Console& console) {
-    const Lengths lengths(unit, report.tolerance);
+std::string report_text(const ClearanceReport& report, const Subject& subject, int explain, const Console& console) {
+    const Lengths lengths(answers::unit_name(subject.model.length_unit), report.tolerance);
     std::string text = table(report, subject, lengths, console);
     int told = 0;
     for (const ReportedPair& pair : report.pairs) {
@@ -250,20 +324,22 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, c
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
     if (!report.left_out.empty())
-        text += "not judged, because the simulation lets them pass through each other (no clash was found): " + joined(report.left_out) +
-                "; name them with --pairs\n";
+        text += (subject.ranges ? "not judged, as these may not collide: "
+                                : "not judged, because the simulation lets them pass through each other (no clash was found): ") +
+                joined(report.left_out) + "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     if (!report.uncovered.empty())
         text += "not looked at: " + core::base::counted(report.uncovered.size(), "pair") +
                 " of bodies: " + joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
                 (report.uncovered.size() > 6 ? ", ...\n" : "\n");
-    for (const std::string& note : subject.notes) text += "note: " + note + "\n";
+    for (const std::string& note : report.notes) text += "note: " + note + "\n";
     if (report.baseline) text += report.baseline->text();
     if (!report.message.empty()) text += report.message + "\n";
     return text + "overall: " + core::clearance::to_string(report.status) + "\n";
 }
 
-std::vector<Check> report_checks(const ClearanceReport& report, const Subject& subject, const std::string& unit, const std::string& file) {
+std::vector<Check> report_checks(const ClearanceReport& report, const Subject& subject, const std::string& file) {
+    const std::string unit = answers::unit_name(subject.model.length_unit);
     const Lengths lengths(unit, report.tolerance);
     std::vector<Check> checks;
     for (const ReportedPair& pair : report.pairs) {
@@ -274,6 +350,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
         if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
             check.message += "; undecided: " + least.reason;
+        if (subject.ranges) check.message += "; worst at " + position_text(*subject.ranges, least, lengths);
         if (subject.motion() && !least.is_far && least.is_bounded)
             check.message +=
                 least.is_clash() ? formatted(", from %.6g s on", least.clash_time) : formatted(", at %.6g s", least.witness.time);
@@ -286,22 +363,9 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
     return checks;
 }
 
-std::string margins_csv(const ClearanceReport& report, const Subject& subject, const std::string& unit) {
-    const RoundedLengths lengths(unit);
-    std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
-    for (const ReportedPair& pair : report.pairs) {
-        for (const PairClearance& member : pair.members) {
-            const std::string names = core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
-                                      core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
-            for (const core::clearance::MarginInterval& m : member.margin) {
-                const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
-                text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +
-                        shortest(core::stepper::time_at(subject.trajectory, m.step, m.segment, 0)) + "," + shortest(end) + "," +
-                        lengths.shortest(m.lower, Towards::down) + "," + lengths.shortest(m.upper, Towards::up) + "\n";
-            }
-        }
-    }
-    return text;
+std::string report_csv(const ClearanceReport& report, const Subject& subject) {
+    const RoundedLengths lengths(answers::unit_name(subject.model.length_unit));
+    return subject.ranges ? positions_csv(report, *subject.ranges, lengths) : margins_csv(report, subject, lengths);
 }
 
 }  // namespace fettle::design::cli

@@ -6,13 +6,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/output_folder.hpp"
+#include "fettle/design/clearance/pairs.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/output_folder.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/picture.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
@@ -22,6 +23,8 @@ namespace fettle::design::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::base::RoundedLengths;
+using core::base::Towards;
 using core::clearance::PairClearance;
 using core::kinematics::Pose;
 using core::stepper::Trajectory;
@@ -66,7 +69,7 @@ std::vector<core::clearance::PairRequest> judged_pairs(const core::model::Model&
     const int count = static_cast<int>(model.bodies.size());
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
-            if (judged_by_default(model, a, b)) requests.push_back({a, b});
+            if (clearance::judged_by_default(model, a, b)) requests.push_back({a, b});
     return requests;
 }
 
@@ -126,7 +129,7 @@ Errors time_faults(const DrawArguments& options, const Trajectory& path) {
     return {{ErrorCode::out_of_range, "--time", known + formatted("; found %.6g s", *options.time)}};
 }
 
-Instant instant_of(const DrawArguments& options, const Subject& subject) {
+Instant instant_of(const DrawArguments& options, const clearance::Subject& subject) {
     const Trajectory& path = subject.trajectory;
     const bool motion = !path.steps.empty();
     Instant out;
@@ -165,7 +168,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     if (!png && !svg) return console.input_errors({{ErrorCode::unsupported, "--out", "a picture is .png or .svg, found " + options.out}});
     const auto size = picture_size(options.size);
     if (!size) return console.input_errors(size.errors());
-    if (const Errors errors = try_output_file(options.out); !errors.empty()) return console.input_errors(errors);
+    if (const Errors errors = answers::try_output_file(options.out); !errors.empty()) return console.input_errors(errors);
     const Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
     const auto view = exports::projection_view(options.view, shown->assembly.up, "--view");

@@ -12,10 +12,10 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/output_folder.hpp"
+#include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/mesh_subject.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
@@ -121,7 +121,7 @@ Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::
     for (const char* table : {"steps.csv", "contacts.csv", "drives.csv", "joints.csv"}) {
         const fs::path from = fs::path(shown.file).parent_path() / table;
         std::error_code code;
-        const bool own = shown.subject.source == SubjectSource::trajectory && fs::exists(from, code);
+        const bool own = shown.subject.source == clearance::SubjectSource::trajectory && fs::exists(from, code);
         if (!errors.empty() || !own || fs::equivalent(from.parent_path(), plan.folder, code)) continue;
         const Result<std::string> text = core::files::read_file(from);
         errors = text ? sink(table, *text) : text.errors();
@@ -137,7 +137,7 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
         certificate->path_hash != core::records::path_hash(shown.subject.trajectory))
         return {{ErrorCode::inconsistent, shown.certificate, "is not about the bodies and the path of " + shown.file}};
     for (const auto& [file, rounding] : files) {
-        auto named = named_files({file}, shown.certificate);
+        auto named = clearance::named_files({file}, shown.certificate);
         if (!named) return named.errors();
         named->front().rounding = rounding;
         std::erase_if(certificate->exports, [&](const auto& exported) { return exported.file == named->front().file; });
@@ -148,9 +148,11 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
 
 /// Of a scene alone: trajectories have no joints.
 int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
+        return console.input_errors(errors);
     const Result<core::scene::Scene> scene =
         core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
-    if (!scene) return console.input_errors(or_other_kind(options.shown.path, "scene", scene.errors()));
+    if (!scene) return console.input_errors(scene.errors());
     core::model::BuildOptions build;
     build.check_start = false;
     const Result<core::model::Model> model = core::model::build_model(*scene, build);
@@ -186,7 +188,7 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
     if (!shown) return console.input_errors(shown.errors());
     const Result<Plan> plan = plan_of(options, shown->stem);
     if (!plan) return console.input_errors(plan.errors());
-    Errors unwritable = try_output_folder(plan->folder);
+    Errors unwritable = answers::try_output_folder(plan->folder);
     for (Error& error : unwritable) error.where = options.to;
     if (!unwritable.empty()) return console.input_errors(unwritable);
     exports::ExportOptions how;

@@ -1,49 +1,32 @@
 // SPDX-License-Identifier: MIT
-/// The files that commands take: which kind a file is, and a model from a scene or a design.
+/// The files that commands take, read as the command line says (reading/model_file.hpp).
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
 #include "fettle/design/cli/session.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/model_file.hpp"
 
 namespace fettle::design::cli {
 
 /// As the user allows.
 reading::Programs programs_of(const CommonOptions& common);
 
-enum class FileKind { scene, design, trajectory, mesh, certificate };
-/// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
-FileKind file_kind(const std::string& path);
+/// What all commands have in common for reading files.
+reading::InputOptions input_options(const CommonOptions& common, bool check_start = true);
 
-/// Why `path` was not read as a `wanted` ("scene"): that it is a trajectory or a certificate, if it is one; else `errors`.
-Errors or_other_kind(const std::string& path, const std::string& wanted, const Errors& errors);
+/// While the file is read other threads are made, and memory for what it becomes.
+void begin_to_read(const std::string& path);
 
-/// A scene or a design, opened once: a model to simulate, and for how many steps (negative: the model's own end time).
-struct LoadedModel {
-    FileKind kind = FileKind::scene;
-    core::model::Model model;
-    std::string scene_path;
-    int steps = -1;
-    std::vector<std::string> warnings;                      ///< of the files, the meshes and the start
-    std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
-};
-/// A design, for commands that take nothing else. Errors: a file that is something else by its name and first character is told with what
-/// is read instead; with --strict also faults of its meshes, and what is doubted of its scene.
-Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common);
+using reading::file_kind;
+using reading::FileKind;
+using reading::LoadedModel;
 
-/// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
-/// what is read instead; with --strict its warnings too.
-/// @param check_start  false: a scene whose bodies intersect at the start is taken all the same.
+/// reading/model_file.hpp, as the command line says.
 Result<LoadedModel> load_model(const std::string& path, const CommonOptions& common, bool check_start = true);
-
-/// What --strict makes of warnings.
-Errors as_errors(const std::vector<std::string>& warnings, const std::string& file);
+Result<reading::DesignFile> open_design(const std::string& path, const CommonOptions& common);
 
 /// On stderr, and as remarks among the checks, about `file` if there is one.
 void tell_warnings(Console& console, const std::vector<std::string>& warnings, const std::string& file = {});

@@ -15,9 +15,9 @@
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/named_files.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/program_memory.hpp"
 #include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/session.hpp"
@@ -177,7 +177,7 @@ Errors prepare(CommonOptions& common) {
     keep_apart(common.check_files, errors);
     const auto add = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
     add(prepare_check_files(common.check_files));
-    if (!common.log.empty() && errors.empty()) add(try_output_file(common.log));
+    if (!common.log.empty() && errors.empty()) add(fettle::design::answers::try_output_file(common.log));
     return errors;
 }
 

@@ -5,11 +5,11 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/answers/optimise_json.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/report_made.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
@@ -66,10 +66,7 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
     folder.add_files = [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
         json = answers::outcome_json(run.problem, outcome, run.facts);
         if (!rows.empty()) json["starts"] = starts_json(rows);
-        answers::replace_motion(files, folder.directory);
-        const core::stepper::Trajectory& trajectory = outcome.final.simulation.trajectory;
-        Errors errors = outcome.final.usable ? answers::add_animation(files, folder.directory, *outcome.final.model, trajectory) : Errors{};
-        return errors.empty() ? answers::add_result(files, folder.directory, json, run.common.command) : errors;
+        return answers::add_outcome(files, folder.directory, outcome.final, json, run.common.command);
     };
     studies::OptimiseOptions optimise;
     optimise.optimiser = run.options.optimiser;
@@ -91,7 +88,8 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
         told = "best of " + std::to_string(rows.size()) + " starts, seed " + std::to_string(run.facts.seed) + ":\n" + told +
                "all starts:\n" + starts_text(rows);
     }
-    if (!run.options.no_report && done->unwritten.empty()) leave_report(folder.directory, run.common, console, json, told);
+    if (!run.options.no_report && done->unwritten.empty())
+        leave_report(folder.directory, run.common, console, json, told, report::at_hand(run.file, run.problem, outcome));
     if (outcome.report.status == OptimiserStatus::interrupted)
         told += "go on where it stopped: " + resume_command(run.options, folder.directory) + "\n";
     for (Check& check : outcome_checks(run.problem.design(), outcome, run.options.path)) console.found(std::move(check));
@@ -159,7 +157,7 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     if (!problem) return console.input_errors(problem.errors());
     tell_warnings(console, problem->warnings());
     const std::string out = output_folder(options, *file);
-    const Errors errors = try_run_folder(out, {"design.final.json"});
+    const Errors errors = answers::try_run_folder(out, {"design.final.json"});
     if (!errors.empty()) return console.input_errors(errors);
     const Run run{options, *file, *problem, common, console, {out, 0, options.repair}};
     if (options.starts > 0) return run_all(run);

@@ -13,9 +13,9 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/clearance/certificate_files.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/mesh_subject.hpp"
 
 namespace fettle::design::cli {
 
@@ -69,7 +69,7 @@ public:
         if (!is_file(path)) return;
         const FileKind kind = file_kind(path);
         if (kind == FileKind::mesh) return;
-        if (kind == FileKind::certificate) add(path, certificate_trajectory(path));
+        if (kind == FileKind::certificate) add(path, clearance::certificate_trajectory(path));
         const auto text = core::files::read_file(path);
         if (!text) return;
         if (path.ends_with(".urdf")) return follow_urdf(path, *text);
@@ -108,7 +108,7 @@ private:
 
     void follow_folder(const std::string& folder) {
         std::error_code ignored;
-        if (are_meshes({folder})) {
+        if (clearance::are_meshes({folder})) {
             for (const auto& entry : fs::directory_iterator(folder, ignored))
                 if (core::mesh_files::has_mesh_extension(entry.path().string())) add(folder, entry.path().string());
         }

@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/output_folder.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
@@ -29,7 +29,7 @@ int run_report(const ReportArguments& arguments, const CommonOptions& common, Co
     options.should_stop = interrupted;
     options.tell = [&](const std::string& notice) { tell_warnings(console, {notice}, arguments.source); };
     if (!arguments.out.empty()) {
-        const Errors errors = try_output_file(arguments.out);
+        const Errors errors = answers::try_output_file(arguments.out);
         if (!errors.empty()) return console.input_errors(errors);
     }
     const Result<std::string> made = std::filesystem::is_regular_file(arguments.source, ignored)

@@ -3,20 +3,21 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/report/report_folder.hpp"
 
 namespace fettle::design::cli {
 
 using Json = nlohmann::ordered_json;
 
 void leave_report(const std::string& folder, const CommonOptions& common, Console& console, Json& answer, std::string& told,
-                  std::optional<report::Motion> motion) {
+                  report::AtHand at_hand) {
     console.narrate("making the report");
     report::ReportOptions options;
     options.mesh_dirs = common.mesh_dirs;
     options.programs = programs_of(common);
-    options.motion = std::move(motion);
+    at_hand.answer = answers::result_json(answer, common.command);
+    options.at_hand = std::move(at_hand);
     options.should_stop = interrupted;
     const Result<std::string> made = report::write_report(folder, std::move(options));
     if (!made) {

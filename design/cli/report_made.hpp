@@ -3,19 +3,19 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/design/cli/session.hpp"
-#include "fettle/design/report/report_data.hpp"
+#include "fettle/design/report/report_folder.hpp"
 
 namespace fettle::design::cli {
 
 /// Makes FOLDER/report.html, tells of it in `answer` (`report`) and at the end of `told`. One that cannot be made is told there with the
 /// reason (`report` null, `report_fault`): the results are there. Once a stop has been asked for, what takes computing is left out.
-/// @param motion  of the folder's trajectory, with its scene's path, if at hand.
+/// @param answer   that is in the folder
+/// @param at_hand  whatever else is
 void leave_report(const std::string& folder, const CommonOptions& common, Console& console, nlohmann::ordered_json& answer,
-                  std::string& told, std::optional<report::Motion> motion = std::nullopt);
+                  std::string& told, report::AtHand at_hand);
 
 }  // namespace fettle::design::cli

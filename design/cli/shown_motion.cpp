@@ -5,9 +5,9 @@
 
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
-#include "fettle/design/cli/certificate_files.hpp"
+#include "fettle/design/clearance/certificate_files.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/mesh_subject.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::cli {
@@ -22,10 +22,10 @@ const std::vector<std::string> up_names{"x", "-x", "y", "-y", "z", "-z"};
 Result<std::string> file_to_read(const ShownOptions& options, std::string& certificate) {
     const std::string& path = options.path;
     std::error_code code;
-    if (const auto trajectory = trajectory_in(path)) return *trajectory;
+    if (const auto trajectory = clearance::trajectory_in(path)) return *trajectory;
     if (!fs::is_directory(path, code) && file_kind(path) == FileKind::certificate) {
         certificate = path;
-        return options.trajectory.empty() ? certificate_trajectory(path) : options.trajectory;
+        return options.trajectory.empty() ? clearance::certificate_trajectory(path) : options.trajectory;
     }
     if (!options.trajectory.empty()) return Error{ErrorCode::inconsistent, "--trajectory", "is of a certificate, and " + path + " is none"};
     return path;
@@ -44,9 +44,9 @@ std::string stem_of(const std::string& path) {
 }
 
 /// A stored trajectory has no gravity; its scene has, if it is still there.
-void take_gravity(const CommonOptions& common, Subject& subject) {
+void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
     std::error_code code;
-    if (subject.source != SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
+    if (subject.source != clearance::SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
     if (file_kind(subject.scene_path) != FileKind::scene) return;
     const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (scene) subject.model.gravity = scene->gravity;
@@ -70,10 +70,14 @@ Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions&
     if (!file) return file.errors();
     shown.file = *file;
     shown.stem = stem_of(options.path);
-    SubjectOptions subject_options;
+    clearance::SubjectOptions subject_options;
     subject_options.path = *file;
     subject_options.unit = options.unit;
-    Result<Subject> subject = load_subject(subject_options, common, console);
+    clearance::SubjectWatch watch;
+    watch.on_warnings = [&](const std::vector<std::string>& warnings) { tell_warnings(console, warnings, *file); };
+    watch.should_stop = interrupted;
+    begin_to_read(*file);
+    Result<clearance::Subject> subject = clearance::read_subject(subject_options, input_options(common), watch);
     if (!subject) return subject.errors();
     shown.subject = std::move(*subject);
     take_gravity(common, shown.subject);

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/design/cli/clearance_subject.hpp"
+#include "fettle/design/clearance/read_subject.hpp"
+#include "fettle/design/cli/session.hpp"
 #include "fettle/design/exports/assembly.hpp"
 
 namespace fettle::design::cli {
 
 struct ShownMotion {
-    Subject subject;
+    clearance::Subject subject;
     exports::Assembly assembly;  ///< of the subject
     std::string file;            ///< the one that was read: of a folder its trajectory
     std::string stem;            ///< a name for files made from it: "slider_crank"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
@@ -17,21 +18,22 @@
 #include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/growing_tables.hpp"
+#include "fettle/design/answers/growing_trajectory.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
+#include "fettle/design/clearance/path_proof.hpp"
 #include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/growing_tables.hpp"
-#include "fettle/design/cli/growing_trajectory.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/output_folder.hpp"
-#include "fettle/design/cli/path_proof.hpp"
 #include "fettle/design/cli/report_made.hpp"
-#include "fettle/design/cli/rounded_lengths.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using core::base::RoundedLengths;
+using core::base::Towards;
 using core::stepper::Simulation;
 using core::stepper::SimulationStatus;
 
@@ -133,8 +135,8 @@ struct Writing {
     Writing(const SimulateArguments& options, const LoadedModel& loaded)
         : trajectory(options.out, loaded.model, loaded.scene_path, options.earlier), tables(options.out, loaded.model) {}
 
-    GrowingTrajectory trajectory;
-    GrowingTables tables;
+    answers::GrowingTrajectory trajectory;
+    answers::GrowingTables tables;
 };
 
 struct FinishedRun {
@@ -142,7 +144,7 @@ struct FinishedRun {
     Simulation& simulation;           // nodes may be added to its path
     const Simulation& earlier;        // that it went on with
     std::optional<Writing>& writing;  // with --out
-    PathProver& prover;               // has followed the motion, unless nodes are to be added to it
+    clearance::PathProver& prover;    // has followed the motion, unless nodes are to be added to it
 };
 
 // All of it beside what the folder holds of an earlier run, which may be the one that this run goes on with.
@@ -150,7 +152,7 @@ Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core
     const std::filesystem::path file = std::filesystem::path(options.out) / "trajectory.json";
     const Simulation& simulation = run.simulation;
     const core::model::Model& model = run.loaded.model;
-    const std::string kept = name_for_longer_run(file, simulation.trajectory.steps.size());
+    const std::string kept = answers::name_for_longer_run(file, simulation.trajectory.steps.size());
     if (!kept.empty()) {
         console.narrate("warning: a longer run was there, which is kept as " + kept);
         files.keep_as(file, kept);
@@ -178,8 +180,8 @@ Result<Simulation> read_earlier(const SimulateArguments& options, const core::mo
 }
 
 Errors try_outputs(const SimulateArguments& options) {
-    Errors errors = options.out.empty() ? Errors{} : try_run_folder(options.out, {running_file});
-    if (errors.empty() && !options.poses.empty()) errors = try_output_file(options.poses);
+    Errors errors = options.out.empty() ? Errors{} : answers::try_run_folder(options.out, {answers::running_file});
+    if (errors.empty() && !options.poses.empty()) errors = answers::try_output_file(options.poses);
     return errors;
 }
 
@@ -189,21 +191,21 @@ struct Outcome {
     int exit_code = exit_undecided;
 };
 
-Outcome outcome_of(const core::stepper::SimulationReport& report, const PathProof& proof) {
+Outcome outcome_of(const core::stepper::SimulationReport& report, const clearance::PathProof& proof) {
     if (report.status != SimulationStatus::ok) return {core::stepper::to_string(report.status), report.message, exit_undecided};
     switch (proof.state) {
-        case ProofState::proven:
-        case ProofState::nothing:
+        case clearance::ProofState::proven:
+        case clearance::ProofState::nothing:
             return {"ok", "", exit_done};
-        case ProofState::stopped:
+        case clearance::ProofState::stopped:
             return {"interrupted", "every step was simulated; " + proof.reason, exit_undecided};
-        case ProofState::not_certified:
+        case clearance::ProofState::not_certified:
             break;
     }
     return {"not_certified", "every step was solved, but the path is not proven: " + proof.reason, exit_undecided};
 }
 
-std::string answer_text(const Outcome& outcome, const Simulation& simulation, const PathProof& proof, const std::string& out,
+std::string answer_text(const Outcome& outcome, const Simulation& simulation, const clearance::PathProof& proof, const std::string& out,
                         double length_unit, const Console& console) {
     const RoundedLengths lengths(answers::unit_name(length_unit));
     const auto proven = [&](double distance) {
@@ -214,13 +216,13 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
         core::base::counted(simulation.trajectory.steps.size(), "step") +
         formatted(", %d iterations of the solver, %.3g s\n", simulation.report.newton_iterations, simulation.report.wall_seconds);
     if (!outcome.message.empty()) text += outcome.message + "\n";
-    if (proof.state == ProofState::nothing) {
+    if (proof.state == clearance::ProofState::nothing) {
         text += "smallest distance: none, no two bodies may collide\n";
-    } else if (proof.state == ProofState::proven) {
+    } else if (proof.state == clearance::ProofState::proven) {
         text += "smallest distance of two bodies over the path: " + proven(*proof.lower);
     } else {
         text += "smallest distance of two bodies over the path: not certified\n";
-        if (proof.state == ProofState::stopped && proof.lower)
+        if (proof.state == clearance::ProofState::stopped && proof.lower)
             text += "smallest distance of two bodies over the first " + core::base::counted(static_cast<size_t>(proof.steps), "step") +
                     ": " + proven(*proof.lower);
     }
@@ -244,7 +246,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!options.out.empty() && !writes_out)
         console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
     console.narrate("certifying the path");
-    const PathProof proof = run.prover.finish(simulation);
+    const clearance::PathProof proof = run.prover.finish(simulation);
     Outcome outcome = outcome_of(report, proof);
     if (outcome.status == "ok" && !loose.empty()) outcome = {"joints_part", loose, exit_undecided};
     json["status"] = outcome.status;
@@ -253,7 +255,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     json["newton_iterations"] = report.newton_iterations;
     json["wall_seconds"] = report.wall_seconds;
     json["certify_seconds"] = run.prover.seconds();
-    const bool stopped = proof.state == ProofState::stopped;
+    const bool stopped = proof.state == clearance::ProofState::stopped;
     json["minimum_distance"] = proof.lower && !stopped ? Json(*proof.lower) : Json();
     json["certification"] = to_string(proof.state);
     if (stopped) json["certified_steps"] = proof.steps;
@@ -280,7 +282,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
     if (written && !options.no_report)
         leave_report(options.out, common, console, json, told,
-                     report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path});
+                     {.motion = report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path}});
     const CheckOutcome checked = outcome.exit_code == exit_done ? CheckOutcome::passed : CheckOutcome::undecided;
     console.found({"the motion is simulated and proven", checked, outcome.status, outcome.message, options.path});
     console.result(json, told);
@@ -288,7 +290,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
 }
 
 int run_simulate(SimulateArguments options, const CommonOptions& common, Console& console) {
-    options.earlier = run_to_continue(options.earlier);
+    options.earlier = answers::run_to_continue(options.earlier);
     const auto begin = std::chrono::steady_clock::now();
     Result<LoadedModel> loaded = load_model(options.path, common);
     if (!loaded) return console.input_errors(loaded.errors());
@@ -299,11 +301,14 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
                              : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
                                                  : loaded->steps;
     std::optional<Writing> writing;
-    PathProver prover(model, interrupted);
+    clearance::PathProver prover(model, interrupted);
     const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then
     simulate_options.on_step = [&](const core::stepper::Progress& p) {
-        if (writing) writing->trajectory.write(*p.so_far, console);
-        if (writing) writing->tables.write(*p.so_far);
+        if (writing) {
+            const std::string fault = writing->trajectory.write(*p.so_far);
+            if (!fault.empty()) console.narrate("warning: " + fault + "; a run that is killed from here on leaves less");
+            writing->tables.write(*p.so_far);
+        }
         if (!adds_nodes) prover.follow(*p.so_far);
         console.progress("simulating", p.step, p.steps);
     };

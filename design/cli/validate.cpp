@@ -87,9 +87,10 @@ Verdict validate_trajectory(const std::string& path) {
     return verdict;
 }
 
-Verdict validate_model(const std::string& path, const CommonOptions& common) {
+Verdict validate_model(const std::string& path, FileKind kind, const CommonOptions& common) {
     Verdict verdict;
-    const Result<LoadedModel> loaded = load_model(path, common);
+    begin_to_read(path);
+    const Result<LoadedModel> loaded = reading::load_model(path, kind, input_options(common));
     if (!loaded) {
         verdict.errors = loaded.errors();
         return verdict;
@@ -131,7 +132,7 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
     const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path, common.strict)
                             : kind == FileKind::trajectory ? validate_trajectory(path)
-                                                           : validate_model(path, common);
+                                                           : validate_model(path, kind, common);
     if (!verdict.errors.empty()) return console.input_errors(verdict.errors);
     const char* kinds[] = {"scene", "design", "trajectory", "mesh"};
     Json json;

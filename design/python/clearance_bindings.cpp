@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -21,8 +25,7 @@ using core::clearance::ClearanceOptions;
 using core::clearance::JointRanges;
 using core::clearance::PairClearance;
 using core::clearance::PairRequest;
-using core::clearance::RangeClearance;
-using core::clearance::RangeClearanceOptions;
+using core::clearance::ProvenClearances;
 using core::model::Model;
 using core::stepper::Trajectory;
 
@@ -94,43 +97,31 @@ void check_motion(const Model& model, const Trajectory& trajectory, bool motion)
 }
 
 // With the names that the bodies have.
-template <class Pair>
-py::object as_list(const std::vector<Pair>& pairs, const Model& model) {
+py::object as_list(const std::vector<PairClearance>& pairs, const Model& model) {
     return py::module_::import("fettle.results").attr("Pairs")(pairs, body_names(model));
 }
 
-struct ClearanceArguments {
-    const Model& model;
-    const Trajectory& trajectory;
-    const std::vector<PairRequest>& pairs;
-};
-
-std::vector<PairClearance> certify(const ClearanceArguments& about, ClearanceOptions options, const py::object& progress) {
-    check_motion(about.model, about.trajectory, options.motion);
-    Watch watch(progress);
-    std::vector<PairClearance> found;
-    {
-        const py::gil_scoped_release unlocked;
-        options.on_pair = watch.on_count();
-        options.should_stop = watch.should_stop();
-        found = core::clearance::certify_clearance(about.model, about.trajectory, about.pairs, options);
-    }
-    watch.end();
-    return found;
+std::optional<double> tolerance_from(const py::object& given) {
+    if (given.is_none()) return std::nullopt;
+    const double tolerance = quantity_from(given, Dimension::length, "tolerance");
+    check_above("tolerance", tolerance, 0);
+    return tolerance;
 }
 
-std::vector<RangeClearance> certify_ranges(const Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                           RangeClearanceOptions options, const py::object& progress) {
+// `work` gives ProvenClearances; a certificate that was given gets the proofs.
+template <class Work>
+py::object certified(const Model& model, ClearanceOptions options, Certificate* certificate, const py::object& progress, const Work& work) {
     Watch watch(progress);
-    std::vector<RangeClearance> found;
+    ProvenClearances found;
     {
         const py::gil_scoped_release unlocked;
         options.on_pair = watch.on_count();
         options.should_stop = watch.should_stop();
-        found = core::clearance::certify_ranges(model, ranges, pairs, options);
+        found = work(options);
     }
     watch.end();
-    return found;
+    if (certificate != nullptr) *certificate = std::move(found.certificate);
+    return as_list(found.pairs, model);
 }
 
 void check_ranges(const JointRanges& ranges, const Model& model) {
@@ -156,25 +147,22 @@ void bind_ranges(py::module_& module) {
         [](const Model& model, const py::object& pairs, const py::object& minimum, const py::object& tolerance,
            const std::shared_ptr<JointRanges>& ranges, const std::shared_ptr<Certificate>& certificate, const py::object& progress) {
             const std::vector<PairRequest> wanted = pairs_from(pairs, model, minimum);
-            RangeClearanceOptions options = core::clearance::usual_options(wanted);
-            if (!tolerance.is_none()) {
-                options.tolerance = quantity_from(tolerance, Dimension::length, "tolerance");
-                options.coarse = 0;
-                check_above("tolerance", options.tolerance, 0);
-            }
-            options.certificate = certificate.get();
             const JointRanges of = ranges ? *ranges : value_or_raise(core::clearance::joint_ranges(model));
             check_ranges(of, model);
-            return as_list(certify_ranges(model, of, wanted, options, progress), model);
+            const ClearanceOptions asked = core::clearance::usual_options(wanted, tolerance_from(tolerance));
+            return certified(model, asked, certificate.get(), progress, [&](const ClearanceOptions& options) -> ProvenClearances {
+                if (certificate) return core::clearance::certify_ranges_with_proof(model, of, wanted, options);
+                return {core::clearance::certify_ranges(model, of, wanted, options), {}};
+            });
         },
         py::arg("model"), py::arg("pairs") = py::none(), py::arg("minimum") = 0.0, py::arg("tolerance") = py::none(),
         py::arg("ranges") = py::none(), py::arg("certificate") = py::none(), py::arg("progress") = py::none(),
         "Proven bounds [m] of the least distance of pairs of bodies over all positions of the joints within their limits, in every "
-        "combination: Pairs of RangeClearance. pairs, minimum: as of certify_clearance. tolerance: None is 10 um or 1% of the least "
+        "combination: Pairs of PairClearance. pairs, minimum: as of certify_clearance. tolerance: None is 1 um or 0.1% of the least "
         "minimum, and 1% of the bodies' size where more than two coordinates move a pair.");
     module.def(
         "pose_at_witness",
-        [](const Model& model, const JointRanges& ranges, const RangeClearance& pair, const py::object& body) {
+        [](const Model& model, const JointRanges& ranges, const PairClearance& pair, const py::object& body) {
             check_ranges(ranges, model);
             const std::vector<std::string> names = body_names(model);
             const auto coordinates = static_cast<int>(ranges.linkage.coordinates.size());
@@ -190,6 +178,122 @@ void bind_ranges(py::module_& module) {
 
 std::shared_ptr<Trajectory> or_as_assembled(const std::shared_ptr<Trajectory>& trajectory, const Model& model) {
     return trajectory ? trajectory : std::make_shared<Trajectory>(core::clearance::as_assembled(model));
+}
+
+// A text, or several.
+std::vector<std::string> texts_from(const py::object& given, const char* where) {
+    if (py::isinstance<py::str>(given)) return {given.cast<std::string>()};
+    if (!py::isinstance<py::sequence>(given))
+        refuse(ErrorCode::wrong_type, where, shown(given) + ": a text such as \"A:B\", or a list, is wanted");
+    std::vector<std::string> texts;
+    for (const py::handle each : given) {
+        if (!py::isinstance<py::str>(each)) refuse(ErrorCode::wrong_type, where, shown(each) + ": a text such as \"A:B\" is wanted");
+        texts.push_back(each.cast<std::string>());
+    }
+    return texts;
+}
+
+std::string listed(const std::vector<std::string>& texts) {
+    std::string list;
+    for (const std::string& text : texts) list += (list.empty() ? "" : ",") + text;
+    return list;
+}
+
+// {"frame": ["a", "b"]} as the command line has it: "frame=a,b".
+std::vector<std::string> groups_from(const py::object& given) {
+    if (!py::isinstance<py::dict>(given))
+        refuse(ErrorCode::wrong_type, "groups", shown(given) + ": a dict of names and lists of bodies is wanted");
+    std::vector<std::string> groups;
+    for (const auto& [name, bodies] : given.cast<py::dict>())
+        groups.push_back(py::str(name).cast<std::string>() + "=" +
+                         listed(texts_from(py::reinterpret_borrow<py::object>(bodies), "groups")));
+    return groups;
+}
+
+// "--allow-touch" -> "allow_touch": what the command calls an option is an argument here.
+Errors with_arguments(Errors errors) {
+    for (Error& error : errors) {
+        if (!error.where.starts_with("--")) continue;
+        error.where = error.where == "--group" ? "groups" : error.where.substr(2);
+        std::replace(error.where.begin(), error.where.end(), '-', '_');
+    }
+    return errors;
+}
+
+clearance::Subject subject_from(const Model& model, const std::shared_ptr<Trajectory>& trajectory, const py::object& ranges) {
+    const bool is_over_ranges = !ranges.is_none() && !(py::isinstance<py::bool_>(ranges) && !ranges.cast<bool>());
+    if (!is_over_ranges) {
+        if (!trajectory) return clearance::subject_of(model);
+        check_motion(model, *trajectory, true);
+        return clearance::subject_of(model, *trajectory);
+    }
+    if (trajectory) refuse(ErrorCode::inconsistent, "ranges", "are in place of a trajectory");
+    if (py::isinstance<py::bool_>(ranges)) return clearance::subject_over(model, value_or_raise(core::clearance::joint_ranges(model)));
+    if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is wanted");
+    check_ranges(ranges.cast<const JointRanges&>(), model);
+    return clearance::subject_over(model, ranges.cast<const JointRanges&>());
+}
+
+clearance::PairOptions pair_options_from(const py::object& minimum, const std::string& process, const py::object& pairs,
+                                         const py::object& ignore, const py::object& allow_touch, const py::object& groups) {
+    clearance::PairOptions options;
+    options.pairs = listed(texts_from(pairs, "pairs"));
+    options.ignore = listed(texts_from(ignore, "ignore"));
+    options.touches = texts_from(allow_touch, "allow_touch");
+    std::erase(options.touches, "");
+    options.groups = groups_from(groups);
+    options.process = process;
+    if (minimum.is_none()) return options;
+    options.minimum = quantity_from(minimum, Dimension::length, "minimum");
+    check_at_least("minimum", *options.minimum, 0);
+    return options;
+}
+
+py::object report_of(const clearance::Subject& subject, clearance::Question question, const std::optional<Path>& baseline,
+                     const py::object& progress) {
+    if (subject.ranges && !question.pairs.touches.empty())
+        refuse(ErrorCode::inconsistent, "allow_touch", "is of a path: over ranges of joints touches are not told");
+    std::optional<clearance::Baseline> before;
+    if (baseline) before = value_or_raise(clearance::Baseline::read(baseline->string()));
+    Watch watch(progress);
+    Result<clearance::ClearanceReport> judged = [&] {
+        const py::gil_scoped_release unlocked;
+        question.on_pair = watch.on_count();
+        question.should_stop = watch.should_stop();
+        return clearance::judge_clearances(subject, question);
+    }();
+    watch.end();
+    if (!judged) raise_if_any(with_arguments(judged.errors()));
+    if (before) compare_with(*std::move(before), *judged);
+    std::shared_ptr<Certificate> certificate;
+    if (judged->certificate && !judged->certificate->pairs.empty()) certificate = std::make_shared<Certificate>(*judged->certificate);
+    return py::module_::import("fettle.results").attr("ClearanceReport")(report_json(*judged, subject).dump(), certificate);
+}
+
+void bind_question(py::module_& module) {
+    module.def(
+        "clearance",
+        [](const Model& model, const std::shared_ptr<Trajectory>& trajectory, const py::object& ranges, const py::object& minimum,
+           const std::string& process, const py::object& pairs, const py::object& ignore, const py::object& allow_touch,
+           const py::object& groups, const py::object& tolerance, bool witnesses, const std::optional<Path>& baseline, bool proof,
+           const py::object& progress) {
+            clearance::Question question;
+            question.pairs = pair_options_from(minimum, process, pairs, ignore, allow_touch, groups);
+            question.tolerance = tolerance_from(tolerance);
+            question.all_witnesses = witnesses;
+            question.proof = proof;
+            return report_of(subject_from(model, trajectory, ranges), std::move(question), baseline, progress);
+        },
+        py::arg("model"), py::arg("trajectory") = py::none(), py::arg("ranges") = false, py::arg("minimum") = py::none(),
+        py::arg("process") = "", py::arg("pairs") = "", py::arg("ignore") = "", py::arg("allow_touch") = "", py::arg("groups") = py::dict(),
+        py::arg("tolerance") = py::none(), py::arg("witnesses") = false, py::arg("baseline") = py::none(), py::arg("proof") = false,
+        py::arg("progress") = py::none(),
+        "What `fettle clearance` asks and answers, a ClearanceReport: as assembled, over the trajectory, or, with ranges (True, or "
+        "JointRanges), over all positions of the joints. minimum: None tells distances and clashes. process: \"fdm\", \"sla\", \"sls\", "
+        "\"mjf\". pairs, ignore: \"A:B\", \"pin*:plate=0.4mm\" or a list of such; by default every pair as assembled, else those that may "
+        "collide. allow_touch: \"lid:base\". groups: {\"frame\": [\"a\", \"b\"]}, bodies that are one rigid set. tolerance: None is 1 um "
+        "or "
+        "0.1% of the least minimum. witnesses: all that come as close. baseline: an earlier report's file. proof: with its certificate.");
 }
 
 }  // namespace
@@ -220,24 +324,29 @@ void bind_clearance(py::module_& module) {
         [](const Model& model, const std::shared_ptr<Trajectory>& trajectory, const py::object& pairs, const py::object& minimum,
            const py::object& tolerance, bool margin_curve, const std::shared_ptr<Certificate>& certificate, const py::object& progress) {
             const std::vector<PairRequest> wanted = pairs_from(pairs, model, minimum);
-            ClearanceOptions options;
-            options.tolerance = quantity_from(tolerance, Dimension::length, "tolerance");
-            check_above("tolerance", options.tolerance, 0);
             const std::shared_ptr<Trajectory> path = or_as_assembled(trajectory, model);
-            options.motion = trajectory != nullptr;
-            options.margin_curve = margin_curve;
-            options.certificate = certificate.get();
-            return as_list(certify({model, *path, wanted}, options, progress), model);
+            check_motion(model, *path, trajectory != nullptr);
+            ClearanceOptions asked = core::clearance::usual_options(wanted, tolerance_from(tolerance));
+            asked.motion = trajectory != nullptr;
+            asked.margin_curve = margin_curve;
+            return certified(model, asked, certificate.get(), progress, [&](const ClearanceOptions& options) -> ProvenClearances {
+                if (certificate) return core::clearance::certify_clearance_with_proof(model, *path, wanted, options);
+                return {core::clearance::certify_clearance(model, *path, wanted, options), {}};
+            });
         },
         py::arg("model"), py::arg("trajectory") = py::none(), py::arg("pairs") = py::none(), py::arg("minimum") = 0.0,
-        py::arg("tolerance") = 1e-6, py::arg("margin_curve") = false, py::arg("certificate") = py::none(), py::arg("progress") = py::none(),
+        py::arg("tolerance") = py::none(), py::arg("margin_curve") = false, py::arg("certificate") = py::none(),
+        py::arg("progress") = py::none(),
         "Proven bounds [m] of the least distance of pairs of bodies, rounding included: over the continuous motion of the trajectory, or, "
         "without one, as assembled: Pairs of PairClearance. pairs: PairRequests, (a, b) or (a, b, minimum), bodies by name or number; "
-        "None: all that may collide; with `minimum`, metres or \"0.3mm\". certificate: gets the proofs.");
+        "None: all that may collide; with `minimum`, metres or \"0.3mm\". tolerance: None is 1 um or 0.1% of the least minimum. "
+        "certificate: "
+        "gets the proofs.");
     module.def(
         "as_assembled", [](const Model& model) { return std::make_shared<Trajectory>(core::clearance::as_assembled(model)); },
         py::arg("model"), "The start as a trajectory without steps.");
     bind_ranges(module);
+    bind_question(module);
 }
 
 }  // namespace fettle::design::python

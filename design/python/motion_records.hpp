@@ -3,8 +3,8 @@
 #pragma once
 
 #include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/clearance/joint_ranges.hpp"
 #include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/core/stepper/simulation.hpp"
 #include "fettle/design/python/records.hpp"
 
@@ -59,12 +59,8 @@ FETTLE_RECORD(fettle::core::clearance::PairClearance, "PairClearance", field("a"
               field("witness", &Type::witness), field("complete", &Type::complete), field("intersecting", &Type::intersecting),
               field("solids", &Type::solids), field("overlap", &Type::overlap), field("touch", &Type::touch),
               field("clash_not_before", &Type::clash_not_before), field("clash_time", &Type::clash_time), field("reason", &Type::reason),
-              field("sampled", &Type::sampled), field("margin", &Type::margin), field("witnesses", &Type::witnesses))
-FETTLE_RECORD(fettle::core::clearance::RangeClearance, "RangeClearance", field("a", &Type::a), field("b", &Type::b),
-              field("minimum", &Type::minimum), field("lower", &Type::lower), field("upper", &Type::upper),
-              field("tolerance", &Type::tolerance), field("status", &Type::status), field("witness", &Type::witness),
-              field("coordinates", &Type::coordinates), field("at", &Type::at), field("complete", &Type::complete),
-              field("intersecting", &Type::intersecting), field("solids", &Type::solids), field("reason", &Type::reason),
+              field("sampled", &Type::sampled), field("margin", &Type::margin), field("witnesses", &Type::witnesses),
+              field("tolerance", &Type::tolerance), field("coordinates", &Type::coordinates), field("at", &Type::at),
               field("bounds", &Type::bounds))
 FETTLE_RECORD(fettle::core::certificate::JointCoordinate, "JointCoordinate", field("joint", &Type::joint),
               field("is_angle", &Type::is_angle), field("scale", &Type::scale), field("offset", &Type::offset))

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
 #include "fettle/design/answers/optimise_json.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/python/arguments.hpp"
@@ -77,33 +79,26 @@ struct FileArguments {
     studies::OptimiseOptions options;
 };
 
-// As `fettle optimise` leaves its folder.
-Errors add_results(const DesignProblem& problem, const OptimiseOutcome& outcome, const FileArguments& arguments,
-                   core::files::FilesTogether& files) {
-    const std::string& folder = arguments.directory;
-    answers::replace_motion(files, folder);
-    const core::stepper::Trajectory& trajectory = outcome.final.simulation.trajectory;
-    Errors errors = outcome.final.usable ? answers::add_animation(files, folder, *outcome.final.model, trajectory) : Errors{};
-    if (!errors.empty()) return errors;
-    const answers::RunFacts facts{folder, arguments.options.seed, false};
-    return answers::add_result(files, folder, answers::outcome_json(problem, outcome, facts), "fettle.optimise_file, Python");
-}
-
 OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments, const py::object& progress) {
     raise_if_any(answers::others_files(arguments.directory, {"design.final.json"}));
     if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
     const auto run = [&](const studies::OptimiseOptions& all) {
         const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));
-        const studies::RunFolder folder{arguments.directory, arguments.resume,
-                                        [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
-                                            return add_results(problem, outcome, arguments, files);
-                                        }};
+        const std::string command = "fettle.optimise_file, Python";
+        nlohmann::ordered_json answer;
+        const studies::RunFolder folder{
+            arguments.directory, arguments.resume, [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
+                answer = answers::outcome_json(problem, outcome, {arguments.directory, arguments.options.seed, false});
+                return answers::add_outcome(files, arguments.directory, outcome.final, answer, command);
+            }};
         studies::FileOutcome done = value_or_raise(studies::optimise_file(file, problem, folder, all));
         raise_if_any(done.unwritten);
         if (!arguments.report) return std::move(done.outcome);
         report::ReportOptions options;
         options.programs = arguments.programs;
         options.should_stop = all.should_stop;
+        options.at_hand = report::at_hand(file, problem, done.outcome);
+        options.at_hand.answer = answers::result_json(std::move(answer), command);
         value_or_raise(report::write_report(arguments.directory, std::move(options)));
         return std::move(done.outcome);
     };

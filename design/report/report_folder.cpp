@@ -162,8 +162,8 @@ public:
 private:
     Errors read_motion() {
         if (source_.result.value("status", "") == "start_failed") return {};  // a trajectory that is there is not its own
-        if (options_.motion) {
-            source_.motion = std::move(options_.motion);
+        if (options_.at_hand.motion) {
+            source_.motion = std::move(options_.at_hand.motion);
             scene_path_ = source_.motion->scene_path;
             return {};
         }
@@ -176,20 +176,32 @@ private:
     }
 
     Errors read_design() {
-        Result<reading::DesignFile> file =
+        if (const auto& design = options_.at_hand.design) return take_design(*design->file, design->values, design->problem);
+        const Result<reading::DesignFile> file =
             reading::read_design((folder_ / "design.final.json").string(), {options_.mesh_dirs, options_.programs});
         if (!file) return file.errors();
-        source_.description = description_of(file->text);
-        source_.gravity = file->design.scene.gravity;
-        source_.name = name_of(file->scene_path, folder_);
-        source_.linear = linear_motors(file->design.scene.mechanism);
+        return take_design(*file, description::values_of(file->design.parameters), nullptr);
+    }
+
+    // @param known  of file.design; null: it has to be made
+    Errors take_design(const reading::DesignFile& file, const VectorX& values, const problem::DesignProblem* known) {
+        source_.description = description_of(file.text);
+        source_.gravity = file.design.scene.gravity;
+        source_.name = name_of(file.scene_path, folder_);
+        source_.linear = linear_motors(file.design.scene.mechanism);
         if (Errors errors = read_history(); !errors.empty()) return errors;
-        source_.design = file->design;
+        source_.design = file.design;
+        for (Eigen::Index k = 0; k < values.size(); ++k) source_.design->parameters[static_cast<std::size_t>(k)].value = values[k];
         if (!source_.motion) return {};
-        const Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
-        if (!problem) return problem.errors();
-        if (Errors errors = take_tables(*problem); !errors.empty()) return errors;
-        return take_before(*problem, file->scene_path);
+        std::optional<problem::DesignProblem> made;
+        if (known == nullptr) {
+            Result<problem::DesignProblem> problem = problem::DesignProblem::create(file.design);
+            if (!problem) return problem.errors();
+            made = std::move(problem).value();
+        }
+        const problem::DesignProblem& problem = known != nullptr ? *known : *made;
+        if (Errors errors = take_tables(problem, values); !errors.empty()) return errors;
+        return take_before(problem, file.scene_path);
     }
 
     Errors read_history() {
@@ -206,10 +218,10 @@ private:
     }
 
     // Forces of the final design: as they are kept, or simulated once more, with the same bits.
-    Errors take_tables(const problem::DesignProblem& problem) {
+    Errors take_tables(const problem::DesignProblem& problem, const VectorX& values) {
         source_.tables = read_tables(folder_);
         if (!source_.tables.steps.empty() || options_.should_stop()) return {};
-        const Result<Model> model = problem.model_at(description::values_of(problem.design().parameters));
+        const Result<Model> model = problem.model_at(values);
         if (!model) return model.errors();
         const Simulation simulation = simulated(*model, problem.design().steps, true, options_.should_stop);
         if (!same_poses(simulation.trajectory, source_.motion->trajectory)) {
@@ -257,8 +269,17 @@ private:
 
 }  // namespace
 
+AtHand at_hand(const reading::DesignFile& file, const problem::DesignProblem& problem, const studies::OptimiseOutcome& outcome) {
+    AtHand known;
+    const problem::DesignEvaluation& final = outcome.final;
+    if (!final.usable) return known;
+    known.motion = Motion{*final.model, final.simulation.trajectory, file.scene_path};
+    known.design = FinalDesign{&file, &problem, outcome.report.point};
+    return known;
+}
+
 Result<std::string> write_report(const std::string& folder, ReportOptions options) {
-    Result<Json> result = read_result(folder);
+    Result<Json> result = options.at_hand.answer ? Result<Json>(*std::move(options.at_hand.answer)) : read_result(folder);
     if (!result) return result.errors();
     const fs::path path = folder;
     ReportSource source;

@@ -38,11 +38,10 @@ int main() {
     if (!model) return 3;
     const core::stepper::Simulation simulation = core::stepper::simulate(*model);
 
-    core::certificate::Certificate certificate;
     core::clearance::ClearanceOptions options;
     options.motion = true;
-    options.certificate = &certificate;
-    const auto pairs = core::clearance::certify_clearance(*model, simulation.trajectory, {{.a = 0, .b = 1, .minimum = 0.3e-3}}, options);
+    const auto [pairs, certificate] =
+        core::clearance::certify_clearance_with_proof(*model, simulation.trajectory, {{.a = 0, .b = 1, .minimum = 0.3e-3}}, options);
     const auto& pair = pairs.front();
     std::printf("%s: at least %.4f mm, at most %.4f mm, nearest at %.3f s\n", core::clearance::to_string(pair.status), 1000 * pair.lower,
                 1000 * pair.upper, pair.witness.time);

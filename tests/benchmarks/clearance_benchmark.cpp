@@ -159,12 +159,10 @@ int main(int argc, char** argv) {
         first = false;
         std::fflush(stdout);
     }
-    Certificate certificate;
     ClearanceOptions options;
     options.motion = true;
-    options.certificate = &certificate;
     auto begin = cpu_seconds();
-    certify_clearance(model, simulation.trajectory, pairs, options);
+    const Certificate certificate = certify_clearance_with_proof(model, simulation.trajectory, pairs, options).certificate;
     const double recorded = seconds_since(begin);
     begin = cpu_seconds();
     const CertificateReport report = check_certificate(certificate, model, simulation.trajectory);

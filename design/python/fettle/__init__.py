@@ -8,9 +8,9 @@ Long calls let other threads run, and end on Ctrl-C.
     scene = fettle.read_scene("hinge.scene.json")
     model = fettle.build_model(scene)
     simulation = fettle.simulate(model)
-    pairs = fettle.certify_clearance(model, simulation.trajectory, minimum="0.3mm")
-    print(pairs)                                                    # names, verdicts, proven bounds [m]
-    print(pairs.pair("pin", "plate").lower)
+    report = fettle.clearance(model, simulation.trajectory, minimum="0.3mm")     # what `fettle clearance` asks and answers
+    print(report)                                                   # names, verdicts, proven bounds [m]
+    print(report.pair("pin", "plate")["lower"])
 
     problem = fettle.DesignProblem(fettle.read_design("hinge.design.json").design)
     value, gradient = problem.value_and_gradient(problem.values)
@@ -39,6 +39,7 @@ from ._fettle import (
     certify_clearance as certify_clearance,
     certify_ranges as certify_ranges,
     check_gradients as check_gradients,
+    clearance as clearance,
     design_text as design_text,
     draw_picture as draw_picture,
     export_files as export_files,
@@ -104,6 +105,7 @@ from .results import (
     CertificateReport as CertificateReport,
     CheckReport as CheckReport,
     CheckRow as CheckRow,
+    ClearanceReport as ClearanceReport,
     ContactChange as ContactChange,
     ContactDifference as ContactDifference,
     ContactFeature as ContactFeature,
@@ -125,7 +127,6 @@ from .results import (
     PairRequest as PairRequest,
     Pairs as Pairs,
     QuantityRoughness as QuantityRoughness,
-    RangeClearance as RangeClearance,
     RangeCoordinate as RangeCoordinate,
     RoughnessReport as RoughnessReport,
     Rows as Rows,

@@ -10,12 +10,12 @@ from .design import AnyQuantity, AnyShape, Design, DesignFile
 from .results import (
     CertificateReport,
     CheckReport,
+    ClearanceReport,
     DesignEvaluation,
     OptimiseOutcome,
     PairClearance,
     PairRequest,
     Pairs,
-    RangeClearance,
     RangeCoordinate,
     Rows,
     Simulation,
@@ -170,11 +170,27 @@ def certify_clearance(
     trajectory: Optional[Trajectory] = ...,
     pairs: Optional[Sequence[Pair]] = ...,
     minimum: Number = ...,
-    tolerance: Number = ...,
+    tolerance: Optional[Number] = ...,
     margin_curve: bool = ...,
     certificate: Optional[Certificate] = ...,
     progress: Optional[Count] = ...,
-) -> Pairs[PairClearance]: ...
+) -> Pairs: ...
+def clearance(
+    model: Model,
+    trajectory: Optional[Trajectory] = ...,
+    ranges: Union[bool, JointRanges] = ...,
+    minimum: Optional[Number] = ...,
+    process: str = ...,
+    pairs: Union[str, Sequence[str]] = ...,
+    ignore: Union[str, Sequence[str]] = ...,
+    allow_touch: Union[str, Sequence[str]] = ...,
+    groups: Mapping[str, Sequence[str]] = ...,
+    tolerance: Optional[Number] = ...,
+    witnesses: bool = ...,
+    baseline: Optional[Path] = ...,
+    proof: bool = ...,
+    progress: Optional[Count] = ...,
+) -> ClearanceReport: ...
 def as_assembled(model: Model) -> Trajectory: ...
 def joint_ranges(model: Model) -> JointRanges: ...
 def certify_ranges(
@@ -185,8 +201,8 @@ def certify_ranges(
     ranges: Optional[JointRanges] = ...,
     certificate: Optional[Certificate] = ...,
     progress: Optional[Count] = ...,
-) -> Pairs[RangeClearance]: ...
-def pose_at_witness(model: Model, ranges: JointRanges, pair: RangeClearance, body: Body) -> Pose: ...
+) -> Pairs: ...
+def pose_at_witness(model: Model, ranges: JointRanges, pair: PairClearance, body: Body) -> Pose: ...
 def quantity_dimension(quantity: AnyQuantity) -> str: ...
 def parse_quantity(text: str, dimension: str = ..., where: str = ...) -> float: ...
 def units() -> Dict[str, str]: ...

@@ -2,8 +2,10 @@
 """What simulations, certifications, evaluations and optimisations answer: plain data, SI units."""
 import dataclasses
 import decimal
+import json
 import math
-from typing import Any, Generic, Iterable, List, Literal, Optional, Sequence, Tuple, TypeVar, Union
+import os
+from typing import Any, Dict, Iterable, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,7 +175,7 @@ class Touch(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class PairClearance(Record):
-    """Proven: lower <= the least distance <= upper, rounding included [m]."""
+    """Proven: lower <= the least distance <= upper, rounding included [m]: over a path, or over all positions of the joints."""
 
     a: int = 0
     b: int = 0
@@ -195,6 +197,10 @@ class PairClearance(Record):
     sampled: float = 0.0
     margin: List[MarginInterval] = dataclasses.field(default_factory=list)
     witnesses: List[Witness] = dataclasses.field(default_factory=list)
+    tolerance: float = 0.0  #: over ranges: that was asked for, of this pair
+    coordinates: List[int] = dataclasses.field(default_factory=list)  #: of JointRanges: those that move one body against the other
+    at: List[float] = dataclasses.field(default_factory=list)  #: their values at the witness
+    bounds: int = 0  #: over ranges: computed
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -218,30 +224,6 @@ class RangeCoordinate(Record):
     joints: List[JointCoordinate] = dataclasses.field(default_factory=list)  #: several, where gears couple them
 
 
-@dataclasses.dataclass(eq=False, repr=False, slots=True)
-class RangeClearance(Record):
-    """Proven: lower <= the least distance over all positions of the joints <= upper, rounding included [m]."""
-
-    a: int = 0
-    b: int = 0
-    minimum: float = 0.0
-    lower: float = 0.0
-    upper: float = 0.0
-    tolerance: float = 0.0
-    status: Literal["clear", "violated", "undecided", "contact"] = "undecided"
-    witness: Witness = dataclasses.field(default_factory=Witness)
-    coordinates: List[int] = dataclasses.field(default_factory=list)  #: of JointRanges: those that move one body against the other
-    at: List[float] = dataclasses.field(default_factory=list)  #: their values at the witness
-    complete: bool = True
-    intersecting: bool = False
-    solids: Solids = "unproven"
-    reason: str = ""
-    bounds: int = 0  #: computed
-
-
-P = TypeVar("P", bound=Union[PairClearance, RangeClearance])
-
-
 def _metres(value: float, rounding: str) -> str:
     """Six digits, never towards what is not proven."""
     if not math.isfinite(value):
@@ -249,14 +231,14 @@ def _metres(value: float, rounding: str) -> str:
     return f"{decimal.Context(prec=6, rounding=rounding).create_decimal(value):g}"
 
 
-class Pairs(Records[P], Generic[P]):
+class Pairs(Records[PairClearance]):
     """What certify_clearance and certify_ranges answer: a list in the order in which pairs were asked for, that knows the bodies' names."""
 
-    def __init__(self, pairs: Iterable[P] = (), body_names: Sequence[str] = ()):
+    def __init__(self, pairs: Iterable[PairClearance] = (), body_names: Sequence[str] = ()):
         super().__init__(pairs)
         self.body_names: List[str] = list(body_names)
 
-    def pair(self, a: str, b: str) -> P:
+    def pair(self, a: str, b: str) -> PairClearance:
         """The one of two bodies, by name, in either order."""
         for name in (a, b):
             if name not in self.body_names:
@@ -269,7 +251,7 @@ class Pairs(Records[P], Generic[P]):
     def _name(self, body: int) -> str:
         return self.body_names[body] if 0 <= body < len(self.body_names) else str(body)
 
-    def _row(self, of: P) -> Tuple[str, ...]:
+    def _row(self, of: PairClearance) -> Tuple[str, ...]:
         names = f"{self._name(of.a)}:{self._name(of.b)}"
         return names, of.status, _metres(of.lower, decimal.ROUND_FLOOR), _metres(of.upper, decimal.ROUND_CEILING), f"{of.minimum:g}"
 
@@ -285,6 +267,72 @@ class Pairs(Records[P], Generic[P]):
         rows += [[]] * (len(self) - len(rows))
         title = f"{len(self)} {'pair' if len(self) == 1 else 'pairs'}: proven bounds of the least distance [m]"
         return columns(title, ["pair", "status", "at least", "at most", "required", "reason"], rows)
+
+
+class ClearanceReport:
+    """What `clearance` answers, pairs worst first: what `fettle clearance --json` prints (docs/interface.md), and the proof.
+
+    report.status, report.pairs[0]["finding"], report.pair("pin", "plate")["lower"], report["notes"]
+    """
+
+    def __init__(self, text: str, certificate: Optional[_fettle.Certificate] = None):
+        self.answer: Dict[str, Any] = json.loads(text)
+        self.certificate = certificate  #: None: none was asked for, or nothing is proven
+
+    @property
+    def status(self) -> str:
+        """ "clear", "violated" or "undecided"."""
+        return str(self.answer["status"])
+
+    @property
+    def pairs(self) -> List[Dict[str, Any]]:
+        return list(self.answer["pairs"])
+
+    def __getitem__(self, key: str) -> Any:
+        return self.answer[key]
+
+    def pair(self, a: str, b: str) -> Dict[str, Any]:
+        """The row of two bodies or groups, by name, in either order."""
+        for row in self.pairs:
+            if {a, b} == {row["a"], row["b"]}:
+                return row
+        names = sorted({row[key] for row in self.pairs for key in ("a", "b")})
+        unknown = [name for name in (a, b) if name not in names]
+        told = f"; no pair has {unknown[0]!r}; {did_you_mean(unknown[0], names)}" if unknown else ""
+        raise KeyError(f"the pair of {a!r} and {b!r} was not judged{told}")
+
+    def write(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """As JSON: a `baseline` for later reports, of the command too."""
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(self.answer, file, indent=2)
+
+    def _rows(self, most: int) -> List[List[str]]:
+        def metres(value: Optional[float], rounding: str) -> str:
+            return "-" if value is None else _metres(value, rounding)
+
+        return [
+            [
+                f"{row['a']}:{row['b']}",
+                row["finding"],
+                metres(row["lower"], decimal.ROUND_FLOOR),
+                metres(row["upper"], decimal.ROUND_CEILING),
+                "-" if row["minimum"] is None else f"{row['minimum']:g}",
+                row.get("reason", ""),
+            ]
+            for row in self.pairs[:most]
+        ]
+
+    def __repr__(self) -> str:
+        lines = [f"{self.status}, {self.answer['source']}"]
+        lines += [f"{pair}  {finding}  {lower} .. {upper} m" for pair, finding, lower, upper, *_ in self._rows(MOST_LINES - 2)]
+        more = [f"... and {len(self.pairs) - len(lines) + 1} more pairs"] if len(self.pairs) > len(lines) - 1 else []
+        return "\n".join([line[:COLUMNS] for line in lines] + more)
+
+    def _repr_html_(self) -> str:
+        rows: List[Sequence[Any]] = [*self._rows(MOST_ROWS + 1)]
+        rows += [[]] * (len(self.pairs) - len(rows))
+        title = f"{self.status}: proven bounds of the least distance {self.answer['source']} [m]"
+        return columns(title, ["pair", "finding", "at least", "at most", "required", "reason"], rows)
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -122,18 +122,17 @@ Outcome examine(int seed) {
         body.hierarchy = solid->hierarchy;
         model.bodies.push_back(body);
     }
-    Certificate certificate;
     ClearanceOptions options;
     options.motion = random() % 16 != 0;
     options.tolerance = outcome.tolerance;
     options.max_evaluations = random() % 4 ? 200000 : static_cast<long>(std::pow(10, between(random, 1, 4)));
-    options.certificate = &certificate;
     options.measure_overlap = false;
     options.sample_nodes = random() % 2;
     options.margin_curve = random() % 8 == 0;
     const double minimum = random() % 3 ? 0 : outcome.size * std::pow(10, between(random, -4, -1));
     if (random() % 2 && minimum > 0) options.enough = minimum;
-    const PairClearance found = certify_clearance(model, trajectory, {{0, 1, minimum}}, options).front();
+    const auto [pairs, certificate] = certify_clearance_with_proof(model, trajectory, {{0, 1, minimum}}, options);
+    const PairClearance& found = pairs.front();
     outcome.lower = found.lower;
     outcome.upper = found.upper;
     outcome.complete = found.complete;

@@ -19,7 +19,7 @@ struct RangeCase {
     Tree tree;
     stepper::Trajectory start;
     Certificate certificate;
-    RangeClearance found;
+    PairClearance found;
     CertificateReport check() const { return check_certificate(certificate, tree.model, start); }
 };
 
@@ -30,11 +30,12 @@ RangeCase certified_case(std::mt19937& random, int most_coordinates_of_it) {
         const int count = pair_coordinates(c.tree);
         if (count < 1 || count > most_coordinates_of_it) continue;
         c.start = as_assembled(c.tree.model);
-        RangeClearanceOptions options;
+        ClearanceOptions options;
         const double size = c.tree.model.bodies[static_cast<std::size_t>(c.tree.b)].radius;
         options.tolerance = (count <= 2 ? 1e-3 : 5e-2) * size;
-        options.certificate = &c.certificate;
-        c.found = certify_ranges(c.tree.model, c.tree.ranges, {{c.tree.a, c.tree.b}}, options).front();
+        auto proven = certify_ranges_with_proof(c.tree.model, c.tree.ranges, {{c.tree.a, c.tree.b}}, options);
+        c.found = proven.pairs.front();
+        c.certificate = std::move(proven.certificate);
         if (c.found.lower > 0 && c.found.solids != Solids::overlap) return c;
     }
 }

@@ -130,10 +130,8 @@ TEST_CASE("A body inside a block is a clash for the library and its certificate,
         const auto trajectory =
             motion ? one_step(model, {{zero, zero}, {{0.5, 0, 0}, {0, 0, 1}}, {{-0.5, 0, 0}, {0, 0, 0}}}) : as_assembled(model);
         for (const bool with_certificate : {false, true}) {
-            core::certificate::Certificate certificate;
-            ClearanceOptions options = over_motion();
-            if (with_certificate) options.certificate = &certificate;
-            const auto result = certify_clearance(model, trajectory, {{0, 1, 0.1}}, options)[0];
+            const auto [pairs, certificate] = certified(model, trajectory, 0.1, over_motion(), with_certificate);
+            const PairClearance& result = pairs[0];
             CHECK(result.solids == Solids::overlap);
             CHECK(result.status == PairStatus::violated);
             CHECK((result.lower == 0 && result.upper == 0));
@@ -200,10 +198,8 @@ Solid open_box(const Vector3& half) {
 TEST_CASE("A part in a mesh that is not closed is not told as clear of it", "[clearance]") {
     for (const Vector3& half : {Vector3(1, 1, 1), Vector3(5, 5, 1), Vector3(1, 1, 20)}) {
         const auto model = model_of({open_box(half), box({0.1, 0.1, 0.1})}, {zero, zero});
-        core::certificate::Certificate certificate;
-        ClearanceOptions options = options_with(1e-6);
-        options.certificate = &certificate;
-        const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0.1}}, options)[0];
+        auto [pairs, certificate] = certified(model, as_assembled(model), 0.1, options_with(1e-6), true);
+        const PairClearance& result = pairs[0];
         CHECK(result.lower > 0.8);
         CHECK(result.solids == Solids::unverified);
         CHECK(result.status == PairStatus::undecided);
@@ -216,8 +212,9 @@ TEST_CASE("A part in a mesh that is not closed is not told as clear of it", "[cl
         }
         auto sheet = model;  // said to be one: then it has no inside
         sheet.bodies[0].mass_kind = core::scene::MassKind::area;
-        const auto of_sheet = certify_clearance(sheet, as_assembled(sheet), {{0, 1, 0.1}}, options)[0];
-        CHECK(of_sheet.status == PairStatus::clear);
+        const auto of_sheet = certified(sheet, as_assembled(sheet), 0.1, options_with(1e-6), true);
+        certificate = of_sheet.certificate;
+        CHECK(of_sheet.pairs[0].status == PairStatus::clear);
         CHECK(check_certificate(certificate, sheet, as_assembled(sheet)).accepted());
         CHECK(check_certificate(certificate, model, as_assembled(model)).stale);
     }
@@ -269,10 +266,8 @@ TEST_CASE("A part that stays outside of a mesh that is not closed is clear of it
     for (const double gap : {5.0, 0.5, 1e-2}) {
         for (const Vector3& side : {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0)}) {
             const auto model = model_of({open_box({1, 1, 1}), box({0.1, 0.1, 0.1})}, {zero, (1.1 + gap) * side});
-            core::certificate::Certificate certificate;
-            ClearanceOptions options = options_with(1e-6);
-            options.certificate = &certificate;
-            const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0.9 * gap}}, options)[0];
+            const auto [pairs, certificate] = certified(model, as_assembled(model), 0.9 * gap, options_with(1e-6), true);
+            const PairClearance& result = pairs[0];
             CAPTURE(gap, side.transpose(), result.reason);
             CHECK(result.status == PairStatus::clear);
             CHECK(result.solids == Solids::not_closed);
@@ -296,13 +291,10 @@ TEST_CASE("A part that comes in through the opening of a mesh that is not closed
         CHECK(result.lower > 0);
         CHECK(result.solids == Solids::unverified);
         CHECK(result.status == PairStatus::undecided);
-        core::certificate::Certificate certificate;
-        ClearanceOptions options = over_motion();
-        options.certificate = &certificate;
         // Down to half a part above it, with a certificate.
         const auto path = one_step(model, {{{x, y, 3}, zero}, {{x, y, 1.15}, {0, 0, 1}}});
-        const auto above = certify_clearance(model, path, {{0, 1, 0.01}}, options)[0];
-        CHECK(above.status == PairStatus::clear);
+        const auto [pairs, certificate] = certified(model, path, 0.01, over_motion(), true);
+        CHECK(pairs[0].status == PairStatus::clear);
         CHECK(certificate.pairs[0].solids == Solids::not_closed);
         CHECK(check_certificate(certificate, model, path).accepted());
     }
@@ -319,9 +311,8 @@ TEST_CASE("What is proven apart is so with a certificate too, however small the 
         ClearanceOptions options = over_motion();
         options.tolerance = 1e-5;
         const PairClearance plain = certify_clearance(model, trajectory, {{0, 1, 0}}, options)[0];
-        core::certificate::Certificate certificate;
-        options.certificate = &certificate;
-        const PairClearance proven = certify_clearance(model, trajectory, {{0, 1, 0}}, options)[0];
+        const auto [pairs, certificate] = certified(model, trajectory, 0, options, true);
+        const PairClearance& proven = pairs[0];
         CAPTURE(gap, turn, plain.lower, plain.upper, proven.lower, proven.upper, proven.reason);
         CHECK(plain.lower > 0);
         CHECK(proven.status == plain.status);
@@ -344,9 +335,8 @@ TEST_CASE("Whether a minimum is kept hangs neither on the tolerance nor on a cer
         for (const bool recorded : {false, true}) {
             ClearanceOptions options = over_motion();
             options.tolerance = 1e-5;
-            core::certificate::Certificate certificate;
-            if (recorded) options.certificate = &certificate;
-            const PairClearance pair = certify_clearance(model, trajectory, {{0, 1, truth.lower + off}}, options)[0];
+            const auto [pairs, certificate] = certified(model, trajectory, truth.lower + off, options, recorded);
+            const PairClearance& pair = pairs[0];
             CAPTURE(off, recorded, pair.lower, pair.upper, pair.reason);
             CHECK(pair.status == (off < 0 ? PairStatus::clear : PairStatus::violated));
             if (recorded) CHECK(check_certificate(certificate, model, trajectory).accepted());

@@ -134,11 +134,8 @@ TEST_CASE("a certificate covers far pairs, and claims no more than is told") {
     int far = 0;
     for (const unsigned seed : {2U, 5U}) {
         const Scene scene = tumbling(5, 2, seed);
-        certificate::Certificate certificate;
-        ClearanceOptions options = over_motion();
-        options.certificate = &certificate;
         const std::vector<PairRequest> pairs = all_pairs(scene, 0.1, 0.2);
-        const auto found = certify_clearance(scene.model, scene.trajectory, pairs, options);
+        auto [found, certificate] = certify_clearance_with_proof(scene.model, scene.trajectory, pairs, over_motion());
         REQUIRE(certificate.pairs.size() == pairs.size());
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             CHECK(certificate.pairs[i].lower == found[i].lower);

@@ -42,8 +42,9 @@ Looked look(double allowed_gap, double tolerance, double minimum, double plate_l
     std::vector<PairRequest> pairs{{coupler_body, plate_body, minimum}};
     pairs[0].touch_depth = touch_depth;
     out.of_path = certify_clearance(out.model, out.trajectory, pairs, options).front();
-    options.certificate = &out.certificate;
-    out.result = certify_jointed(out.model, out.trajectory, pairs, options, out.path).front();
+    auto proven = certify_jointed_with_proof(out.model, out.trajectory, pairs, options, out.path);
+    out.result = proven.pairs.front();
+    out.certificate = std::move(proven.certificate);
     return out;
 }
 
@@ -162,16 +163,14 @@ TEST_CASE("jointed clearance: where the joints have bodies is not proven, so the
     for (auto& step : trajectory.steps)
         for (auto& node : step.nodes) node.push_back({model.bodies.back().pose_start.position, Vector3::Zero()});
     const int post = plate_body + 1;
-    certificate::Certificate certificate;
     ClearanceOptions options;
     options.motion = options.margin_curve = true;
     options.tolerance = 1e-5;
-    options.certificate = &certificate;
     CHECK(jointed_bodies(model, {}) == std::vector<int>{crank_body, coupler_body, rocker_body});
     CHECK(jointed_bodies(model, {"crank", "coupler", "rocker"}).empty());
     const JointedPath unproven{std::nullopt, "why", jointed_bodies(model, {})};
     const std::vector<PairRequest> pairs{{coupler_body, plate_body, 1e-3}, {plate_body, post, 0.1}, {crank_body, rocker_body, 0}};
-    const auto results = certify_jointed(model, trajectory, pairs, options, unproven);
+    const auto [results, certificate] = certify_jointed_with_proof(model, trajectory, pairs, options, unproven);
     for (const int k : {0, 2}) {
         const PairClearance& untold = results[static_cast<std::size_t>(k)];
         CAPTURE(k, untold.reason);

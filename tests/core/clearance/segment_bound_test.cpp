@@ -84,8 +84,7 @@ TEST_CASE("The moving plane bounds every point of two triangles, in 50-digit ari
             moving_plane(instant_at(segment, s0), instant_at(segment, s0 + h / 2), instant_at(segment, s0 + h), n0, n1);
         const SegmentBound bound = segment_bound(segment, h, plane, corner_coefficients(plane, a, b),
                                                  {corners_reach(*segment.a, a), corners_reach(*segment.b, b)});
-        const SegmentBound without_rest = segment_bound(segment, h, plane, corner_coefficients(plane, a, b),
-                                                        {corners_reach(*segment.a, a), corners_reach(*segment.b, b)}, 0);
+        const SegmentBound without_rest = segment_bound(segment, h, plane, corner_coefficients(plane, a, b), {});  // as if no point turned
         CHECK((n0.norm() <= 1 && n1.norm() <= 1));
         for (const double v : {0.0, 13.0 / 64, 0.5, 51.0 / 64, 1.0}) {  // where a cubic is off its parabola most, too
             Exact least_a = 1e300, largest_b = -1e300;

@@ -31,21 +31,22 @@ TEST_CASE("Paths that are no numbers or absurd ones are undecided", "[clearance]
         CAPTURE(x);
         for (const double minimum : {0.0, 0.1}) {
             for (const bool with_certificate : {false, true}) {
-                core::certificate::Certificate certificate;
-                ClearanceOptions options = over_motion();
-                if (with_certificate) options.certificate = &certificate;
+                const auto check = [&](const core::stepper::Trajectory& trajectory) {
+                    const auto [pairs, certificate] = certified(model, trajectory, minimum, over_motion(), with_certificate);
+                    check_undecided(pairs[0]);
+                    CHECK(certificate.pairs.empty());
+                };
                 const auto moved = one_step(model, {{{3, 0, 0}, zero}, {{x, 0, 0}, zero}});
-                check_undecided(certify_clearance(model, moved, {{0, 1, minimum}}, options)[0]);
-                CHECK(certificate.pairs.empty());
+                check(moved);
                 auto turned = one_step(model, {{{3, 0, 0}, zero}, {{3, 0, 0}, {0, x, 0}}});
                 turned.poses[1] = turned.poses[0];
-                check_undecided(certify_clearance(model, turned, {{0, 1, minimum}}, options)[0]);
+                check(turned);
                 auto start = as_assembled(model);
                 start.poses[0][1].position.y() = x;
-                if (x != 1e25) check_undecided(certify_clearance(model, start, {{0, 1, minimum}}, options)[0]);  // that far they are apart
+                if (x != 1e25) check(start);  // that far they are apart
                 start.poses[0][1].position.y() = 0;
                 start.poses[0][1].rotation(1, 2) = x;
-                check_undecided(certify_clearance(model, start, {{0, 1, minimum}}, options)[0]);
+                check(start);
             }
         }
     }

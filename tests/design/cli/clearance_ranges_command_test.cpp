@@ -132,6 +132,31 @@ TEST_CASE("ranges: findings against an earlier report, a table with the joints' 
     CHECK(rows == 2);
 }
 
+TEST_CASE("ranges: groups, checks and the tolerance are those of a path") {
+    const DesignFolder folder;
+    const std::string junit = folder.file("ranges.xml"), sarif = folder.file("ranges.sarif");
+    const std::string command = std::string("clearance ") + two_arms + " --ranges --pairs post:left --group left=left_arm,left_hand ";
+    const Answer group = run(command + "--json --minimum 5mm --junit " + junit + " --sarif " + sarif);
+    CHECK(group.code == 0);
+    const Json pair = group.pair("post", "left");
+    CHECK(pair["body_b"] == "left_hand");
+    CHECK(pair["finding"] == "clear");
+    CHECK(group.json()["tolerance"] == 1e-6);
+    CHECK(contents(junit).find("worst at left_shoulder -90") != std::string::npos);
+    const Answer strict = run(command + "--minimum 10mm --sarif " + sarif);
+    CHECK(strict.code == 1);
+    CHECK(strict.says("1 pair over the ranges of the joints: 1 below threshold"));
+    CHECK(contents(sarif).find("below-threshold") != std::string::npos);
+    CHECK(run(command + "--json --minimum 0.5mm").json()["tolerance"] == 5e-7);
+    CHECK(run(std::string("clearance ") + two_arms + " --json --minimum 0.5mm --pairs post:left_hand").json()["tolerance"] == 5e-7);
+    const std::string proof = folder.file("none.certificate.json");
+    const Answer nothing =
+        run(std::string("clearance ") + two_arms + " --ranges --json --pairs left_arm:left_hand --ignore '*:*' --certificate " + proof);
+    CHECK(nothing.code == 2);
+    CHECK(nothing.json()["certificate"].is_null());
+    CHECK(nothing.json()["message"] == "nothing was judged: every pair is ignored");
+}
+
 TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or meshes have changed") {
     const DesignFolder folder(small_design, contents(two_arms));
     const std::string scene = folder.file("small.scene.json"), proof = folder.file("fit.certificate.json");

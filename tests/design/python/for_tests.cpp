@@ -26,7 +26,6 @@ py::dict defaults() {
     add_default<fettle::core::clearance::PairClearance>(all);
     add_default<fettle::core::clearance::PairRequest>(all);
     add_default<fettle::core::clearance::Touch>(all);
-    add_default<fettle::core::clearance::RangeClearance>(all);
     add_default<fettle::core::clearance::Witness>(all);
     add_default<fettle::core::energy::ContactForce>(all);
     add_default<fettle::core::kinematics::Pose>(all);

@@ -3,7 +3,6 @@
 import dataclasses
 import json
 import pickle
-import typing
 
 import numpy as np
 import pytest
@@ -184,8 +183,3 @@ def test_notebooks_get_a_table():
     html = fettle.simulate(fettle.build_model(scene), steps=3).trajectory._repr_html_()
     assert "fettle.Trajectory" in html and "a &amp; b" in html and ">3<" in html and ">0.03<" in html
     assert "<table>" in fettle.Trajectory()._repr_html_()
-
-
-def test_both_kinds_of_clearance_know_the_same_of_solids():
-    told = [typing.get_type_hints(kind)["solids"] for kind in (fettle.PairClearance, fettle.RangeClearance)]
-    assert told[0] == told[1] and "not verified" in typing.get_args(told[0])

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/certificate_claims.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/joint_ranges.hpp"
+#include "fettle/core/clearance/jointed_clearance.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/hash.hpp"
+#include "fettle/design/clearance/certificate_files.hpp"
+
+namespace fettle::design::clearance {
+
+namespace {
+
+using core::certificate::Certificate;
+using core::certificate::Solids;
+
+std::vector<Claim> claims_of(const Certificate& certificate) {
+    std::vector<Claim> claims;
+    for (const auto& pair : certificate.pairs) {
+        Claim claim{pair.a, pair.b, pair.lower, pair.upper, pair.solids};
+        if (certificate.joints) {
+            const double charge = joint_charge(*certificate.joints, claim.a, claim.b);
+            claim.lower = std::max(0.0, claim.lower - charge);
+            claim.upper += charge;
+            if (!(claim.lower > 0) && claim.solids == Solids::disjoint) claim.solids = Solids::unproven;
+        }
+        claims.push_back(claim);
+    }
+    return claims;
+}
+
+bool moves(const core::stepper::Trajectory& trajectory, int body) {
+    const auto i = static_cast<size_t>(body);
+    if (body < 0 || i >= trajectory.poses.front().size()) return true;  // it is none of the path's: a fault
+    const core::kinematics::Pose& first = trajectory.poses.front()[i];
+    for (const auto& step : trajectory.steps)
+        for (const auto& node : step.nodes)
+            if (node[i].position != first.position || node[i].rotation_vector != Vector3::Zero()) return true;
+    return false;
+}
+
+// A certificate of a motion that neither has joints nor says that the path as stored is what it is of: what its bounds of moving bodies
+// are worth is known only where the source has no joints.
+void doubt_bounds(const core::stepper::Trajectory& trajectory, CheckedCertificate& checked) {
+    for (Claim& claim : checked.claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
+    checked.notes.emplace_back(
+        "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is proven where "
+        "joints hold them; make it anew");
+}
+
+// Is the source still that of the certificate? Nothing to tell if it is.
+struct SourceCheck {
+    bool stale = false;
+    std::string note;
+    bool has_joints = true;  // as far as is known
+};
+
+SourceCheck check_source(const Certificate& certificate, const std::string& path, reading::InputOptions input) {
+    if (certificate.source.empty()) return {};
+    const std::filesystem::path source = file_of_certificate(path, certificate.source);
+    const std::string untold = ": whether its meshes have changed since cannot be told";
+    if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
+    input.check_start = false;
+    const Result<reading::LoadedModel> loaded = reading::load_model(source.string(), input);
+    if (!loaded) {
+        const Error& error = loaded.errors().front();
+        const std::string why = error.where + ": " + error.message;
+        // A file that is not found may be elsewhere (--mesh-dir), a program may not be allowed to run: neither says that something changed.
+        if (error.code == ErrorCode::file_not_found || error.code == ErrorCode::unsupported) return {false, why + untold};
+        return {true, "stale: " + certificate.source + ", which it was made from, can no longer be read: " + why};
+    }
+    if (core::records::geometry_hash(loaded->model) != certificate.geometry_hash)
+        return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+    if (certificate.joints) {
+        const auto joints = core::clearance::ideal_joints(loaded->model, core::stepper::undriven_bodies(loaded->model));
+        if (joints && same_joints(*joints, *certificate.joints)) return {};
+        return {true, "stale: the joints or motors of " + certificate.source + " have changed since"};
+    }
+    if (certificate.motion && loaded->model.mechanism.rows.empty()) return {false, "", false};
+    if (certificate.motion && certificate.is_of_path)
+        return {false, "its bounds are of the path as stored, between whose nodes joints may part"};
+    if (!certificate.linkage) return {};
+    const auto ranges = core::clearance::joint_ranges(loaded->model);
+    const bool same_start = core::records::path_hash(core::clearance::as_assembled(loaded->model)) == certificate.path_hash;
+    if (ranges && ranges->linkage == *certificate.linkage && same_start) return {};
+    return {true, "stale: the joints of " + certificate.source + ", their limits or the start poses have changed since"};
+}
+
+std::vector<CheckedExport> check_exports(const Certificate& certificate, const std::string& path) {
+    std::vector<CheckedExport> list;
+    for (const core::certificate::ExportedFile& exported : certificate.exports) {
+        const Result<std::string> bytes = core::files::read_file(file_of_certificate(path, exported.file));
+        const bool is_same = bytes && core::files::hash_of(*bytes) == exported.hash;
+        list.push_back({exported.file,
+                        !bytes    ? ExportStatus::missing
+                        : is_same ? ExportStatus::same
+                                  : ExportStatus::changed,
+                        exported.rounding});
+    }
+    return list;
+}
+
+std::string note_of(const CheckedExport& exported) {
+    if (exported.status == ExportStatus::missing) return exported.file + ", a file of its bodies, is not there or cannot be read";
+    if (exported.status == ExportStatus::changed || !(exported.rounding > 0)) return {};
+    return exported.file +
+           core::base::formatted(": its vertices are rounded by up to %.2g mm; between its parts bounds are wider by twice that",
+                                 1000 * exported.rounding);
+}
+
+}  // namespace
+
+core::clearance::PairStatus verdict(const Claim& claim, double minimum) {
+    using core::clearance::PairStatus;
+    if (!claim.is_of_bodies) return PairStatus::undecided;
+    if (claim.lower >= minimum && claim.lower > 0 && are_apart(claim.solids)) return PairStatus::clear;
+    return claim.upper < minimum ? PairStatus::violated : PairStatus::undecided;
+}
+
+core::clearance::PairStatus worst_of(const std::vector<Claim>& claims, double minimum) {
+    using core::clearance::PairStatus;
+    PairStatus worst = PairStatus::clear;
+    for (const Claim& claim : claims) {
+        const PairStatus status = verdict(claim, minimum);
+        if (status == PairStatus::violated) return status;
+        if (status == PairStatus::undecided) worst = status;
+    }
+    return worst;
+}
+
+const char* to_string(CertificateStatus status) {
+    switch (status) {
+        case CertificateStatus::accepted:
+            return "accepted";
+        case CertificateStatus::stale:
+            return "stale";
+        case CertificateStatus::rejected:
+            break;
+    }
+    return "rejected";
+}
+
+CheckedCertificate check_certificate_file(const std::string& path, const core::records::StoredTrajectory& stored,
+                                          const reading::InputOptions& input) {
+    CheckedCertificate checked;
+    auto read = core::certificate::read_certificate(path);
+    for (const Error& error : read.errors()) checked.faults.push_back({error.where, error.message});
+    if (!read) return checked;
+    checked.certificate = std::move(read).value();
+    const Certificate& certificate = *checked.certificate;
+    core::certificate::CertificateReport report = core::certificate::check_certificate(certificate, stored);
+    checked.faults = std::move(report.faults);
+    checked.leaves = report.leaves;
+    checked.claims = claims_of(certificate);
+    checked.uncovered = core::certificate::uncovered_pairs(certificate, static_cast<int>(stored.model.bodies.size()));
+    bool stale = report.stale;
+    const auto add_stale = [&](const char* where, const std::string& message) {
+        stale = true;
+        checked.faults.push_back({where, message});
+    };
+    const SourceCheck source = check_source(certificate, path, input);
+    if (source.stale)
+        add_stale("/source", source.note);
+    else if (!source.note.empty())
+        checked.notes.push_back(source.note);
+    checked.exports = check_exports(certificate, path);
+    for (const CheckedExport& exported : checked.exports) {
+        if (exported.status == ExportStatus::changed)
+            add_stale("/exports", "stale: " + exported.file + ", a file of its bodies, has changed since");
+        if (std::string note = note_of(exported); !note.empty()) checked.notes.push_back(std::move(note));
+    }
+    if (certificate.motion && !certificate.joints && !certificate.is_of_path && source.has_joints) doubt_bounds(stored.trajectory, checked);
+    checked.status = checked.faults.empty() ? CertificateStatus::accepted : stale ? CertificateStatus::stale : CertificateStatus::rejected;
+    return checked;
+}
+
+}  // namespace fettle::design::clearance

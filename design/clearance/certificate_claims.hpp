@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+/// What a certificate is worth: is every claim of it proven (certificate_checker.hpp), is it stale (its path, the scene or design that it
+/// was made from, or files of its bodies have changed since), what does it not cover, and do its bounds meet a minimum.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/design/reading/model_file.hpp"
+
+namespace fettle::design::clearance {
+
+struct Claim {
+    int a = 0, b = 0;             ///< bodies of the path
+    double lower = 0, upper = 0;  ///< [m], of joints met at all times where the certificate has joints
+    core::certificate::Solids solids = core::certificate::Solids::unproven;
+    bool is_of_bodies = true;  ///< false: of the path as stored, and it is not known whether joints have the bodies elsewhere between nodes
+};
+
+/// Clear, violated or undecided, of a pair whose claims are proven.
+core::clearance::PairStatus verdict(const Claim& claim, double minimum);
+/// violated if one is; else undecided if one is; else clear.
+core::clearance::PairStatus worst_of(const std::vector<Claim>& claims, double minimum);
+
+enum class ExportStatus { same, changed, missing };
+/// A file that the certificate says was made of its bodies.
+struct CheckedExport {
+    std::string file;
+    ExportStatus status = ExportStatus::same;
+    double rounding = 0;  ///< of its vertices [m]
+};
+
+enum class CertificateStatus { accepted, rejected, stale };
+const char* to_string(CertificateStatus status);
+
+struct CheckedCertificate {
+    CertificateStatus status = CertificateStatus::rejected;
+    std::vector<core::certificate::CertificateFault> faults;    ///< none: accepted
+    std::optional<core::certificate::Certificate> certificate;  ///< nothing: it cannot be read
+    long leaves = 0;                                            ///< of its trees
+    std::vector<Claim> claims;
+    std::vector<std::array<int, 2>> uncovered;  ///< pairs of bodies
+    std::vector<CheckedExport> exports;
+    std::vector<std::string> notes;
+};
+
+/// @param path    of the certificate
+/// @param stored  the path that it speaks of
+CheckedCertificate check_certificate_file(const std::string& path, const core::records::StoredTrajectory& stored,
+                                          const reading::InputOptions& input);
+
+}  // namespace fettle::design::clearance

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/mesh_parts.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/unique_names.hpp"
+#include "fettle/core/geometry/mesh_repair.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/model/build_model.hpp"
+
+namespace fettle::design::clearance {
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::geometry::Mesh;
+
+std::vector<std::string> meshes_in(const fs::path& folder) {
+    std::vector<std::string> files;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code))
+        if (entry.is_regular_file(code) && core::mesh_files::has_mesh_extension(entry.path().string()))
+            files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+// Folders below it that hold meshes, which are not looked at.
+std::vector<std::string> folders_left_out(const fs::path& folder) {
+    std::vector<std::string> folders;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code))
+        if (entry.is_directory(code) && !meshes_in(entry.path()).empty()) folders.push_back(entry.path().string());
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
+Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& paths, std::vector<std::string>& warnings) {
+    std::vector<std::string> files;
+    Errors errors;
+    for (const std::string& path : paths) {
+        std::error_code code;
+        if (fs::is_directory(path, code)) {
+            const std::vector<std::string> found = meshes_in(path);
+            files.insert(files.end(), found.begin(), found.end());
+            if (found.empty())
+                errors.push_back({ErrorCode::file_not_found, path,
+                                  "this folder has no mesh (" + core::mesh_files::mesh_extensions() +
+                                      ") and no trajectory.json; folders below it are not looked into"});
+            for (const std::string& below : folders_left_out(path))
+                warnings.push_back(below + ": the meshes in this folder are left out; name it too if they belong together");
+        } else if (core::mesh_files::has_mesh_extension(path)) {
+            files.push_back(path);
+        } else if (!fs::exists(path, code)) {
+            errors.push_back({ErrorCode::file_not_found, path, "no such file"});
+        } else {
+            errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
+        }
+    }
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const bool again = std::any_of(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(i), [&](const std::string& other) {
+            std::error_code ignored;
+            return fs::equivalent(other, files[i], ignored);
+        });
+        if (again) errors.push_back({ErrorCode::inconsistent, files[i], "is named twice, and would be judged against itself"});
+    }
+    if (!errors.empty()) return errors;
+    return files;
+}
+
+/// What lists of pairs can name, and no other body has.
+std::string body_name(const std::string& of_file, core::files::UniqueNames& names) {
+    std::string name = core::base::shown_on_one_line(of_file);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ':' || c == ',' || c == '*'; }, '_');
+    if (name.empty()) name = "part";
+    return names.unique(name);
+}
+
+core::scene::Body body_of(Mesh mesh, const std::string& path, const reading::InputOptions& input, core::files::UniqueNames& names,
+                          std::vector<std::string>& warnings) {
+    core::scene::Body body;
+    body.name = body_name(mesh.name, names);
+    body.where = path;
+    body.type = core::scene::BodyType::static_body;
+    body.density_given = false;
+    if (!input.strict) {
+        body.mesh_policy = core::scene::MeshPolicy::tolerant;
+        for (const std::string& done : core::geometry::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
+    }
+    body.mesh = std::move(mesh);
+    return body;
+}
+
+}  // namespace
+
+std::optional<std::string> trajectory_in(const std::string& path) {
+    std::error_code code;
+    for (const char* name : {"trajectory.json", "trajectory.running.json"})
+        if (fs::exists(fs::path(path) / name, code)) return (fs::path(path) / name).string();
+    return std::nullopt;
+}
+
+bool are_meshes(const std::vector<std::string>& paths) {
+    if (paths.empty()) return false;
+    std::error_code code;
+    const fs::path first = paths.front();
+    if (fs::is_directory(first, code)) return !trajectory_in(first.string());
+    return core::mesh_files::has_mesh_extension(paths.front());
+}
+
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input) {
+    MeshParts subject;
+    const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
+    if (!files) return files.errors();
+    core::scene::Scene scene;
+    scene.length_unit = 1e-3;
+    Errors errors;
+    if (!unit.empty()) {
+        const Result<double> metres = core::base::metres_per_unit(unit, "--unit");
+        if (!metres) return metres.errors();
+        scene.length_unit = *metres;
+    }
+    subject.files = *files;
+    core::files::UniqueNames names(" ");
+    std::error_code code;
+    for (const std::string& path : *files) {
+        if (unit.empty() && !core::mesh_files::states_its_unit(path) && fs::exists(path, code)) {  // else its reader says why
+            errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
+            continue;
+        }
+        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, input.should_stop});
+        errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
+        if (!parts) continue;
+        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
+    }
+    if (!errors.empty()) return errors;
+    core::model::BuildOptions options;
+    options.check_start = false;
+    Result<core::model::Model> model = core::model::build_model(scene, options);
+    if (!model) return model.errors();
+    subject.model = std::move(*model);
+    const auto& more = subject.model.warnings;
+    subject.warnings.insert(subject.warnings.end(), more.begin(), more.end());
+    if (input.strict && !subject.warnings.empty()) return reading::as_errors(subject.warnings, paths.front());
+    return subject;
+}
+
+}  // namespace fettle::design::clearance

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// Mesh files as a scene: parts where the files have them, nothing moves. For checks of a CAD project without a scene file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/design/reading/model_file.hpp"
+
+namespace fettle::design::clearance {
+
+/// The trajectory of a run's folder, a killed run's too; nothing where the path is none.
+std::optional<std::string> trajectory_in(const std::string& path);
+
+/// Meshes by their extension, or a folder that has no trajectory. Of a list the first decides.
+bool are_meshes(const std::vector<std::string>& paths);
+
+struct MeshParts {
+    core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
+    std::vector<std::string> files;
+    std::vector<std::string> warnings;
+};
+
+/// Bodies: one for each file, called as it without its extension; of a 3MF one for each item of its build, where the build places it,
+/// called as its object. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are written with, become `_`. A folder
+/// stands for the meshes in it, in the order of their names; of those in folders below it a warning tells that they are left out. Meshes
+/// are mended and judged as those of a scene.
+/// @param unit  of files that state none: "mm"; empty: not given.
+/// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
+/// neither a mesh nor a folder among meshes).
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input);
+
+}  // namespace fettle::design::clearance

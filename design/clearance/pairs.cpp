@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/pairs.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <unordered_map>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/quantities/process_presets.hpp"
+
+namespace fettle::design::clearance {
+
+namespace {
+
+using core::model::Model;
+
+// `*` stands for any letters, none included.
+bool matches(std::string_view pattern, std::string_view text) {
+    if (pattern.empty()) return text.empty();
+    if (pattern[0] != '*') return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
+    return matches(pattern.substr(1), text) || (!text.empty() && matches(pattern, text.substr(1)));
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+    return parts;
+}
+
+class Selector {
+public:
+    Selector(const Model& model, const PairOptions& options, bool moves) : model_(model), options_(options), moves_(moves) {}
+
+    Result<PairSelection> select() {
+        for (size_t i = 0; i < model_.bodies.size(); ++i) bodies_.push_back({model_.bodies[i].name, {static_cast<int>(i)}, false});
+        for (const std::string& text : options_.groups) add_group(text);
+        for (const Unit& body : bodies_) {
+            const auto holds = [&](const Unit& g) { return std::count(g.bodies.begin(), g.bodies.end(), body.bodies[0]) > 0; };
+            if (std::none_of(groups_.begin(), groups_.end(), holds)) units_.push_back(body);
+        }
+        units_.insert(units_.end(), groups_.begin(), groups_.end());
+        if (options_.pairs.empty()) {
+            add_all();
+        } else {
+            for (const std::string& token : split(options_.pairs, ',')) add_token(token);
+        }
+        for (const std::string& token : options_.touches) allow_touch(token);
+        for (const std::string& token : split(options_.ignore, ',')) ignore(token);
+        if (!errors_.empty()) return errors_;
+        require();
+        if (!errors_.empty()) return errors_;
+        tidy_left_out();
+        return std::move(selection_);
+    }
+
+private:
+    struct Named {
+        std::vector<Unit> units;
+        bool wildcard = false;
+    };
+
+    void fail(const char* option, ErrorCode code, std::string message) { errors_.push_back({code, option, std::move(message)}); }
+
+    void add_group(const std::string& text) {
+        const size_t equals = text.find('=');
+        Unit group{text.substr(0, equals), {}, true};
+        if (equals == std::string::npos || group.name.empty()) {
+            fail("--group", ErrorCode::parse, "\"" + text + "\" is no group; write name=a,b,c with names of bodies");
+            return;
+        }
+        for (const Unit& other : bodies_) {
+            if (other.name == group.name) fail("--group", ErrorCode::inconsistent, "\"" + group.name + "\" is a body's name already");
+        }
+        for (const std::string& part : split(text.substr(equals + 1), ',')) {
+            const Named found = find(part, bodies_, "--group");
+            for (const Unit& body : found.units) group.bodies.push_back(body.bodies[0]);
+        }
+        std::sort(group.bodies.begin(), group.bodies.end());
+        group.bodies.erase(std::unique(group.bodies.begin(), group.bodies.end()), group.bodies.end());
+        for (const Unit& other : groups_) {
+            for (const int body : group.bodies) {
+                if (std::count(other.bodies.begin(), other.bodies.end(), body))
+                    fail("--group", ErrorCode::inconsistent,
+                         "\"" + model_.bodies[static_cast<size_t>(body)].name + "\" is in both " + other.name + " and " + group.name);
+            }
+        }
+        groups_.push_back(group);
+    }
+
+    Named find(const std::string& name, const std::vector<Unit>& among, const char* option) {
+        Named found;
+        found.wildcard = name.find('*') != std::string::npos;
+        for (const Unit& unit : among) {
+            if (found.wildcard ? matches(name, unit.name) : unit.name == name) found.units.push_back(unit);
+        }
+        if (!found.units.empty()) return found;
+        std::vector<std::string_view> known;
+        known.reserve(among.size());
+        for (const Unit& unit : among) known.push_back(unit.name);
+        std::string message = (found.wildcard ? "no name matches \"" : "there is no body \"") + name + "\"";
+        message += "; " + core::files::did_you_mean(found.wildcard ? "" : name, known);
+        fail(option, ErrorCode::out_of_range, message);
+        return found;
+    }
+
+    // Wildcards stand for what the report has rows of; a body of a group can still be named itself.
+    Named find_unit(const std::string& name, const char* option) {
+        if (name.find('*') != std::string::npos) return find(name, units_, option);
+        std::vector<Unit> all = bodies_;
+        all.insert(all.end(), groups_.begin(), groups_.end());
+        return find(name, all, option);
+    }
+
+    struct Token {
+        Named a, b;
+        std::optional<double> minimum;
+        bool good = false;
+    };
+
+    Token read_token(const std::string& text, const char* option, bool with_minimum) {
+        Token token;
+        const size_t equals = with_minimum ? text.rfind('=') : std::string::npos;
+        const std::string names = text.substr(0, equals);
+        const size_t colon = names.find(':');
+        if (colon == std::string::npos || names.find(':', colon + 1) != std::string::npos) {
+            fail(option, ErrorCode::parse,
+                 "\"" + text + "\" is no pair; write " + (option == std::string_view("--allow-touch") ? "A:B" : "A:B,C:D") +
+                     " with names of bodies" + (with_minimum ? ", or A:B=0.4mm" : ""));
+            return token;
+        }
+        const size_t errors_before = errors_.size();
+        token.a = find_unit(names.substr(0, colon), option);
+        token.b = find_unit(names.substr(colon + 1), option);
+        if (equals != std::string::npos) {
+            const Result<double> minimum = core::base::parse_length(text.substr(equals + 1), option);
+            errors_.insert(errors_.end(), minimum.errors().begin(), minimum.errors().end());
+            if (minimum) token.minimum = *minimum;
+            if (minimum && *minimum < 0) fail(option, ErrorCode::out_of_range, "\"" + text + "\": a length is not negative");
+        }
+        token.good = errors_.size() == errors_before;
+        return token;
+    }
+
+    static bool same(const Unit& x, const Unit& y) { return x.name == y.name; }
+    static bool overlap(const Unit& x, const Unit& y) {
+        return std::any_of(x.bodies.begin(), x.bodies.end(), [&](int i) { return std::count(y.bodies.begin(), y.bodies.end(), i) > 0; });
+    }
+
+    void add_token(const std::string& text) {
+        const Token token = read_token(text, "--pairs", true);
+        if (!token.good) return;
+        const bool named = !token.a.wildcard && !token.b.wildcard;
+        if (named && overlap(token.a.units[0], token.b.units[0])) {
+            fail("--pairs", ErrorCode::inconsistent, "\"" + text + "\" pairs a body with itself");
+            return;
+        }
+        for (const Unit& a : token.a.units) {
+            for (const Unit& b : token.b.units) {
+                if (!overlap(a, b)) add(a, b, named, token.minimum);
+            }
+        }
+    }
+
+    void add_all() {
+        for (size_t i = 0; i < units_.size(); ++i) {
+            for (size_t j = i + 1; j < units_.size(); ++j) add(units_[i], units_[j], false, std::nullopt);
+        }
+    }
+
+    // Later tokens make earlier ones more precise: `*:*,pin:plate=0.4mm`.
+    void add(const Unit& a, const Unit& b, bool named, std::optional<double> minimum) {
+        PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", false, 0, named, {}};
+        for (const int i : a.bodies) {
+            for (const int j : b.bodies) {
+                if (named || is_judged(i, j)) pair.body_pairs.emplace_back(i, j);
+            }
+        }
+        if (pair.body_pairs.empty()) {
+            for (const int i : a.bodies)
+                for (const int j : b.bodies)
+                    if (!is_one_group(i, j)) pair.body_pairs.emplace_back(i, j);
+            if (!pair.body_pairs.empty()) selection_.left_out.push_back(pair);
+            return;
+        }
+        const auto [place, is_new] = places_.try_emplace(key(a, b), selection_.pairs.size());
+        if (is_new) {
+            selection_.pairs.push_back(std::move(pair));
+            return;
+        }
+        PairSpec& known = selection_.pairs[place->second];
+        if (minimum) {
+            known.minimum = *minimum;
+            known.required_by = pair.required_by;
+        }
+        if (named && !known.named) {
+            known.named = true;
+            known.a = a;
+            known.b = b;
+            known.body_pairs = pair.body_pairs;
+        }
+    }
+
+    // The same in either order.
+    static std::string key(const Unit& a, const Unit& b) {
+        return a.name < b.name ? a.name + std::string(1, '\0') + b.name : b.name + std::string(1, '\0') + a.name;
+    }
+
+    // Of the scene; or joined by a joint that lets the two overlap.
+    bool is_one_group(int i, int j) const {
+        const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
+        const auto& joined_bodies = model_.mechanism.not_colliding;
+        return (x.group >= 0 && x.group == y.group) ||
+               std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(i, j)));
+    }
+
+    // Patterns of --pairs ask for whatever they match.
+    bool is_judged(int i, int j) const {
+        if (!options_.pairs.empty() || !moves_) return !is_one_group(i, j);
+        return judged_by_default(model_, i, j);
+    }
+
+    // Wildcards stand for the pairs that there are; a pair of names becomes one.
+    void allow_touch(const std::string& text) {
+        const Token token = read_token(text, "--allow-touch", true);
+        if (!token.good) return;
+        if (token.minimum && !(*token.minimum > 0))
+            return fail("--allow-touch", ErrorCode::out_of_range, "\"" + text + "\": a depth is greater than 0");
+        if (!token.a.wildcard && !token.b.wildcard) {
+            const Unit &a = token.a.units[0], &b = token.b.units[0];
+            if (overlap(a, b)) return fail("--allow-touch", ErrorCode::inconsistent, "\"" + text + "\" pairs a body with itself");
+            add(a, b, true, std::nullopt);
+        }
+        bool found = false;
+        for (PairSpec& pair : selection_.pairs) {
+            if (!is_of(pair, token)) continue;
+            found = true;
+            if (pair.minimum > 0 && pair.required_by == "--pairs") {
+                fail("--allow-touch", ErrorCode::inconsistent,
+                     "\"" + text + "\": --pairs requires a clearance of the same pair; give one of the two");
+                return;
+            }
+            pair.may_touch = true;
+            pair.touch_depth = token.minimum.value_or(0);
+        }
+        if (!found) fail("--allow-touch", ErrorCode::out_of_range, "no pair that is judged matches \"" + text + "\"");
+    }
+
+    static bool is_of(const PairSpec& pair, const Token& token) {
+        const auto among = [](const Unit& unit, const Named& named) {
+            return std::any_of(named.units.begin(), named.units.end(), [&](const Unit& u) { return same(u, unit); });
+        };
+        return (among(pair.a, token.a) && among(pair.b, token.b)) || (among(pair.a, token.b) && among(pair.b, token.a));
+    }
+
+    void ignore(const std::string& text) {
+        const Token token = read_token(text, "--ignore", false);
+        if (!token.good) return;
+        auto& pairs = selection_.pairs;
+        const auto hit = [&](const PairSpec& p) { return is_of(p, token); };
+        for (const PairSpec& pair : pairs) {
+            if (hit(pair)) selection_.ignored.push_back(pair.a.name + ":" + pair.b.name);
+        }
+        pairs.erase(std::remove_if(pairs.begin(), pairs.end(), hit), pairs.end());
+        auto& out = selection_.left_out;
+        out.erase(std::remove_if(out.begin(), out.end(), hit), out.end());
+    }
+
+    // The longest side of the box of a part as it is drawn: the largest part of a group.
+    double size_of(const Unit& unit) const {
+        double size = 0;
+        for (const int i : unit.bodies) {
+            const Matrix3X& x = model_.bodies[static_cast<size_t>(i)].mesh.vertices;
+            size = std::max(size, (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff());
+        }
+        return size;
+    }
+
+    void require() {
+        std::optional<quantities::ProcessPreset> preset;
+        if (!options_.process.empty()) {
+            const auto found = quantities::process_preset(options_.process, "--process");
+            errors_.insert(errors_.end(), found.errors().begin(), found.errors().end());
+            if (!found) return;
+            preset = *found;
+        }
+        const bool some =
+            std::any_of(selection_.pairs.begin(), selection_.pairs.end(), [](const PairSpec& p) { return !p.required_by.empty(); });
+        for (PairSpec& pair : selection_.pairs) {
+            if (!pair.required_by.empty()) continue;
+            pair.minimum = 0;
+            if (pair.may_touch) continue;
+            const std::string name = pair.a.name + ":" + pair.b.name;
+            if (options_.minimum) {
+                pair.minimum = *options_.minimum;
+                pair.required_by = "--minimum";
+            } else if (preset) {
+                const Result<double> required = quantities::required_clearance(*preset, size_of(pair.a), size_of(pair.b), "pair " + name);
+                errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
+                pair.minimum = required ? *required : 0;
+                pair.required_by = "--process " + options_.process;
+            } else if (some) {
+                fail("--minimum", ErrorCode::missing_key,
+                     "what does " + name + " need? say --minimum 0.3mm, --process fdm, or --pairs " + name + "=0.3mm");
+                return;
+            }
+        }
+    }
+
+    // Each once, and not what another token named.
+    void tidy_left_out() {
+        std::set<std::string> told;
+        for (const PairSpec& pair : selection_.pairs) told.insert(key(pair.a, pair.b));
+        std::vector<PairSpec> once;
+        for (PairSpec& pair : selection_.left_out) {
+            pair.minimum = 0;
+            if (told.insert(key(pair.a, pair.b)).second) once.push_back(std::move(pair));
+        }
+        selection_.left_out = std::move(once);
+    }
+
+    const Model& model_;
+    const PairOptions& options_;
+    bool moves_;
+    std::vector<Unit> bodies_, groups_, units_;  // units: rows of the report by default
+    PairSelection selection_;
+    std::unordered_map<std::string, size_t> places_;  // in selection_.pairs while it grows, by key()
+    Errors errors_;
+};
+
+}  // namespace
+
+Result<PairSelection> select_pairs(const Model& model, const PairOptions& options, bool moves) {
+    return Selector(model, options, moves).select();
+}
+
+bool judged_by_default(const core::model::Model& model, int a, int b) {
+    const auto dynamic = [](const core::model::Body& body) { return body.type == core::scene::BodyType::dynamic_body; };
+    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
+    const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
+    if (a == b || (first.group >= 0 && first.group == second.group)) return false;
+    const auto& joined_bodies = model.mechanism.not_colliding;
+    if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
+    const auto still = [](const core::model::Body& body) { return body.type == core::scene::BodyType::static_body; };
+    return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
+}
+
+std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
+    std::vector<std::string> names;
+    for (const PairSpec& pair : pairs) names.push_back(pair.a.name + ":" + pair.b.name);
+    return names;
+}
+
+std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection& selection) {
+    std::set<std::pair<int, int>> covered;
+    for (const PairSpec& pair : selection.pairs)
+        for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
+    std::vector<std::string> list;
+    const auto count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b)
+            if (covered.count({a, b}) == 0)
+                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
+    return list;
+}
+
+}  // namespace fettle::design::clearance

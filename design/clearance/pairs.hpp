@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// Which pairs `fettle clearance` judges and what it requires of each: --pairs, --ignore, --group, --minimum, --process.
+///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have, and what a joint joins
+///   over a motion: every pair that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at for a
+///   clash only
+///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own
+///   --ignore A:B,...     the same without minimum; order of the two does not matter
+///   --allow-touch A:B    they may touch: no minimum applies to them, and what is deeper than rounding is still a clash; A:B=0.02mm: up to
+///                        that depth. A pair that is named so is judged
+///   --group name=a,b,c   bodies that are one rigid set: not judged against each other, one row of the report against others
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::design::clearance {
+
+struct PairOptions {
+    std::string pairs, ignore;
+    std::vector<std::string> groups, touches;
+    std::optional<double> minimum;  ///< [m], per side
+    std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it, which the report says
+};
+
+/// A body, or a group.
+struct Unit {
+    std::string name;
+    std::vector<int> bodies;
+    bool is_group = false;
+};
+
+struct PairSpec {
+    Unit a, b;
+    double minimum = 0;                           ///< [m]
+    std::string required_by;                      ///< "--minimum", "--process fdm" or "--pairs"; empty: only its distance is wanted
+    bool may_touch = false;                       ///< that the two touch is accepted
+    double touch_depth = 0;                       ///< how deep they may be in each other for that [m]; 0: the default
+    bool named = false;                           ///< by name, not by default or by `*`: judged even if dynamics makes them touch
+    std::vector<std::pair<int, int>> body_pairs;  ///< to measure; first of a, second of b
+};
+
+struct PairSelection {
+    std::vector<PairSpec> pairs;
+    std::vector<std::string> ignored;  ///< "A:B"
+    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: a clash of theirs is told, nothing else
+};
+
+/// Without any minimum only distances are wanted, and no pair has one.
+/// @param moves  over a motion, or over ranges of joints; false: as assembled
+/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one,
+/// a pair that may touch and is not there, or has a minimum of its own.
+Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options, bool moves);
+
+/// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
+/// where nothing moves, all; but never those of one group, nor what a joint joins.
+bool judged_by_default(const core::model::Model& model, int a, int b);
+
+/// "A:B" of each.
+std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
+
+/// "A:B" of the pairs of bodies that none of the selection's pairs speaks of.
+std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
+
+}  // namespace fettle::design::clearance

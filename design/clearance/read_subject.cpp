@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/read_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/model/start_check.hpp"
+#include "fettle/core/records/poses_file.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/stepper/jointed_motion.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+#include "fettle/core/stepper/step_count.hpp"
+#include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
+
+namespace fettle::design::clearance {
+
+namespace {
+
+using core::base::formatted;
+using core::base::joined;
+using core::scene::BodyType;
+
+// What moves without dynamics is kinematic, what does not move is static: whoever reads the stored trajectory then knows.
+void mark_as_scripted(Subject& subject) {
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i) {
+        bool moves = false;
+        for (const auto& step : subject.trajectory.steps) {
+            for (const auto& node : step.nodes)
+                moves = moves || node[i].rotation_vector != Vector3::Zero() || node[i].position != subject.trajectory.poses[0][i].position;
+        }
+        subject.model.bodies[i].type = moves ? BodyType::kinematic_body : BodyType::static_body;
+    }
+}
+
+Result<Subject> from_trajectory(const SubjectOptions& options) {
+    if (options.ranges) return Error{ErrorCode::unsupported, options.path, "a trajectory has no joints: --ranges wants a scene or design"};
+    if (!options.poses.empty() || options.kinematic)
+        return Error{ErrorCode::inconsistent, options.path,
+                     "a trajectory has its motion; --poses and --kinematic go with a scene or design"};
+    Result<core::records::StoredTrajectory> stored = core::records::read_trajectory(options.path);
+    if (!stored) return stored.errors();
+    Subject subject;
+    subject.model = std::move(stored->model);
+    subject.trajectory = std::move(stored->trajectory);
+    subject.source = SubjectSource::trajectory;
+    subject.scene_path = stored->scene_path;
+    subject.notes.insert(subject.notes.end(), stored->warnings.begin(), stored->warnings.end());
+    return subject;
+}
+
+Errors take_poses(const SubjectOptions& options, Subject& subject) {
+    std::optional<double> unit;
+    if (!options.poses_unit.empty()) {
+        const Result<double> metres = core::base::metres_per_unit(options.poses_unit, "--poses-unit");
+        if (!metres) return metres.errors();
+        unit = *metres;
+    }
+    auto read = core::records::read_poses(options.poses, subject.model, unit);
+    if (!read) return read.errors();
+    subject.trajectory = std::move(read->trajectory);
+    subject.source = SubjectSource::poses;
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i) subject.model.bodies[i].pose_start = subject.trajectory.poses[0][i];
+    if (!read->still.empty())
+        subject.notes.push_back("not in " + options.poses + ", so held where the scene has them: " + joined(read->still));
+    if (read->largest_rotation_error > 1e-12) {
+        subject.notes.push_back(
+            formatted("rotations in %s are off by up to %.2g; the nearest rotations were taken, and bounds speak of those",
+                      options.poses.c_str(), read->largest_rotation_error));
+    }
+    const double cut = read->largest_cut, unit_length = subject.model.length_unit;
+    if (cut > 1e-6) {
+        subject.notes.push_back(
+            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
+                      "goes round an axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
+                      read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, answers::unit_name(unit_length).c_str()));
+    }
+    return {};
+}
+
+std::string joints_note(const Subject& subject, const core::stepper::JointedMotion& followed) {
+    const double unit = subject.model.length_unit;
+    const std::string name = answers::unit_name(unit);
+    std::string note = formatted(
+        "--kinematic: joints and motors are met at every node, each step in %d; between nodes joints of the path "
+        "as stored part by at most %.2g %s",
+        followed.parts, followed.joint_gap / unit, name.c_str());
+    if (!subject.joints->joints)
+        return note + "; where joints met at all times would have the bodies is not proven: " + subject.joints->refusal;
+    const auto& deviations = subject.joints->joints->deviations;
+    const auto most = std::max_element(deviations.begin(), deviations.end());
+    if (most == deviations.end()) return note;
+    const int body = subject.joints->joints->bodies[static_cast<size_t>(most - deviations.begin())];
+    return note + formatted(
+                      "; bounds are of joints met at all times, which have the bodies within %.2g %s of that path (the most: %s): each "
+                      "bound is wider by what its two bodies are off",
+                      *most / unit, name.c_str(), subject.model.bodies[static_cast<size_t>(body)].name.c_str());
+}
+
+// Where joints and motors have the bodies.
+Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
+    auto followed = core::stepper::follow_joints(subject.model, steps, core::stepper::default_joint_gap(subject.model));
+    if (!followed) {
+        Errors errors = followed.errors();
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        return errors;
+    }
+    subject.joints = core::clearance::jointed_path(subject.model, *followed);
+    subject.trajectory = std::move(followed->trajectory);
+    subject.source = SubjectSource::scripted;
+    if (!followed->held.empty())
+        subject.notes.push_back("--kinematic: no motor and no script drives these, which are held at their start poses: " +
+                                joined(followed->held));
+    subject.notes.push_back(joints_note(subject, *followed));
+    mark_as_scripted(subject);
+    return {};
+}
+
+void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
+    core::stepper::SimulationOptions simulate_options;
+    simulate_options.steps = steps;
+    simulate_options.on_step = watch.on_step;
+    simulate_options.should_stop = watch.should_stop;
+    core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
+    subject.trajectory = std::move(simulation.trajectory);
+    subject.source = SubjectSource::simulated;
+    const std::string status = core::stepper::to_string(simulation.report.status), &why = simulation.report.message;
+    if (simulation.report.status != core::stepper::SimulationStatus::ok)
+        subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
+}
+
+// Of a scene or design, whose joints have ranges.
+Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel& loaded) {
+    Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(loaded.model);
+    if (!ranges) {
+        Errors errors = ranges.errors();
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        return errors;
+    }
+    return subject_over(std::move(loaded.model), *std::move(ranges));
+}
+
+std::vector<std::string> all_paths(const SubjectOptions& options) {
+    std::vector<std::string> paths{options.path};
+    paths.insert(paths.end(), options.more.begin(), options.more.end());
+    return paths;
+}
+
+// What goes with meshes, and with them alone.
+Errors check_inputs(const SubjectOptions& options, bool meshes) {
+    if (meshes && (options.motion || options.kinematic))
+        return {{ErrorCode::inconsistent, options.path, "meshes do not move; --poses FILE moves them, or write a scene"}};
+    const bool makes_motion = options.motion || options.kinematic;
+    if ((options.steps >= 0 || options.time >= 0) && !makes_motion)
+        return {
+            {ErrorCode::inconsistent, options.steps >= 0 ? "--steps" : "--time",
+             "is of a motion that is made here: add --motion or --kinematic (as assembled nothing moves; a trajectory or poses are judged "
+             "whole)"}};
+    if (options.ranges && !options.more.empty())
+        return {{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}};
+    if (meshes) return {};
+    if (!options.more.empty())
+        return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
+    const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // of what is none it is told what it is
+    if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is of meshes; this file says its own"}};
+    return {};
+}
+
+Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const std::string& unit,
+                                           const reading::InputOptions& input, Subject& subject) {
+    Result<MeshParts> meshes = load_meshes(paths, unit, input);
+    if (!meshes) return meshes.errors();
+    subject.files = std::move(meshes->files);
+    reading::LoadedModel loaded;
+    loaded.kind = reading::FileKind::mesh;
+    loaded.model = std::move(meshes->model);
+    loaded.warnings = std::move(meshes->warnings);
+    return loaded;
+}
+
+}  // namespace
+
+Result<Subject> read_subject(const SubjectOptions& options, const reading::InputOptions& input, const SubjectWatch& watch) {
+    const std::vector<std::string> paths = all_paths(options);
+    std::error_code ignored;
+    if (options.ranges && options.more.empty() && std::filesystem::is_directory(options.path, ignored))
+        return Error{ErrorCode::unsupported, options.path, "is a folder: --ranges wants a scene or design, whose joints have ranges"};
+    const bool meshes = are_meshes(paths) && !(options.ranges && options.more.empty());
+    if (const Errors errors = check_inputs(options, meshes); !errors.empty()) return errors;
+    const reading::FileKind kind = meshes ? reading::FileKind::mesh : reading::file_kind(options.path);
+    if (kind == reading::FileKind::trajectory) return from_trajectory(options);
+    Subject subject;
+    reading::InputOptions any_start = input;
+    any_start.check_start = false;
+    Result<reading::LoadedModel> loaded =
+        meshes ? loaded_meshes(paths, options.unit, input, subject) : reading::load_model(options.path, kind, any_start);
+    if (!loaded) return loaded.errors();
+    if (watch.on_warnings) watch.on_warnings(loaded->warnings);
+    if (options.ranges) {
+        Result<Subject> over = from_ranges(options, *loaded);
+        if (!over) return over;
+        subject = *std::move(over);
+    } else {
+        subject.model = std::move(loaded->model);
+    }
+    subject.warnings = std::move(loaded->warnings);
+    subject.scene_path = loaded->scene_path;
+    if (subject.ranges) return subject;
+    const auto& bodies = subject.model.bodies;
+    const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
+    const int steps = options.steps >= 0  ? options.steps
+                      : options.time >= 0 ? core::stepper::step_count(options.time, subject.model.timestep)
+                                          : loaded->steps;
+    if (!options.poses.empty()) {
+        const Errors errors = take_poses(options, subject);
+        if (!errors.empty()) return errors;
+        mark_as_scripted(subject);
+    } else if (options.kinematic && !subject.model.mechanism.rows.empty()) {
+        Errors errors = take_joints(options, steps, subject);
+        if (!errors.empty()) return errors;
+    } else if (options.kinematic || (options.motion && all_scripted)) {
+        subject.trajectory = core::stepper::follow_scripts(subject.model, steps);
+        subject.source = SubjectSource::scripted;
+        const auto held = core::stepper::held_bodies(subject.model);
+        if (!held.empty()) subject.notes.push_back("--kinematic: what would move freely is held at its start pose: " + joined(held));
+        mark_as_scripted(subject);
+    } else if (options.motion) {
+        // Only what starts apart can be simulated; a report as assembled tells of the rest.
+        Errors errors = core::model::check_start(subject.model);
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        if (!errors.empty()) return errors;
+        simulate(steps, watch, subject);
+    } else {
+        subject.trajectory = core::clearance::as_assembled(subject.model);
+    }
+    if (subject.source != SubjectSource::as_assembled && !subject.motion())
+        subject.notes.push_back("there is no motion, only a start: judged as assembled");
+    return subject;
+}
+
+}  // namespace fettle::design::clearance

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/clearance/subject.hpp"
+
+#include <utility>
+
+#include "fettle/core/base/text.hpp"
+
+namespace fettle::design::clearance {
+
+namespace {
+
+std::vector<std::string> notes_of_ranges(const core::model::Model& model, const core::clearance::JointRanges& ranges) {
+    using core::base::joined;
+    std::vector<std::string> notes, turns, motors;
+    if (!ranges.held.empty()) notes.push_back("held at the start pose, as no joint connects them to the world: " + joined(ranges.held));
+    for (const auto& coordinate : ranges.linkage.coordinates)
+        if (coordinate.is_whole_turn) turns.push_back(coordinate.joints.front().joint);
+    if (!turns.empty()) notes.push_back("without limits, so over whole turns: " + joined(turns));
+    for (const auto& joint : model.mechanism.joints)
+        if (joint.is_motor) motors.push_back(joint.name);
+    if (!motors.empty()) notes.push_back("what motors do counts for nothing here, limits do: " + joined(motors));
+    return notes;
+}
+
+}  // namespace
+
+const char* to_string(SubjectSource source) {
+    switch (source) {
+        case SubjectSource::as_assembled:
+            return "as assembled";
+        case SubjectSource::simulated:
+            return "over the simulated motion";
+        case SubjectSource::scripted:
+            return "over the scripted motion, without dynamics";
+        case SubjectSource::poses:
+            return "over the poses read";
+        case SubjectSource::trajectory:
+            return "over the trajectory";
+        case SubjectSource::ranges:
+            return "over the ranges of the joints";
+    }
+    return "";
+}
+
+Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory) {
+    Subject subject;
+    subject.source = trajectory ? SubjectSource::trajectory : SubjectSource::as_assembled;
+    subject.trajectory = trajectory ? *std::move(trajectory) : core::clearance::as_assembled(model);
+    subject.model = std::move(model);
+    return subject;
+}
+
+Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges) {
+    Subject subject = subject_of(std::move(model));
+    subject.source = SubjectSource::ranges;
+    subject.notes = notes_of_ranges(subject.model, ranges);
+    subject.ranges = std::move(ranges);
+    return subject;
+}
+
+std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                    const core::clearance::ClearanceOptions& options) {
+    if (subject.ranges) return core::clearance::certify_ranges(subject.model, *subject.ranges, pairs, options);
+    if (subject.joints) return core::clearance::certify_jointed(subject.model, subject.trajectory, pairs, options, *subject.joints);
+    return core::clearance::certify_clearance(subject.model, subject.trajectory, pairs, options);
+}
+
+core::clearance::ProvenClearances certify_with_proof(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                     const core::clearance::ClearanceOptions& options) {
+    if (subject.ranges) return core::clearance::certify_ranges_with_proof(subject.model, *subject.ranges, pairs, options);
+    if (subject.joints)
+        return core::clearance::certify_jointed_with_proof(subject.model, subject.trajectory, pairs, options, *subject.joints);
+    return core::clearance::certify_clearance_with_proof(subject.model, subject.trajectory, pairs, options);
+}
+
+double joint_charge(const Subject& subject, int a, int b) {
+    if (!subject.joints || !subject.joints->joints) return 0;
+    return core::certificate::joint_charge(*subject.joints->joints, a, b);
+}
+
+bool may_push(const Subject& subject, int a, int b) {
+    const bool dynamics = subject.source == SubjectSource::simulated || subject.source == SubjectSource::trajectory;
+    return dynamics && subject.motion() && core::model::may_collide(subject.model, a, b);
+}
+
+core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::clearance::PairClearance& pair, int body) {
+    const core::clearance::Witness& witness = pair.witness;
+    const core::kinematics::Pose pose = subject.ranges
+                                            ? core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body)
+                                            : core::stepper::pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
+    return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[static_cast<size_t>(body)].reference_point)};
+}
+
+void for_joints(
+    const core::clearance::JointRanges& ranges, const core::clearance::PairClearance& pair,
+    const std::function<void(const core::certificate::JointCoordinate&, double, const core::certificate::LinkageCoordinate&)>& visit) {
+    for (size_t k = 0; k < pair.coordinates.size(); ++k) {
+        const core::certificate::LinkageCoordinate& c = ranges.linkage.coordinates[static_cast<size_t>(pair.coordinates[k])];
+        for (const auto& joint : c.joints) visit(joint, joint.scale * pair.at[k] + joint.offset, c);
+    }
+}
+
+}  // namespace fettle::design::clearance

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+/// What a clearance is asked of: bodies, and where they go: along a path, whatever it comes from, or to all positions of their joints.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/clearance/jointed_clearance.hpp"
+#include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::design::clearance {
+
+enum class SubjectSource { as_assembled, simulated, scripted, poses, trajectory, ranges };
+const char* to_string(SubjectSource source);
+
+struct Subject {
+    core::model::Model model;  ///< its start poses are those of the trajectory; bodies moved by poses or scripts alone are kinematic
+    core::stepper::Trajectory trajectory;  ///< over ranges: as assembled
+    SubjectSource source = SubjectSource::as_assembled;
+    std::string scene_path;
+    std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
+    std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
+    std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
+    std::vector<std::string> warnings;                   ///< of the files
+    std::vector<std::string> notes;                      ///< what the reader of a report should know
+    std::vector<std::string> files;                      ///< the meshes, where nothing else was read
+
+    /// Without steps there is none, wherever the poses come from.
+    bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
+};
+
+/// As assembled, or along a path of the model's bodies.
+Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory = std::nullopt);
+/// Over all positions of the joints.
+Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges);
+
+/// Certified bounds: of the path, of the joints beside it, or over the ranges.
+std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                    const core::clearance::ClearanceOptions& options);
+/// The same with its certificate.
+core::clearance::ProvenClearances certify_with_proof(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
+                                                     const core::clearance::ClearanceOptions& options);
+
+/// By how much joints widen the bounds of two bodies [m].
+double joint_charge(const Subject& subject, int a, int b);
+
+/// In a motion with dynamics, can these two push each other? Then coming close is what they are for, unless someone asks for more.
+bool may_push(const Subject& subject, int a, int b);
+
+/// Where a pair is nearest: the pose of a body, of any, as its file's frame has it.
+core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::clearance::PairClearance& pair, int body);
+
+/// Calls visit(joint, value, coordinate) for each joint that moves one of the two against the other, with its own coordinate where the pair
+/// is nearest: geared joints, too.
+void for_joints(
+    const core::clearance::JointRanges& ranges, const core::clearance::PairClearance& pair,
+    const std::function<void(const core::certificate::JointCoordinate&, double, const core::certificate::LinkageCoordinate&)>& visit);
+
+}  // namespace fettle::design::clearance

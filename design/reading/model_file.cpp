@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/model_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include "fettle/core/base/stop.hpp"
+#include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/check_scene.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/scene_shapes.hpp"
+
+namespace fettle::design::reading {
+
+namespace {
+
+std::string read_here() {
+    return "scenes, designs and trajectories are JSON (.json); meshes, which a scene names, are " + core::mesh_files::mesh_extensions();
+}
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+/// A file that is no JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
+bool is_foreign(const std::string& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".json" || extension.empty()) return false;
+    std::ifstream file(path);
+    char first = 0;
+    return static_cast<bool>(file >> first) && first != '{';
+}
+
+Errors foreign_error(const std::string& path) {
+    const std::string extension = extension_of(path);
+    const std::string what = core::mesh_files::has_mesh_extension(path)
+                                 ? "is a mesh, not a scene or design; write a scene that names it, or ask fettle validate"
+                                 : "a file of kind `" + extension + "` is not read";
+    return {{ErrorCode::unsupported, path, what + "; " + read_here()}};
+}
+
+/// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
+Errors strict_faults(const std::string& scene_path, const InputOptions& options) {
+    core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
+    read_options.strict_meshes = true;
+    const Result<core::scene::Scene> scene = core::scene::read_scene(scene_path, read_options);
+    if (!scene) return scene.errors();
+    const core::model::SceneCheck check = core::model::check_scene(*scene, true);
+    return check.errors.empty() ? as_errors(check.warnings, scene_path) : check.errors;
+}
+
+Result<LoadedModel> load_design(const std::string& path, const InputOptions& options) {
+    Result<DesignFile> file = open_design(path, options);
+    if (!file) return file.errors();
+    LoadedModel loaded;
+    loaded.kind = FileKind::design;
+    loaded.scene_path = file->scene_path;
+    loaded.steps = file->design.steps;
+    loaded.warnings = file->warnings;
+    const VectorX values = description::values_of(file->design.parameters);
+    Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
+    if (!problem) return problem.errors();
+    Result<core::model::Model> model = problem->model_at(values);
+    if (!model) return model.errors();
+    loaded.model = std::move(model).value();
+    loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
+    loaded.model.warnings = loaded.problem->warnings();  // a design's own models take its meshes as sound
+    return loaded;
+}
+
+Result<LoadedModel> load_scene(const std::string& path, const InputOptions& options) {
+    core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
+    read_options.strict_meshes = options.strict;
+    read_options.should_stop = options.should_stop;
+    Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
+    if (!scene) return scene.errors();
+    LoadedModel loaded;
+    loaded.scene_path = path;
+    loaded.warnings = std::move(scene->warnings);
+    core::model::BuildOptions build;
+    build.check_start = options.check_start;
+    const core::base::StopScope scope(options.should_stop);
+    Result<core::model::Model> model = core::model::build_model(*std::move(scene), build);
+    if (!model) return model.errors();
+    loaded.model = std::move(model).value();
+    return loaded;
+}
+
+}  // namespace
+
+FileKind file_kind(const std::string& path) {
+    using namespace std::string_view_literals;
+    static constexpr std::array keys{"fettle_scene"sv, "fettle_design"sv, "fettle_trajectory"sv, "fettle_certificate"sv,
+                                     "fettle_range_certificate"sv};
+    static constexpr std::array kinds{FileKind::scene, FileKind::design, FileKind::trajectory, FileKind::certificate,
+                                      FileKind::certificate};
+    if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
+    const auto key = std::find(keys.begin(), keys.end(), core::files::top_level_key(path, keys));
+    return key == keys.end() ? FileKind::scene : kinds[static_cast<std::size_t>(key - keys.begin())];
+}
+
+Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {
+    if (kind != FileKind::trajectory && kind != FileKind::certificate) return {};
+    const bool is_trajectory = kind == FileKind::trajectory;
+    return {{ErrorCode::unsupported, path,
+             std::string("is a ") + (is_trajectory ? "trajectory" : "certificate") + ", not a " + wanted + "; " +
+                 (is_trajectory ? "clearance" : "validate") + ", draw and export to other formats take it"}};
+}
+
+Result<LoadedModel> load_model(const std::string& path, const InputOptions& options) { return load_model(path, file_kind(path), options); }
+
+Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options) {
+    if (is_foreign(path)) return foreign_error(path);
+    if (Errors errors = not_wanted(path, kind, "scene"); !errors.empty()) return errors;
+    Result<LoadedModel> loaded = kind == FileKind::design ? load_design(path, options) : load_scene(path, options);
+    if (!loaded) return loaded.errors();
+    const auto& more = loaded->model.warnings;
+    loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
+    if (options.strict && !loaded->warnings.empty()) return as_errors(loaded->warnings, path);
+    return loaded;
+}
+
+Result<DesignFile> open_design(const std::string& path, const InputOptions& options) {
+    if (is_foreign(path)) return foreign_error(path);
+    Result<DesignFile> file = read_design(path, {options.mesh_dirs, options.programs});
+    if (!file) {
+        Errors errors = not_wanted(path, file_kind(path), "design");
+        return errors.empty() ? file.errors() : errors;
+    }
+    if (!options.strict) return file;
+    Errors errors = strict_faults(file->scene_path, options);
+    if (!errors.empty()) return errors;
+    return file;
+}
+
+Errors as_errors(const std::vector<std::string>& warnings, const std::string& file) {
+    Errors errors;
+    for (const std::string& warning : warnings) errors.push_back({ErrorCode::inconsistent, file, warning});
+    return errors;
+}
+
+}  // namespace fettle::design::reading
