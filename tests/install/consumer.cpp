@@ -2,8 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include <fettle/fettle.hpp>
 
 int main() {
     const fettle::Vector3 turn(0, 0, std::acos(-1.0) / 2);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// Simulated motion and proven clearances, in the order in which one meets them: a scene is read or made, a model built from it, its motion
+/// simulated, clearances certified. Everything else under core/ is what these are made of.
+#pragma once
+
+// A scene: as data, and read from its file.
+#include "fettle/core/scene/scene.hpp"
+#include "fettle/core/scene/scene_reader.hpp"
+// The model that is built from it, const from then on.
+#include "fettle/core/model/build_model.hpp"
+// Its motion: by dynamics, or where scripts or joints and motors say everything.
+#include "fettle/core/stepper/jointed_motion.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/core/stepper/simulate.hpp"
+// Certified clearances: over a motion, of joints met at all times, over ranges of joints; and who does not trust us checks them.
+#include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/jointed_clearance.hpp"
+#include "fettle/core/clearance/range_clearance.hpp"
+// Files: trajectories and meshes, and whether a mesh is what it should be.
+#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/core/records/trajectory_io.hpp"
+// Results and their errors, units, threads.
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/base/version.hpp"
