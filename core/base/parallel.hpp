@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Loops over an index range on several threads whose results have the same bits for any number of threads: the range is cut
 /// into pieces by `grain` alone, and partial results are combined in the order of the indices.
-/// Threads that have helped with a loop stay awake for the next one, for two milliseconds.
 /// Backend: oneTBB; std::thread when built for the thread sanitizer, which reports false races in TBB.
 #pragma once
 
