@@ -13,6 +13,20 @@ std::vector<Move> vector_moves(const std::string& place, const Vector3& directio
     return moves;
 }
 
+std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
+    std::vector<std::string> names;
+    for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+    return names;
+}
+
+core::expression::Scope scope_of(const std::vector<Parameter>& parameters) {
+    core::expression::Scope scope;
+    scope.what = "parameter";
+    for (const Parameter& parameter : parameters)
+        scope.names.push_back({parameter.name, core::expression::powers_of(parameter.unit.dimension)});
+    return scope;
+}
+
 VectorX values_of(const std::vector<Parameter>& parameters) {
     VectorX p(static_cast<Eigen::Index>(parameters.size()));
     for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;

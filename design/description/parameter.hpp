@@ -13,6 +13,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/expression/parse_formula.hpp"
 
 namespace fettle::design::description {
 
@@ -35,6 +36,9 @@ struct Parameter {
 };
 
 VectorX values_of(const std::vector<Parameter>& parameters);
+std::vector<std::string> names_of(const std::vector<Parameter>& parameters);
+/// The parameters as what formulas may name; numbers without a unit count in SI.
+core::expression::Scope scope_of(const std::vector<Parameter>& parameters);
 
 /// What is wrong with p (SI) as values of these parameters, by name: not one finite number for each, or one that is farther beyond its
 /// bounds than they are apart. Within that, differences and searches may look beyond a bound; farther out it is most often a number in

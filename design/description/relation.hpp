@@ -11,7 +11,9 @@
 #include <string>
 
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/design/description/constraint.hpp"
+#include "fettle/design/description/parameter.hpp"
 
 namespace fettle::design::description {
 
@@ -27,8 +29,12 @@ struct Relation {
     /// Of all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads at once.
     /// Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
-    std::string formula = {};  ///< what `at` was read from (reading/expression.hpp); empty: made by a program
+    std::string formula = {};  ///< what `at` was read from (core/expression/parse_formula.hpp); empty: made by a program
 };
+
+/// A formula of parameters as what a relation asks for. Contract: its inputs are among these parameters.
+std::function<RelationValue(const VectorX&)> function_of(const core::expression::Formula& formula,
+                                                         const std::vector<Parameter>& parameters);
 
 /// max(0, lower - value, value - upper) in units of the bounds, 0 within the tolerance; infinity for a value that is not a number.
 double violation(const Relation& relation, double value);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/reading/expression.hpp"
 
 namespace fettle::design::python {
 
@@ -102,9 +102,9 @@ py::object relation_to_python(const Relation& relation) {
 description::Design with_formulas(description::Design design) {
     for (Relation& relation : design.relations) {
         if (relation.at || relation.formula.empty()) continue;
-        auto expression = std::make_shared<const reading::Expression>(
-            value_or_raise(reading::parse_expression(relation.formula, design.parameters, "relation `" + relation.name + "`")));
-        relation.at = [expression](const VectorX& p) { return reading::evaluate(*expression, p); };
+        const auto formula = value_or_raise(core::expression::parse_formula(relation.formula, description::scope_of(design.parameters),
+                                                                            "relation `" + relation.name + "`"));
+        relation.at = description::function_of(formula, design.parameters);
     }
     return design;
 }

@@ -6,12 +6,14 @@
 #include <memory>
 #include <set>
 
-#include "fettle/design/reading/expression.hpp"
+#include "fettle/core/expression/parse_formula.hpp"
 
 namespace fettle::design::reading {
 
 namespace {
 
+using core::expression::DimensionPowers;
+using core::expression::Formula;
 using core::files::JsonNode;
 using description::Bounds;
 using description::Relation;
@@ -22,7 +24,7 @@ constexpr double usual_slack = 1e-5;  // of what a relation changes by over the 
 // In which a number without a unit is understood; none: it has to have one.
 bool may_be_plain(const DimensionPowers& dimension) {
     for (const Dimension plain : {Dimension::number, Dimension::length, Dimension::area, Dimension::mass}) {
-        if (same(dimension, powers_of(plain))) return true;
+        if (same(dimension, core::expression::powers_of(plain))) return true;
     }
     return false;
 }
@@ -30,7 +32,9 @@ bool may_be_plain(const DimensionPowers& dimension) {
 class RelationReader {
 public:
     RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, std::set<std::string> names)
-        : context_(context), parameters_(parameters), names_(std::move(names)) {}
+        : context_(context), parameters_(parameters), scope_(description::scope_of(parameters)), names_(std::move(names)) {
+        scope_.plain_unit = [&context](Dimension dimension) { return context.formula_unit(dimension); };
+    }
 
     std::optional<Relation> read(const JsonNode& node) {
         node.allow_keys({"type", "name", "expression", "lower", "upper", "margin", "tolerance"});
@@ -39,33 +43,30 @@ public:
         if (!node["lower"].exists() && !node["upper"].exists())
             node.fail(ErrorCode::missing_key, "a relation has `lower`, `upper` or both");
         if (!text) return std::nullopt;
-        const auto expression = read_expression(node["expression"], *text);
-        if (!expression) return std::nullopt;
-        const RelationValue start = value_at_start(node["expression"], *expression);
+        const auto formula = read_formula(node["expression"], *text);
+        if (!formula) return std::nullopt;
         Relation relation;
         relation.name = unique_name(name.value_or(*text), names_);
-        relation.at = [expression](const VectorX& p) { return evaluate(*expression, p); };
+        relation.at = description::function_of(*formula, parameters_);
         relation.formula = *text;
-        read_bounds(node, expression->dimension, change(start), relation);
+        const RelationValue start = value_at_start(node["expression"], relation);
+        read_bounds(node, formula->dimension, change(start), relation);
         return relation;
     }
 
 private:
-    std::shared_ptr<const Expression> read_expression(const JsonNode& node, const std::string& text) const {
-        Result<Expression> expression = parse_expression(text, parameters_);
-        if (!expression) {
-            for (const Error& error : expression.errors()) node.fail(error.code, error.message);
-            return nullptr;
+    std::optional<Formula> read_formula(const JsonNode& node, const std::string& text) const {
+        Result<Formula> formula = core::expression::parse_formula(text, scope_);
+        if (!formula) {
+            for (const Error& error : formula.errors()) node.fail(error.code, error.message);
+            return std::nullopt;
         }
-        const auto& code = expression->code;
-        const bool depends =
-            std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.operation == Operation::parameter; });
-        if (!depends) node.fail(ErrorCode::inconsistent, "this names no parameter, so no design could change it");
-        return std::make_shared<const Expression>(std::move(expression).value());
+        if (formula->is_constant()) node.fail(ErrorCode::inconsistent, "this names no parameter, so no design could change it");
+        return std::move(formula).value();
     }
 
-    RelationValue value_at_start(const JsonNode& node, const Expression& expression) const {
-        RelationValue start = evaluate(expression, description::values_of(parameters_));
+    RelationValue value_at_start(const JsonNode& node, const Relation& relation) const {
+        RelationValue start = relation.at(description::values_of(parameters_));
         if (!std::isfinite(start.value) || !start.gradient.allFinite())
             node.fail(ErrorCode::not_finite, "its value or its derivative is not a finite number at the parameters' values");
         return start;
@@ -91,12 +92,12 @@ private:
             node.fail(ErrorCode::wrong_type, "the expression is " + described(dimension) + "; write " + node.shown() + " with its unit");
             return std::nullopt;
         }
-        const Result<Expression> constant = parse_expression(*node.string(), {});
+        const Result<Formula> constant = core::expression::parse_formula(*node.string(), {.what = "parameter"});
         if (!constant) {
             for (const Error& error : constant.errors()) node.fail(error.code, error.message);
             return std::nullopt;
         }
-        const double value = evaluate(*constant, {}).value;
+        const double value = core::expression::value_of<double>(*constant, {});
         if (!same(constant->dimension, dimension)) {
             node.fail(ErrorCode::wrong_type,
                       node.shown() + " is " + described(constant->dimension) + "; the expression is " + described(dimension));
@@ -130,6 +131,7 @@ private:
 
     const ReadContext& context_;
     const std::vector<description::Parameter>& parameters_;
+    core::expression::Scope scope_;
     std::set<std::string> names_;
 };
 

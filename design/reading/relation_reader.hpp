@@ -3,7 +3,7 @@
 ///     { "type": "relation", "expression": "crank_radius / rod_length", "upper": 0.35 }
 ///     { "type": "relation", "name": "Grashof", "expression": "2 * (min(a, b, c, d) + max(a, b, c, d)) - (a + b + c + d)", "upper": 0 }
 ///     { "type": "relation", "expression": "left + right", "lower": "30mm", "upper": "30mm" }
-/// The formula: expression.hpp.
+/// The formula: core/expression/parse_formula.hpp.
 #pragma once
 
 #include <vector>

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
+#include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/geometry/mesh_judgement.hpp"
@@ -24,7 +25,6 @@
 #include "fettle/core/scene/scene_reader.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/expression.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
@@ -170,11 +170,12 @@ void read_urdf(std::string_view bytes) {
 }
 
 void read_expression(std::string_view bytes) {
-    std::vector<design::description::Parameter> parameters(2);
-    parameters[0].name = "width";
-    parameters[1].name = "height";
-    const auto formula = design::reading::parse_expression(bytes, parameters, "formula");
-    if (formula) (void)design::reading::evaluate(*formula, VectorX::Constant(2, 0.5));
+    using namespace core::expression;
+    Scope scope;
+    scope.names = {{"width", powers_of(Dimension::length)}, {"height", powers_of(Dimension::length)}};
+    const auto formula = parse_formula(bytes, scope, "formula");
+    const std::vector<double> inputs(formula ? formula->inputs.size() : 0, 0.5);
+    if (formula) (void)differentiated(*formula, inputs);
 }
 
 void read_ccd(std::string_view bytes) {

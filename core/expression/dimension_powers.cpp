@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/dimension_powers.hpp"
+#include "fettle/core/expression/dimension_powers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-namespace fettle::design::reading {
+namespace fettle::core::expression {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::string described(const DimensionPowers& powers) {
     return text;
 }
 
-}  // namespace fettle::design::reading
+}  // namespace fettle::core::expression

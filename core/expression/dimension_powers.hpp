@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Dimensions as powers of length, mass, time and angle, so that they can be multiplied: a length times a length is an area. Of products
-/// and powers in an expression (expression.hpp); those that have units of their own are base::Dimension.
+/// and powers in an expression (formula.hpp); those that have units of their own are base::Dimension.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/base/units.hpp"
 
-namespace fettle::design::reading {
+namespace fettle::core::expression {
 
 /// Exponents of m, kg, s and rad. An angle is a dimension of its own here, so that 30 degrees are never taken for the number 30.
 struct DimensionPowers {
@@ -29,4 +29,4 @@ std::optional<Dimension> named_dimension(const DimensionPowers& powers);
 /// "a length", "an angle", "a quantity in m^4 kg^-1"; for messages.
 std::string described(const DimensionPowers& powers);
 
-}  // namespace fettle::design::reading
+}  // namespace fettle::core::expression

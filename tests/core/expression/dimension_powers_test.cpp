@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/dimension_powers.hpp"
+#include "fettle/core/expression/dimension_powers.hpp"
 
 #include <catch2/catch.hpp>
 
-namespace fettle::design::reading::dimension_powers_test {
+namespace fettle::core::expression::dimension_powers_test {
 
 TEST_CASE("every dimension of a unit has powers, and is named by them") {
     for (const Unit& unit : units()) {
@@ -27,4 +27,4 @@ TEST_CASE("dimensions multiply, and have names where they are known") {
     CHECK(described(product(length, powers_of(Dimension::stiffness), -1)) == "a quantity in m kg^-1 s^2");
 }
 
-}  // namespace fettle::design::reading::dimension_powers_test
+}  // namespace fettle::core::expression::dimension_powers_test

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// Formulas as people write them: `2 * crank_radius + 0.5 mm`, `max(a, b)`, `if(gap < 0.2 mm, a, b)`, `'long name' ^ 2`:
+///   + - * / ^ ( )   as usual: -a^2 is -(a^2), a^b^c is a^(b^c)
+///   min(a, b, ...)  max(a, b, ...)  hypot(a, b, ...)  abs(a)  sqrt(a)
+///   sin(a)  cos(a)  tan(a)      of an angle, or of a number, which is in radians
+///   asin(a)  acos(a)  atan(a)  atan2(y, x)      angles
+///   exp(a)  log(a)  of numbers; log is the natural logarithm
+///   floor(a)        of what no input changes
+///   if(a < b, x, y) x where a < b, else y; also > <= >=
+///   pi
+///   numbers         with a unit where they have a dimension: `2 mm`, `30deg`; of a unit as much is read as there is one: 2 mm^2 is two
+///                   square millimetres, (2 mm)^2 are four. A number without a unit that is added to or compared with a quantity counts in
+///                   the file's unit of that dimension: `gap + 0.1` in a file in mm
+///   names           of inputs and variables; in single quotes where the name is no word (letters, digits, _ and .)
+/// A `=` at the beginning is passed over. Dimensions are checked: what is added or compared has one dimension, and an exponent is a number
+/// (a constant one, unless its base is a number too). By hand: libraries of formulas neither check dimensions nor differentiate, nor say
+/// where in the text a fault is.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/expression/formula.hpp"
+
+namespace fettle::core::expression {
+
+/// The names that a text may use.
+struct Scope {
+    struct Name {
+        std::string name;
+        DimensionPowers dimension;
+        std::optional<Formula> meaning = {};  ///< a variable's formula over inputs; none: an input itself
+    };
+    std::vector<Name> names;
+    std::string what = "variable";  ///< what they are, for messages
+    /// The SI value of the unit in which a number without a unit counts; 0: there is none, and a unit is wanted. Empty: SI.
+    std::function<double(base::Dimension)> plain_unit = {};
+
+    const Name* find(std::string_view name) const;
+};
+
+/// Errors, all that can be told, each with the place in the text: syntax (parse), names and functions that do not exist, with the nearest
+/// one (out_of_range), dimensions that do not go together (wrong_type). `where` is copied into each.
+base::Result<Formula> parse_formula(std::string_view text, const Scope& scope, const std::string& where = {});
+
+/// The same where a quantity of this dimension is wanted: a number (one that no input changes) counts in `si_per_number`.
+/// Errors: another dimension (wrong_type).
+base::Result<Formula> parse_formula_of(std::string_view text, const Scope& scope, base::Dimension dimension, double si_per_number,
+                                       const std::string& where = {});
+
+/// `name`, in single quotes if it is no word; the text of a formula that is this input.
+std::string quoted_if_needed(std::string_view name);
+
+/// Can formulas name it? Not empty, no single quote.
+bool is_possible_name(std::string_view name);
+
+}  // namespace fettle::core::expression
