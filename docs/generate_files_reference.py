@@ -23,7 +23,11 @@ What they mean together: [concepts.md](concepts.md); whole files: [examples/](..
 [core/scene/README.md](../core/scene/README.md). All other files: [interface.md](interface.md#files).
 
 A key in **bold** is required; `outer.inner` is a key of an object inside. A length is a number in the file's `units`, or a text with a unit
-of its own: `"0.3mm"`. Unknown keys are refused, with the nearest known one.
+of its own: `"0.3mm"`; so is every number that has a dimension (`"2 N/mm"`, `"30deg"`). A text that begins with `=` is a formula, of the
+scene's `variables` and, in a design, its parameters: `"= bore - 2 * gap"`. Formulas know `+ - * / ^ ( )`, `min max hypot abs sqrt sin cos tan
+asin acos atan atan2 exp log floor`, `if(a < b, x, y)` and `pi`; dimensions are checked, and a number without a unit beside a quantity counts in
+the file's unit (angles: degrees). Numbers that no design can move (counts, time steps, tolerances of the solver) take formulas of constants
+alone. Unknown keys are refused, with the nearest known one.
 """
 
 
@@ -63,7 +67,7 @@ class Reference:
             if self.has_section(definition):
                 return f"[{name.replace('_', ' ')}](#{self.anchor(name)})"
             return {"length": "length", "lengths": "3 lengths", "point": "3 lengths", "vector": "3 numbers", "positive": "number > 0",
-                    "not_negative": "number >= 0"}.get(name) or self.type_of(definition)
+                    "not_negative": "number >= 0", "number": "number"}.get(name) or self.type_of(definition)
         if "const" in schema:
             return quoted(schema["const"])
         if "enum" in schema:

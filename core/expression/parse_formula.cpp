@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <numbers>
+#include <set>
 #include <tuple>
 
 #include "fettle/core/base/limits.hpp"
@@ -127,30 +128,8 @@ private:
         return add({operation, {a, std::max(b, 0), std::max(c, 0)}, 0});
     }
 
-    // Only what the value needs, in the order in which it was read.
     Formula formula_of(const Term& term) const {
-        std::vector<bool> is_used(nodes_.size(), false);
-        is_used[static_cast<std::size_t>(term.node)] = true;
-        for (std::size_t k = static_cast<std::size_t>(term.node) + 1; k-- > 0;)
-            for (int i = 0; is_used[k] && i < operand_count(nodes_[k].operation); ++i)
-                is_used[static_cast<std::size_t>(nodes_[k].operands[static_cast<std::size_t>(i)])] = true;
-        Formula out;
-        std::vector<int> moved(nodes_.size(), 0);
-        for (std::size_t k = 0; k <= static_cast<std::size_t>(term.node); ++k) {
-            if (!is_used[k]) continue;
-            Node node = nodes_[k];
-            if (node.operation == Operation::input) {
-                out.inputs.push_back(inputs_[static_cast<std::size_t>(node.operands[0])]);
-                node.operands[0] = static_cast<int>(out.inputs.size()) - 1;
-            }
-            for (int i = 0; i < operand_count(node.operation); ++i) {
-                int& operand = node.operands[static_cast<std::size_t>(i)];
-                operand = moved[static_cast<std::size_t>(operand)];
-            }
-            moved[k] = static_cast<int>(out.nodes.size());
-            out.nodes.push_back(node);
-        }
-        if (term.dimension) out.dimension = *term.dimension;
+        Formula out = expression::formula_of(needed_for(nodes_, term.node), inputs_, *term.dimension);
         out.text = text_;
         return out;
     }
@@ -414,7 +393,76 @@ private:
     base::Errors errors_;
 };
 
+class Definer {
+public:
+    Definer(const std::map<std::string, std::string>& texts, Scope& scope,
+            const std::function<Scope::Name(const std::string&, Formula)>& define)
+        : texts_(texts), scope_(scope), define_(define) {}
+
+    base::Errors run() {
+        for (const auto& [name, text] : texts_) add(name);
+        return std::move(errors_);
+    }
+
+private:
+    // After those that it names.
+    void add(const std::string& name) {
+        if (!done_.insert(name).second) return;
+        constexpr std::size_t deepest_chain = 200;
+        if (open_.size() > deepest_chain) return fail(name, "variables follow from one another more than 200 deep");
+        const std::string& text = texts_.at(name);
+        open_.push_back(name);
+        for (const std::string& other : names_in(text)) {
+            if (std::find(open_.begin(), open_.end(), other) != open_.end()) {
+                open_.pop_back();
+                return fail(name, "the variable `" + other + "` follows from itself");
+            }
+            if (texts_.count(other) != 0) add(other);
+        }
+        open_.pop_back();
+        base::Result<Formula> formula = parse_formula(text, scope_);
+        for (const base::Error& error : formula.errors()) fail(name, error.message, error.code);
+        if (formula) scope_.names.push_back(define_(name, std::move(formula).value()));
+    }
+
+    void fail(const std::string& name, const std::string& message, ErrorCode code = ErrorCode::inconsistent) {
+        errors_.push_back({code, name, message});
+        if (scope_.find(name) == nullptr) scope_.names.push_back({name, {}, constant_formula(1)});
+    }
+
+    const std::map<std::string, std::string>& texts_;
+    Scope& scope_;
+    const std::function<Scope::Name(const std::string&, Formula)>& define_;
+    std::set<std::string> done_;
+    std::vector<std::string> open_;
+    base::Errors errors_;
+};
+
 }  // namespace
+
+base::Errors define_variables(const std::map<std::string, std::string>& texts, Scope& scope,
+                              const std::function<Scope::Name(const std::string&, Formula)>& define) {
+    return Definer(texts, scope, define).run();
+}
+
+std::function<double(Dimension)> plain_units(double length_unit, double mass_unit) {
+    return [=](Dimension dimension) {
+        switch (dimension) {
+            case Dimension::length:
+            case Dimension::speed:
+                return length_unit;
+            case Dimension::area:
+                return length_unit * length_unit;
+            case Dimension::mass:
+                return mass_unit;
+            case Dimension::angle:
+            case Dimension::angular_speed:
+                return std::numbers::pi / 180;
+            default:
+                return 1.0;
+        }
+    };
+}
 
 const Scope::Name* Scope::find(std::string_view name) const {
     const auto found = std::find_if(names.begin(), names.end(), [&](const Name& other) { return other.name == name; });
@@ -439,6 +487,27 @@ base::Result<Formula> parse_formula_of(std::string_view text, const Scope& scope
         formula->dimension.is_number() && unit != nullptr ? "; multiply it by a unit, such as `1 " + std::string(unit->name) + "`" : "";
     return base::Error{ErrorCode::wrong_type, where,
                        "this is " + described(formula->dimension) + ", " + described(powers_of(dimension)) + " is wanted" + remedy};
+}
+
+std::vector<std::string> names_in(std::string_view text) {
+    std::vector<std::string> out;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t begin = at;
+        if (text[at] == '\'') {
+            const std::size_t end = std::min(text.find('\'', at + 1), text.size());
+            out.emplace_back(text.substr(at + 1, end - at - 1));
+            at = end + 1;
+        } else if (starts_word(text[at])) {
+            while (at < text.size() && is_of_word(text[at])) ++at;
+            out.emplace_back(text.substr(begin, at - begin));
+        } else if (is_digit(text[at])) {  // with the unit behind it
+            while (at < text.size() && (is_of_word(text[at]) || is_space(text[at]))) ++at;
+        } else {
+            ++at;
+        }
+    }
+    return out;
 }
 
 std::string quoted_if_needed(std::string_view name) {

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,19 @@ base::Result<Formula> parse_formula(std::string_view text, const Scope& scope, c
 /// Errors: another dimension (wrong_type).
 base::Result<Formula> parse_formula_of(std::string_view text, const Scope& scope, base::Dimension dimension, double si_per_number,
                                        const std::string& where = {});
+
+/// Adds variables to a scope, each after those that it names, whatever their order. What each becomes in the scope is said by `define`: a
+/// name with a meaning, or an input. @param texts  Their names and formulas.
+/// @return faults, `where` the variable's name; one that has faults, or follows from itself, is there as a number.
+base::Errors define_variables(const std::map<std::string, std::string>& texts, Scope& scope,
+                              const std::function<Scope::Name(const std::string& name, Formula formula)>& define);
+
+/// Units of numbers without one in a file (Scope::plain_unit): lengths, speeds and areas by `length_unit` [m], angles in degrees, masses in
+/// `mass_unit` [kg], others SI.
+std::function<double(base::Dimension)> plain_units(double length_unit, double mass_unit = 1);
+
+/// The words of a text that may be names of inputs and variables; functions are among them, units behind numbers are not.
+std::vector<std::string> names_in(std::string_view text);
 
 /// `name`, in single quotes if it is no word; the text of a formula that is this input.
 std::string quoted_if_needed(std::string_view name);

@@ -21,20 +21,54 @@ constexpr std::string_view force_keys[] = {"stiffness", "rest", "preload", "damp
 struct CoordinateUnit {
     bool is_angle = false;
     double length = 1;
+    double number() const { return is_angle ? radians(1) : length; }
     std::optional<double> read(const JsonNode& node) const {
-        if (!is_angle) return node.length(length);
-        const auto degrees = node.number();
-        return degrees ? std::optional(radians(*degrees)) : std::nullopt;
+        return node.quantity(is_angle ? base::Dimension::angle : base::Dimension::length, number());
+    }
+    std::optional<double> read_rate(const JsonNode& node) const {
+        return node.quantity(is_angle ? base::Dimension::angular_speed : base::Dimension::speed, number());
+    }
+    std::optional<double> read_effort(const JsonNode& node, const files::NumberRange& range = files::any_number) const {
+        return node.quantity(is_angle ? base::Dimension::torque : base::Dimension::force, 1, range);
+    }
+    std::optional<double> read_stiffness(const JsonNode& node) const {
+        return node.quantity(is_angle ? base::Dimension::number : base::Dimension::stiffness, 1, files::not_negative);
     }
 };
 
+// A body's file frame at the start, as numbers that may follow from variables: world = rotation x + position.
+struct Frame {
+    std::array<Number3, 3> rotation{Number3{1, 0, 0}, Number3{0, 1, 0}, Number3{0, 0, 1}};  // rows
+    Number3 position{0, 0, 0};
+
+    // Points with w = 1, directions with w = 0.
+    Number3 to_world(const Number3& x, double w) const {
+        Number3 out;
+        for (std::size_t i = 0; i < 3; ++i)
+            out[i] = rotation[i][0] * x[0] + rotation[i][1] * x[1] + rotation[i][2] * x[2] + w * position[i];
+        return out;
+    }
+    Number3 from_world(const Number3& x, double w) const {
+        const Number3 d{x[0] - w * position[0], x[1] - w * position[1], x[2] - w * position[2]};
+        Number3 out;
+        for (std::size_t i = 0; i < 3; ++i) out[i] = rotation[0][i] * d[0] + rotation[1][i] * d[1] + rotation[2][i] * d[2];
+        return out;
+    }
+};
+
+bool is_constant(const Number3& x) {
+    return std::all_of(x.begin(), x.end(), [](const expression::Number& number) { return number.is_constant(); });
+}
+
 class MechanismReader {
 public:
-    MechanismReader(double unit, const std::vector<Body>& bodies) : unit_(unit), bodies_(bodies) {
+    MechanismReader(double unit, const std::vector<Body>& bodies, SceneFormulas& formulas)
+        : unit_(unit), bodies_(bodies), formulas_(formulas) {
         for (const Body& body : bodies) body_names_.push_back(body.name);
     }
 
     Mechanism read(const JsonNode& root) {
+        body_nodes_ = root["bodies"].elements();
         for (const JsonNode& node : root["joints"].elements()) read_joint(node);
         for (const JsonNode& node : root["springs"].elements()) read_spring(node, true);
         for (const JsonNode& node : root["dampers"].elements()) read_spring(node, false);
@@ -76,6 +110,37 @@ private:
         return {};
     }
 
+    // Of a body's file frame; the numbers of its node, with what they follow from.
+    Frame frame_of(const std::string& body) const {
+        Frame frame;
+        for (const Body& b : bodies_) {
+            if (b.name != body) continue;
+            const Matrix3 rotation = b.pose.rotation;
+            for (Eigen::Index i = 0; i < 3; ++i)
+                for (Eigen::Index k = 0; k < 3; ++k)
+                    frame.rotation[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = rotation(i, k);
+            for (const JsonNode& node : body_nodes_) {
+                if (node.where() != b.where) continue;
+                frame.position = formulas_.vector(node["position"], b.pose.position);
+                const bool is_vector = b.orientation.kind == Orientation::Kind::vector;
+                const Number3 numbers = formulas_.vector(node[is_vector ? "rotation_vector" : "rotation"], b.orientation.numbers);
+                if (!is_constant(numbers)) frame.rotation = is_vector ? rotation_of_vector(numbers) : rotation_of_angles(numbers);
+                return frame;
+            }
+            for (Eigen::Index k = 0; k < 3; ++k) frame.position[static_cast<std::size_t>(k)] = b.pose.position[k];
+        }
+        return frame;
+    }
+
+    // Three numbers of a joint or spring; `value` takes their values, if a formula is in them.
+    void bind(const JsonNode& node, const std::string& key, const Number3& numbers, Vector3& value) {
+        if (is_constant(numbers)) return;
+        for (std::size_t k = 0; k < 3; ++k) {
+            value[static_cast<Eigen::Index>(k)] = numbers[k].value;
+            formulas_.bind(node.pointer() + "/" + key + "/" + std::to_string(k), numbers[k]);
+        }
+    }
+
     // `a` (absent: the world) and `b`; where each end is: in its own frame, or where the other is at the start, or both at a place of the
     // world.
     void read_ends(const JsonNode& node, bool with_axis, Attachment& a, Attachment& b) {
@@ -97,6 +162,7 @@ private:
         const auto from_world = [](const kinematics::Pose& pose, const Vector3& x, double w) {
             return Vector3(pose.rotation.transpose() * (x - w * pose.position));
         };
+        const Frame frame_a = frame_of(a.body), frame_b = frame_of(b.body);
         const auto read_pair = [&](const std::string& key, double w, const auto& read, Vector3& at_a, Vector3& at_b) {
             const auto both = read(node[key]), own_a = read(node[key + "_a"]), own_b = read(node[key + "_b"]);
             if (node[key].exists() && (node[key + "_a"].exists() || node[key + "_b"].exists()))
@@ -111,6 +177,13 @@ private:
             const Vector3 world = both ? *both : own_a ? to_world(pose_a, *own_a, w) : to_world(pose_b, *own_b, w);
             at_a = own_a ? *own_a : from_world(pose_a, world, w);
             at_b = own_b ? *own_b : from_world(pose_b, world, w);
+            // What is computed of formulas is one too.
+            Number3 world_numbers = formulas_.vector(node[key], world);
+            if (!both && own_a) world_numbers = frame_a.to_world(formulas_.vector(node[key + "_a"], *own_a), w);
+            if (!both && !own_a) world_numbers = frame_b.to_world(formulas_.vector(node[key + "_b"], *own_b), w);
+            if (!own_a) bind(node, key + "_a", frame_a.from_world(world_numbers, w), at_a);
+            if (!own_b) bind(node, key + "_b", frame_b.from_world(world_numbers, w), at_b);
+            if (both) formulas_.use(node[key]);
         };
         read_pair("point", 1, place, a.point, b.point);
         if (with_axis) read_pair("axis", 0, direction, a.axis, b.axis);
@@ -118,11 +191,11 @@ private:
 
     CoordinateForces read_forces(const JsonNode& node, const CoordinateUnit& unit) {
         CoordinateForces out;
-        out.stiffness = node["stiffness"].number(files::not_negative).value_or(0);
+        out.stiffness = unit.read_stiffness(node["stiffness"]).value_or(0);
         out.rest = unit.read(node["rest"]);
-        out.preload = node["preload"].number().value_or(0);
+        out.preload = unit.read_effort(node["preload"]).value_or(0);
         out.damping = node["damping"].number(files::not_negative).value_or(0);
-        out.friction = node["friction"].number(files::not_negative).value_or(0);
+        out.friction = unit.read_effort(node["friction"], files::not_negative).value_or(0);
         for (const char* key : {"rest", "preload"})
             if (node[key].exists() && !(out.stiffness > 0))
                 node[key].fail(ErrorCode::inconsistent,
@@ -244,18 +317,20 @@ private:
         out_.springs.push_back(std::move(spring));
     }
 
-    Curve read_curve(const JsonNode& node, const auto& amount) const {
+    Curve read_curve(const JsonNode& node, const auto& amount, const auto& rate) const {
         Curve curve;
         if (!node.is_object()) {
             curve.times = {0};
             curve.values = {amount(node).value_or(0)};
+            formulas_.bind(node.pointer() + "/values/0", formulas_.number(node, curve.values[0]));
+            formulas_.use(node);
             return curve;
         }
         node.allow_keys({"rate", "times", "values", "stop_time", "profile"});
         static const std::vector<std::string_view> kinds{"linear", "cubic", "trapezoid", "control_points"};
         const std::string kind = node["profile"].choice(kinds).value_or("linear");
         curve.kind = static_cast<CurveKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-        curve.rate = amount(node["rate"]).value_or(0);
+        curve.rate = rate(node["rate"]).value_or(0);
         curve.stop_time = node["stop_time"].number(files::not_negative);
         curve.times = node["times"].numbers().value_or(std::vector<double>{});
         for (const JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value).value_or(0));
@@ -280,7 +355,9 @@ private:
         motor.joint = read_choice(node.require("joint"), joint_names_, "joint");
         const CoordinateUnit unit = unit_at(motor.joint);
         const auto amount = [&](const JsonNode& n) { return unit.read(n); };
-        const auto effort = [&](const JsonNode& n) { return n.number(); };
+        const auto rate = [&](const JsonNode& n) { return unit.read_rate(n); };
+        const auto effort = [&](const JsonNode& n) { return unit.read_effort(n); };
+        const auto effort_rate = [](const JsonNode& n) { return n.number(); };
         const char *motion = unit.is_angle ? "angle" : "travel", *push = unit.is_angle ? "torque" : "force";
         if (motor.joint.empty()) return;  // which is told
         int given = 0;
@@ -291,11 +368,11 @@ private:
                       std::string("one of `") + motion + "`, `speed` and `" + push + "` is wanted for `" + motor.joint + "`");
             return;
         }
-        if (node[motion].exists()) motor.curve = read_curve(node[motion], amount);
-        if (node["speed"].exists()) motor.curve.rate = unit.read(node["speed"]).value_or(0);
+        if (node[motion].exists()) motor.curve = read_curve(node[motion], amount, rate);
+        if (node["speed"].exists()) motor.curve.rate = unit.read_rate(node["speed"]).value_or(0);
         if (node[push].exists()) {
             motor.kind = MotorKind::effort;
-            motor.curve = read_curve(node[push], effort);
+            motor.curve = read_curve(node[push], effort, effort_rate);
         }
         out_.motors.push_back(std::move(motor));
     }
@@ -308,12 +385,14 @@ private:
         load.name = read_name(node);
         load.body = read_choice(node.require("body"), body_names_, "body");
         load.point = node.require("point").length3(unit_).value_or(Vector3::Zero());
-        load.force = node.require("force").vector3().value_or(Vector3::Zero());
+        load.force = node.require("force").quantity3(base::Dimension::force, 1).value_or(Vector3::Zero());
         out_.loads.push_back(std::move(load));
     }
 
     double unit_;
     const std::vector<Body>& bodies_;
+    SceneFormulas& formulas_;
+    std::vector<JsonNode> body_nodes_;  // of the file
     std::vector<std::string> body_names_, joint_names_;
     std::set<std::string> names_;
     Mechanism out_;
@@ -321,8 +400,8 @@ private:
 
 }  // namespace
 
-Mechanism read_mechanism(const JsonNode& root, double unit, const std::vector<Body>& bodies) {
-    return MechanismReader(unit, bodies).read(root);
+Mechanism read_mechanism(const JsonNode& root, double unit, const std::vector<Body>& bodies, SceneFormulas& formulas) {
+    return MechanismReader(unit, bodies, formulas).read(root);
 }
 
 }  // namespace fettle::core::scene

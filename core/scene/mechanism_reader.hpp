@@ -7,12 +7,14 @@
 
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
+#include "fettle/core/scene/scene_formulas.hpp"
 
 namespace fettle::core::scene {
 
 /// @param root    of the file.
 /// @param unit    of lengths [m].
-/// @param bodies  already read: where they are at the start.
-Mechanism read_mechanism(const files::JsonNode& root, double unit, const std::vector<Body>& bodies);
+/// @param bodies    already read: where they are at the start.
+/// @param formulas  of the file: what is computed of formulas is bound there.
+Mechanism read_mechanism(const files::JsonNode& root, double unit, const std::vector<Body>& bodies, SceneFormulas& formulas);
 
 }  // namespace fettle::core::scene

@@ -166,6 +166,20 @@ const char* has_no_rate(const Item& item) {
     return item.body().prescribed[dof] ? nullptr : "has no motor on that coordinate; give it one in the scene, under `prescribed`";
 }
 
+template <Orientation::Kind kind>
+Numbers orientation_of(const Item& item) {
+    Orientation& orientation = item.body().orientation;
+    return orientation.kind == kind ? Numbers(&orientation.numbers) : Numbers();
+}
+template <Orientation::Kind kind>
+const char* has_no_orientation(const Item& item) {
+    const Body& body = item.body();
+    if (body.orientation.kind != kind) return kind == Orientation::Kind::angles ? "is turned by a rotation vector" : "is turned by angles";
+    constexpr double rounding = 1e-12;
+    const bool is_its_own = body.turn.isZero(0) && (rotation_of(body.orientation) - body.pose.rotation).cwiseAbs().maxCoeff() > rounding;
+    return is_its_own ? "has a rotation that was made otherwise; a `turn` can be moved" : nullptr;
+}
+
 const char* has_no_density(const Item& item) {
     return item.body().inertial ? "has a mass that is given (`inertial`), and follows no density" : nullptr;
 }
@@ -222,6 +236,9 @@ std::vector<Row> make_table() {
         {List::body, "shape/dimensions/*", [](const Item& i) { return i.body().shape ? Numbers(&i.body().shape->dimensions) : Numbers(); },
          is<length>},
         {List::body, "position/*", [](const Item& i) -> Numbers { return &i.body().pose.position; }, is<length>},
+        {List::body, "rotation/*", orientation_of<Orientation::Kind::angles>, is<angle>, has_no_orientation<Orientation::Kind::angles>},
+        {List::body, "rotation_vector/*", orientation_of<Orientation::Kind::vector>, is<angle>,
+         has_no_orientation<Orientation::Kind::vector>},
         {List::body, "turn/*", of_body<&Body::turn>, is<angle>},
         {List::body, "density", of_body<&Body::density>,
          [](const Item& i) { return i.body().mass_kind == MassKind::volume ? density : number; }, has_no_density},
@@ -466,6 +483,11 @@ base::Errors faults_at(const Scene& scene, const Place& place) {
             return unless(item.load().force.norm() > 0, "its force must be greater than 0 for a derivative");
     }
     return {};
+}
+
+void settle_rotation(Body& body) {
+    body.pose.rotation = rotation_of(body.orientation);
+    if (!body.turn.isZero(0)) body.pose.rotation = kinematics::rotation(body.turn) * body.pose.rotation;
 }
 
 void clear_numbers(Scene& scene) {

@@ -7,7 +7,8 @@
 ///     /bodies/1/position/0                /bodies/1/density                  /bodies/1/shape/dimensions/radius
 ///     /bodies/1/prescribed/rz/rate        /joints/0/point_a/2                /joints/0/limits/1
 ///     /springs/0/stiffness                /motors/0/angle/values/3           /loads/0/force/0
-/// A body's `turn` has no key in a file: a rotation vector, world axes, that turns the body as written (scene.hpp). Counts, names,
+/// A body's pose follows from its `rotation` or `rotation_vector`, and its `turn`, which has no key in a file: a rotation vector, world
+/// axes, that turns the body as written. Who sets one of them makes the pose's rotation anew (settle_rotation). Counts, names,
 /// tolerances of solvers, dhat and kappa have no place.
 #pragma once
 
@@ -53,6 +54,9 @@ double value_at(const Scene& scene, const Place& place);
 /// Why the scene cannot be differentiated by the number as it is, or makes no sense with it: springs, dampers and coefficients of friction
 /// of 0 or less (at 0 there is none), loads without force, limits out of order. Empty: nothing of the kind.
 base::Errors faults_at(const Scene& scene, const Place& place);
+
+/// The rotation of a body's pose from its orientation and turn.
+void settle_rotation(Body& body);
 
 /// Sets all numbers of the table to 0.
 void clear_numbers(Scene& scene);

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/inertial.hpp"
 #include "fettle/core/scene/mechanism.hpp"
 
@@ -118,6 +120,7 @@ struct Body {
     std::string material;                        ///< for friction; empty: none named
     std::optional<double> mu;                    ///< its own friction coefficient
     kinematics::Pose pose;                       ///< of the file's frame at the start: world = rotation * x + position
+    Orientation orientation;                     ///< that `pose` has its rotation from, as written
     Vector3 linear_velocity = Vector3::Zero();   ///< of the reference point (model/model.hpp) at the start [m/s]
     Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
     PrescribedMotion prescribed;                 ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
@@ -129,6 +132,19 @@ struct Body {
     int group = -1;                              ///< bodies of one group (>= 0) never collide
     /// A rotation vector, world axes, by which a design turns the body about its file frame's origin; `pose` has it already.
     Vector3 turn = Vector3::Zero();
+};
+
+/// A named number of a file. What follows from others has a formula of them; the rest is constant, and a design can move it by its name.
+struct Variable {
+    std::string name;
+    expression::Formula formula = expression::constant_formula(0);  ///< over the variables that are constant
+    double value = 0;                                               ///< SI
+};
+
+/// A number that follows from variables; in a scene it has their values already.
+struct BoundNumber {
+    std::string place;  ///< place.hpp
+    expression::Formula formula = expression::constant_formula(0);
 };
 
 struct Scene {
@@ -148,6 +164,8 @@ struct Scene {
     Integrator integrator = Integrator::implicit_euler;
     std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s
     int max_newton_iterations = 3000;
+    std::vector<Variable> variables;
+    std::vector<BoundNumber> numbers;   ///< that follow from variables, or from inputs that the reader was given; one for a place
     std::vector<std::string> warnings;  ///< what a lenient reader accepted
 };
 

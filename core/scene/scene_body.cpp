@@ -81,6 +81,7 @@ std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
     const MeshSource source = read_geometry(node, body);
     settle_mesh(node, source, body);
     body.pose = read_pose(node, unit_, {});
+    body.orientation = read_orientation(node).value_or(body.orientation);
     body.reference_point = node["reference_point"].length3(unit_);
     const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
     body.type = type == "static" ? BodyType::static_body : type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
@@ -227,10 +228,14 @@ void SceneBodies::read_mass(const files::JsonNode& node, Body& body) {
                      : per == "length" ? MassKind::length
                      : per == "vertex" ? MassKind::vertex
                                        : MassKind::volume;
-    std::optional<double> density = node["density"].number(files::positive);
+    const base::Dimension dimension = body.mass_kind == MassKind::volume ? base::Dimension::density : base::Dimension::number;
+    std::optional<double> density = node["density"].quantity(dimension, 1, files::positive);
     const auto known = densities_.find(body.material);
     const bool given = node["density"].exists();
-    if (!given && known != densities_.end() && body.mass_kind == MassKind::volume) density = known->second;
+    if (!given && known != densities_.end() && body.mass_kind == MassKind::volume && known->second) {
+        density = known->second->value;
+        formulas_.bind(node.pointer() + "/density", *known->second);
+    }
     if (body.type == BodyType::dynamic_body && !given && !density) node.require("density");
     body.density = density.value_or(body.density);
     body.density_given = density.has_value();

@@ -13,10 +13,11 @@
 
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/read_options.hpp"
+#include "fettle/core/scene/scene_formulas.hpp"
 
 namespace fettle::core::scene {
 
-using MaterialDensities = std::map<std::string, std::optional<double>>;  ///< of all materials of a file, where stated [kg/m^3]
+using MaterialDensities = std::map<std::string, std::optional<expression::Number>>;  ///< of all materials, where stated [kg/m^3]
 
 /// The name of a material that is listed; out_of_range with the nearest one otherwise.
 std::optional<std::string> read_material_name(const files::JsonNode& node, const MaterialDensities& materials);
@@ -24,8 +25,9 @@ std::optional<std::string> read_material_name(const files::JsonNode& node, const
 class SceneBodies {
 public:
     /// All outlive this object. @param unit  of lengths [m].
-    SceneBodies(files::JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities)
-        : document_(document), options_(options), unit_(unit), densities_(densities) {}
+    SceneBodies(files::JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities,
+                SceneFormulas& formulas)
+        : document_(document), options_(options), unit_(unit), densities_(densities), formulas_(formulas) {}
 
     /// One body, or one per edge-connected component (`split_components`). Faults go to the document; values read after one are never used.
     std::vector<Body> read(const files::JsonNode& node);
@@ -53,6 +55,7 @@ private:
     const ReadOptions& options_;
     double unit_;
     const MaterialDensities& densities_;
+    SceneFormulas& formulas_;
     std::map<std::pair<std::string, double>, geometry::Mesh> files_;  ///< already read, by file and unit
     std::set<MeshSource> sound_;                                      ///< nothing of them had to be mended
     std::set<std::string> names_;

@@ -18,12 +18,14 @@ std::size_t dof_index(const std::string& name) {
     return static_cast<std::size_t>(std::find(dof_names.begin(), dof_names.end(), name) - dof_names.begin());
 }
 
-MotionCurve read_curve(const files::JsonNode& node, double unit, bool angle) {
+MotionCurve read_curve(const files::JsonNode& node, double unit, bool is_angle) {
     MotionCurve curve;
-    const auto amount = [&](const files::JsonNode& n) { return angle ? radians(n.number().value_or(0)) : n.length(unit).value_or(0); };
+    using enum base::Dimension;
+    const double si = is_angle ? radians(1) : unit;
+    const auto amount = [&](const files::JsonNode& n) { return n.quantity(is_angle ? angle : length, si).value_or(0); };
     node.allow_keys({"rate", "times", "values", "stop_time"});
     if (!node.is_object()) return curve;
-    curve.rate = amount(node["rate"]);
+    curve.rate = node["rate"].quantity(is_angle ? angular_speed : speed, si).value_or(0);
     curve.stop_time = node["stop_time"].number(files::not_negative);
     curve.times = node["times"].numbers().value_or(std::vector<double>{});
     for (const files::JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value));
@@ -106,9 +108,20 @@ kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinem
     pose.position = node["position"].length3(unit).value_or(pose.position);
     const files::JsonNode angles = node["rotation"], vector = node["rotation_vector"];
     if (angles.exists() && vector.exists()) node.fail(ErrorCode::inconsistent, "either `rotation` or `rotation_vector`, not both");
-    if (const auto found = angles.vector3()) pose.rotation = rotation_from_degrees(*found);
-    if (const auto found = vector.vector3()) pose.rotation = kinematics::rotation(radians(1) * *found);
+    if (const auto found = read_orientation(node)) {
+        const std::vector<files::JsonNode> numbers = vector.exists() ? std::vector<files::JsonNode>() : angles.elements();
+        const bool in_degrees =
+            !numbers.empty() && std::all_of(numbers.begin(), numbers.end(), [](const auto& n) { return n.is_number(); });
+        pose.rotation = in_degrees ? rotation_from_degrees(*angles.vector3()) : rotation_of(*found);
+    }
     return pose;
+}
+
+std::optional<Orientation> read_orientation(const files::JsonNode& node) {
+    const files::JsonNode vector = node["rotation_vector"];
+    const auto numbers = (vector.exists() ? vector : node["rotation"]).quantity3(base::Dimension::angle, radians(1));
+    if (!numbers) return std::nullopt;
+    return Orientation{vector.exists() ? Orientation::Kind::vector : Orientation::Kind::angles, *numbers};
 }
 
 void read_motion(const files::JsonNode& node, double unit, Body& body) {
@@ -119,10 +132,11 @@ void read_motion(const files::JsonNode& node, double unit, Body& body) {
         node[key].fail(ErrorCode::inconsistent, std::string("only a dynamic body has `") + key + "`" +
                                                     (kinematic ? "; a kinematic one moves as its `script` and `prescribed` say" : ""));
     }
-    body.linear_velocity = node["linear_velocity"].length3(unit).value_or(Vector3::Zero());
-    body.angular_velocity = radians(1) * node["angular_velocity"].vector3().value_or(Vector3::Zero());
-    body.force = node["force"].vector3().value_or(Vector3::Zero());
-    body.torque = node["torque"].vector3().value_or(Vector3::Zero());
+    using enum base::Dimension;
+    body.linear_velocity = node["linear_velocity"].quantity3(speed, unit).value_or(Vector3::Zero());
+    body.angular_velocity = node["angular_velocity"].quantity3(angular_speed, radians(1)).value_or(Vector3::Zero());
+    body.force = node["force"].quantity3(force, 1).value_or(Vector3::Zero());
+    body.torque = node["torque"].quantity3(torque, 1).value_or(Vector3::Zero());
     read_damping(node["damping"], body);
     for (const files::JsonNode& entry : node["fixed"].elements()) {
         if (const auto name = entry.choice(dof_names)) body.prescribed[dof_index(*name)] = MotionCurve{};

@@ -10,6 +10,8 @@ namespace fettle::core::scene {
 
 /// `position`, `rotation` or `rotation_vector`, where absent those of `otherwise`. @param unit  of lengths [m].
 kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise);
+/// The rotation alone, as written; none: absent, or wrong.
+std::optional<Orientation> read_orientation(const files::JsonNode& node);
 
 /// Velocities, loads, `fixed`, `prescribed` and `script` of a body whose type and pose are known.
 void read_motion(const files::JsonNode& node, double unit, Body& body);

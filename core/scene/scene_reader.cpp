@@ -17,12 +17,13 @@ using base::ErrorCode;
 /// Reads one file of our own format. Faults go to the document; values read after a fault are never used.
 class SceneReader {
 public:
-    SceneReader(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
+    SceneReader(files::JsonDocument& document, const ReadOptions& options)
+        : document_(document), options_(options), formulas_(document, options.inputs) {}
 
     base::Result<Scene> read() {
         const files::JsonNode root = document_.root();
-        root.allow_keys({"$schema", "fettle_scene", "description", "units", "gravity", "timestep", "end_time", "integrator", "contact",
-                         "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
+        root.allow_keys({"$schema", "fettle_scene", "description", "units", "variables", "gravity", "timestep", "end_time", "integrator",
+                         "contact", "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
         root["$schema"].string();
         root["description"].string();
         files::is_version(root["fettle_scene"], 1);
@@ -31,7 +32,9 @@ public:
         unit_ = base::metres_per_unit(*unit_name).value();
         scene_.path = document_.path();
         scene_.length_unit = unit_;
-        scene_.gravity = root["gravity"].vector3().value_or(Vector3::Zero());
+        formulas_.set_length_unit(unit_);
+        formulas_.read_variables(root["variables"]);
+        scene_.gravity = root["gravity"].quantity3(base::Dimension::acceleration, 1).value_or(Vector3::Zero());
         scene_.timestep = root["timestep"].number(files::positive).value_or(0.01);
         scene_.end_time = root["end_time"].number(files::positive);
         read_integrator(root["integrator"]);
@@ -39,7 +42,8 @@ public:
         read_materials(root["materials"]);
         read_friction(root["friction"]);
         read_bodies(root.require("bodies"));
-        scene_.mechanism = read_mechanism(root, unit_, scene_.bodies);
+        scene_.mechanism = read_mechanism(root, unit_, scene_.bodies, formulas_);
+        if (document_.errors().empty()) formulas_.finish(scene_);
         if (!document_.errors().empty()) return document_.errors();
         scene_.warnings = document_.warnings();
         return std::move(scene_);
@@ -71,7 +75,10 @@ private:
             material.allow_keys({"density", "mu"});
             if (name.empty()) material.fail(ErrorCode::out_of_range, "a material needs a name");
             if (!material.is_object()) continue;
-            densities_[name] = material["density"].number(files::positive);
+            const files::JsonNode density = material["density"];
+            const auto value = density.quantity(base::Dimension::density, 1, files::positive);
+            densities_[name] = value ? std::optional(formulas_.number(density, *value)) : std::nullopt;
+            formulas_.use(density);
             if (const auto mu = material["mu"].number(files::not_negative)) scene_.friction.materials[name] = *mu;
         }
     }
@@ -102,7 +109,7 @@ private:
     }
 
     void read_bodies(const files::JsonNode& node) {
-        SceneBodies bodies(document_, options_, unit_, densities_);
+        SceneBodies bodies(document_, options_, unit_, densities_, formulas_);
         for (const files::JsonNode& entry : node.elements()) {
             for (Body& body : bodies.read(entry)) scene_.bodies.push_back(std::move(body));
         }
@@ -115,9 +122,17 @@ private:
     Scene scene_;
     double unit_ = 1;
     MaterialDensities densities_;
+    SceneFormulas formulas_;
 };
 
-base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptions& options) {
+}  // namespace
+
+base::Result<Scene> read_scene(files::JsonDocument& document, const ReadOptions& options) {
+    base::Errors faults;
+    for (const auto& [pointer, value] : options.replacements)
+        if (const std::string fault = document.replace(pointer, value); !fault.empty())
+            faults.push_back({ErrorCode::out_of_range, value.where(), document.path() + ": " + fault});
+    if (!faults.empty()) return faults;
     const files::JsonNode root = document.root();
     if (is_fixture(root)) return read_fixture(document, options);
     if (!root.is_object() || !root["fettle_scene"].exists()) {
@@ -130,18 +145,28 @@ base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptio
     return SceneReader(document, options).read();
 }
 
-}  // namespace
+std::vector<Variable> variables_of(files::JsonDocument& document) {
+    const files::JsonNode root = document.root();
+    if (!root.is_object() || !root["fettle_scene"].exists() || !root["variables"].is_object()) return {};
+    SceneFormulas formulas(document, {});
+    const auto unit = root["units"].is_string() ? base::metres_per_unit(*root["units"].string()) : base::Result<double>(1.0);
+    formulas.set_length_unit(unit ? *unit : 1);
+    formulas.read_variables(root["variables"]);
+    std::vector<Variable> out = formulas.variables();
+    document.forget_errors();
+    return out;
+}
 
 base::Result<Scene> read_scene(const std::string& path, const ReadOptions& options) {
     auto document = files::JsonDocument::read(path);
     if (!document) return document.errors();
-    return read_document(*document, options);
+    return read_scene(*document, options);
 }
 
 base::Result<Scene> parse_scene(const std::string& text, const std::string& path, const ReadOptions& options) {
     auto document = files::JsonDocument::parse(text, path);
     if (!document) return document.errors();
-    return read_document(*document, options);
+    return read_scene(*document, options);
 }
 
 }  // namespace fettle::core::scene

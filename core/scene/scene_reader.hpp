@@ -14,6 +14,12 @@ namespace fettle::core::scene {
 /// @return the scene, or every fault of the file (not of its meshes' geometry), each with file and JSON pointer.
 base::Result<Scene> read_scene(const std::string& path, const ReadOptions& options = {});
 
+/// The same of a document in hand, which reads numbers for the scene while this runs.
+base::Result<Scene> read_scene(files::JsonDocument& document, const ReadOptions& options = {});
+
+/// The `variables` of a scene's document, as the file alone has them; those that have faults are left out: reading the scene tells them.
+std::vector<Variable> variables_of(files::JsonDocument& document);
+
 /// The same from text; `path` stands in messages, and meshes are looked for as if the text came from there.
 base::Result<Scene> parse_scene(const std::string& text, const std::string& path, const ReadOptions& options = {});
 

@@ -6,13 +6,6 @@
 
 namespace fettle::design::description {
 
-std::vector<Move> vector_moves(const std::string& place, const Vector3& direction, double scale, const Vector3& offset) {
-    std::vector<Move> moves;
-    for (int k = 0; k < 3; ++k)
-        if (direction[k] != 0) moves.push_back({place + "/" + std::to_string(k), scale * direction[k], offset[k]});
-    return moves;
-}
-
 std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.name);

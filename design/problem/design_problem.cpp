@@ -56,8 +56,8 @@ bool is_finite(const adjoint::Seeds& seeds) {
 // By numbers alone: two designs that say the same are the same.
 Design with_plain_places(Design design) {
     const core::scene::Scene scene = description::described_scene(design);
-    for (description::Parameter& parameter : design.parameters)
-        for (description::Move& move : parameter.moves) move.place = pointer_to(scene, core::scene::find_place(scene, move.place).value());
+    for (core::scene::BoundNumber& number : design.numbers)
+        number.place = pointer_to(scene, core::scene::find_place(scene, number.place).value());
     return design;
 }
 

@@ -44,8 +44,9 @@ int main() {
         return fettle::design::shapes::GeneratedPart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
     };
     if (!add_part(design, table, box(0.06, 0.06, 0.01)) || !add_part(design, brick, box(0.02, 0.012, 0.01))) return 3;
-    design.parameters = {{"length", 0.02, 0.015, 0.03, {}, {{"/bodies/brick/shape/dimensions/size_x"}}},
-                         {"speed", 0.7, 0.2, 1.0, {}, {{"/bodies/table/prescribed/ry/rate"}}}};
+    design.parameters = {{"length", 0.02, 0.015, 0.03, *fettle::find_unit("mm")}, {"speed", 0.7, 0.2, 1.0, *fettle::find_unit("rad/s")}};
+    if (!set_number(design, "/bodies/brick/shape/dimensions/size_x", "length").empty()) return 3;
+    if (!set_number(design, "/bodies/table/prescribed/ry/rate", "speed").empty()) return 3;
     design.objective = {{"height", 1, 1e-3, std::make_shared<MeanHeight>(1)}};  // in mm
 
     const auto problem = fettle::design::problem::DesignProblem::create(std::move(design));

@@ -42,8 +42,10 @@ int main() {
     const auto block = fettle::design::shapes::GeneratedPart::create("box", {{"size_x", 0.01}, {"size_y", 0.04}, {"size_z", 0.04}});
     if (!block || !add_part(design, peg, std::make_shared<Peg>()) || !add_part(design, wall, *block)) return 3;
     design.steps = 1;
-    design.parameters = {{"foot", 0.004, 0.002, 0.012, {}, {{"/bodies/0/shape/dimensions/foot"}}},
-                         {"top", 0.005, 0.002, 0.012, {}, {{"/bodies/0/shape/dimensions/top"}}}};
+    const auto millimetres = *fettle::find_unit("mm");
+    design.parameters = {{"foot", 0.004, 0.002, 0.012, millimetres}, {"top", 0.005, 0.002, 0.012, millimetres}};
+    if (!set_number(design, "/bodies/peg/shape/dimensions/foot", "foot").empty()) return 3;
+    if (!set_number(design, "/bodies/peg/shape/dimensions/top", "top").empty()) return 3;
     using namespace fettle::design::quantities;
     design.objective = {{"mass", -1, 1e-3, std::make_shared<Mass>(design.scene, std::vector<int>{0})}};
     design.constraints = {

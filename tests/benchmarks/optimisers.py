@@ -14,6 +14,7 @@ Simulations are counted from history.jsonl: smoother models, noise and probes in
 import argparse
 import json
 import os
+import re
 import random
 import statistics
 import subprocess
@@ -152,17 +153,20 @@ def bank(arguments, _):
     parameters, design["parameters"] = design["parameters"], []
     constraints, design["constraints"] = design["constraints"], []
     objective, design["objective"] = design["objective"], []
+    variables, scene["variables"] = scene["variables"], {}
     for copy in range(arguments.copies):
         rename = lambda name: f"{name}_{copy}"
-        for body in json.loads(json.dumps(bodies)):
+        names = "|".join(re.escape(name) for name in variables)
+        renamed = lambda value: json.loads(re.sub(rf'(?<![\w"])({names})(?!\w)', rf"\1_{copy}", json.dumps(value)))
+        for name, value in variables.items():
+            scene["variables"][rename(name)] = renamed(value)
+        for body in renamed(bodies):
             body["name"] = rename(body["name"])
             position = body.get("position", [0, 0, 0])
             body["position"] = [position[0] + 60 * copy, *position[1:]]
             scene["bodies"].append(body)
         for parameter in json.loads(json.dumps(parameters)):
             parameter["name"] = rename(parameter["name"])
-            for move in parameter["moves"]:
-                move["body"] = rename(move["body"])
             design["parameters"].append(parameter)
         rise = 8 + 0.2 * copy  # no two alike
         for term in json.loads(json.dumps(constraints + objective)):

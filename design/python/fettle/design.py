@@ -4,7 +4,10 @@ Shapes and quantities of one's own derive from Shape and Quantity.
 
     design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
     fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
-    design.parameters.append(fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm", [fettle.Move("/bodies/pin/shape/dimensions/radius")]))
+    radius = fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm")
+    design.parameters.append(radius)
+    design.set("/bodies/pin/shape/dimensions/radius", radius)
+    design.set("/bodies/pin/position", [0, 0, 2 * radius + "0.5 mm"])
 """
 import dataclasses
 import math
@@ -17,10 +20,11 @@ from . import _fettle
 from ._record import Given, Number, Record, did_you_mean, faults_of, number
 from .errors import Error, Fault
 from .results import Measurement
-from .scene import Body, Mesh, MeshProgram, PathLike, Scene, Vector
+from .scene import Body, BoundNumber, Mesh, MeshProgram, PathLike, Scene, Vector
 
 Array = NDArray[np.float64]
 Which = Union[int, str]  # a body, by its number or its name
+Operand = Union["_fettle.Formula", "Parameter", float, str]  # a text: a number with a unit
 
 
 class Shape:
@@ -232,19 +236,44 @@ AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, 
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
+class _Arithmetic:
+    """A parameter in formulas: crank + coupler * fettle.cos(phi) is a Formula."""
+
+    __slots__ = ()
+
+    def __add__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(self) + other
+
+    def __radd__(self, other: Operand) -> "_fettle.Formula":
+        return other + _fettle.formula(self)  # type: ignore[operator]
+
+    def __sub__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(self) - other
+
+    def __rsub__(self, other: Operand) -> "_fettle.Formula":
+        return other - _fettle.formula(self)  # type: ignore[operator]
+
+    def __mul__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(self) * other
+
+    def __rmul__(self, other: Operand) -> "_fettle.Formula":
+        return other * _fettle.formula(self)  # type: ignore[operator]
+
+    def __truediv__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(self) / other
+
+    def __rtruediv__(self, other: Operand) -> "_fettle.Formula":
+        return other / _fettle.formula(self)  # type: ignore[operator]
+
+    def __pow__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(self) ** other
+
+    def __neg__(self) -> "_fettle.Formula":
+        return -_fettle.formula(self)
+
+
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Move(Record):
-    """A number of the scene that a parameter moves: scale p + offset, summed over all moves of that place. Places are JSON pointers, with
-    bodies, joints, springs, dampers, motors and loads by number or name: "/bodies/pin/shape/dimensions/radius", "/bodies/pin/position/2",
-    "/joints/0/point_a/0", "/motors/drive/speed"; the library's core/scene/place.hpp lists them."""
-
-    place: str = ""
-    scale: float = 1.0
-    offset: float = 0.0
-
-
-@dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Parameter(Record):
+class Parameter(Record, _Arithmetic):
     """value, lower, upper in SI, or as texts with units of `unit`'s dimension; `unit` is what people read it in."""
 
     name: str = ""
@@ -252,7 +281,6 @@ class Parameter(Record):
     lower: Number = number("unit", 0.0)
     upper: Number = number("unit", 0.0)
     unit: str = ""
-    moves: List[Move] = dataclasses.field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.value, self.lower, self.upper = self.value, self.lower, self.upper  # now that the unit is known
@@ -310,10 +338,28 @@ class Design(Record):
     steps: int = 0
     clearance_tolerance: Number = number("length", 1e-9)  #: [m]
     parameters: List[Parameter] = dataclasses.field(default_factory=list)
+    numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: of the scene, that follow from parameters; see set()
     objective: List[ObjectiveTerm] = dataclasses.field(default_factory=list)
     constraints: List[Constraint] = dataclasses.field(default_factory=list)
     relations: List[Relation] = dataclasses.field(default_factory=list)
     optimiser: OptimiserSettings = dataclasses.field(default_factory=OptimiserSettings)
+
+    def set(self, place: str, value: "Operand | Sequence[Operand]") -> None:
+        """Lets a number of the scene, or the numbers of a vector, follow from parameters (BoundNumber says what a place is). A text is a
+        formula of the parameters' names; numbers without a unit count in SI.
+
+            design.set("/bodies/rod/position", [crank + rod * fettle.cos(phi), 0, 0])
+            design.set("/bodies/pin/shape/dimensions/radius", "bore - gap")
+        """
+        if isinstance(value, (list, tuple, np.ndarray)):
+            for k, component in enumerate(value):
+                self.set(f"{place}/{k}", component)
+            return
+        if isinstance(value, str):
+            formula = _fettle.Formula(value, {parameter.name: parameter.unit or "1" for parameter in self.parameters})
+        else:
+            formula = _fettle.formula(value)
+        self.numbers = [number for number in self.numbers if number.place != place] + [BoundNumber(place, formula)]
 
     def _prepared(self) -> "Design":
         """As the library takes it: bodies by number. Raises Error where a name is no body's, or a number was given in a unit of another

@@ -155,8 +155,9 @@ TEST_CASE("gradient --check tells which contacts are about to change") {
     const DesignFolder folder(R"({
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [
-    { "name": "lift", "value": 5, "lower": 0, "upper": 10, "moves": [{ "body": "block", "position": [0, 0, 1], "offset": [0, 0, 0.12] }] }
+    { "name": "lift", "value": 5, "lower": 0, "upper": 10 }
   ],
+  "set": { "/bodies/block/position/2": "= lift + 0.12" },
   "objective": [{ "type": "mass", "bodies": ["block"] }]
 })",
                               R"({

@@ -93,11 +93,11 @@ core::scene::Body held(const std::string& name, core::scene::BodyType type) {
     return body;
 }
 
-Parameter parameter(const std::string& name, double value, double lower, double upper, std::vector<Move> moves, const char* unit = "mm") {
-    return {name, value, lower, upper, *find_unit(unit), std::move(moves)};
+Parameter parameter(const std::string& name, double value, double lower, double upper, const char* unit = "mm") {
+    return {name, value, lower, upper, *find_unit(unit)};
 }
 
-Move dimension(int body, const std::string& name) { return {"/bodies/" + std::to_string(body) + "/shape/dimensions/" + name}; }
+std::string dimension(const std::string& name) { return "/bodies/part/shape/dimensions/" + name; }
 
 // A frustum falls 0.02 mm onto a plate that a motor tilts.
 Design tilted_plate() {
@@ -115,10 +115,13 @@ Design tilted_plate() {
     part.pose.position = Vector3(2e-3, 1e-3, 4.12e-3);
     part.angular_velocity = Vector3(8, 5, 0);
     REQUIRE(add_part(design, part, std::make_shared<Frustum>(8e-3, 5e-3, 8e-3)).value() == 1);
-    design.parameters = {parameter("height", 8e-3, 6e-3, 12e-3, {dimension(1, "height"), {"/bodies/part/position/2", 0.5, 1.2e-4}}),
-                         parameter("foot", 8e-3, 6e-3, 10e-3, {dimension(1, "foot")}),
-                         parameter("top", 5e-3, 2e-3, 9e-3, {dimension(1, "top")}),
-                         parameter("speed", 0.7, 0.2, 1, {{"/bodies/0/prescribed/ry/rate"}}, "rad/s")};
+    design.parameters = {parameter("height", 8e-3, 6e-3, 12e-3), parameter("foot", 8e-3, 6e-3, 10e-3), parameter("top", 5e-3, 2e-3, 9e-3),
+                         parameter("speed", 0.7, 0.2, 1, "rad/s")};
+    REQUIRE(set_number(design, dimension("height"), "height").empty());
+    REQUIRE(set_number(design, "/bodies/part/position/2", "height / 2 + 1.2e-4").empty());
+    REQUIRE(set_number(design, dimension("foot"), "foot").empty());
+    REQUIRE(set_number(design, dimension("top"), "top").empty());
+    REQUIRE(set_number(design, "/bodies/0/prescribed/ry/rate", "speed").empty());
     design.objective = {{"height", -1, 1e-3, std::make_shared<MeanHeight>(1)},
                         {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
     Bounds at_least;
@@ -162,7 +165,10 @@ TEST_CASE("a body whose mass is given: neither density nor mesh move it, and gra
         CAPTURE(k, differentiated.gradient[k], least);
         CHECK(least <= 1e-5 * differentiated.gradient.lpNorm<Eigen::Infinity>());
     }
-    design.parameters.push_back(parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"));
+    design.parameters.push_back(parameter("density", 1000, 500, 2000, "kg/m^3"));
+    CHECK(set_number(design, "/bodies/1/density", "density").front().message.find("is given") != std::string::npos);
+    design.numbers.push_back(
+        {"/bodies/1/density", core::expression::input_formula("density", core::expression::powers_of(Dimension::density))});
     const auto refused = DesignProblem::create(design);
     REQUIRE_FALSE(refused);
     CHECK(refused.errors().front().message.find("is given") != std::string::npos);
@@ -357,9 +363,9 @@ TEST_CASE("of parts that are costly to make the bounds alone and few designs bet
 
 TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {
     Design design = tilted_plate();
-    design.parameters[1].moves[0] = dimension(1, "fot");
+    design.numbers[2].place = dimension("fot");
     design.parameters[2].lower = 6e-3;
-    design.parameters[3].moves[0].place = "/bodies/1/prescribed/pz/rate";
+    design.numbers[4].place = "/bodies/1/prescribed/pz/rate";
     design.objective[0].quantity = nullptr;
     design.objective[1].quantity = std::make_shared<quantities::Mass>(std::vector<quantities::Mass::Of>{{7}});
     design.constraints[0].bounds.upper = 1e-3;

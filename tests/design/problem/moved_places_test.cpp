@@ -7,6 +7,7 @@
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_places_test {
@@ -16,10 +17,11 @@ using core::model::Model;
 using core::scene::JointKind;
 using core::scene::Place;
 using description::Design;
-using description::Move;
 using description::Parameter;
 
 namespace {
+
+using fettle::tests::design_support::follow;
 
 // No two of their components tie: the axes across one would jump, which moves nothing but is no derivative of theirs.
 const Vector3 x_axis(1, 0.03, 0.07), y_axis(0.04, 1, -0.02), z_axis(0.02, 0.05, 1);
@@ -121,6 +123,9 @@ Design shop() {
         slab.prescribed[dof] = core::scene::MotionCurve{};
         slab.prescribed[dof]->rate = 0.1 + 0.02 * static_cast<double>(dof);
     }
+    slab.orientation.numbers = Vector3(0.2, -0.3, 0.5);
+    oiled.orientation = {core::scene::Orientation::Kind::vector, Vector3(0.1, 0.4, -0.2)};
+    for (core::scene::Body* body : {&slab, &oiled}) settle_rotation(*body);
     slab.prescribed[2]->stop_time = 0.025;
     slab.material = "steel";
     oiled.mu = 0.3;
@@ -184,7 +189,7 @@ void add_parameters(Design& design) {
         p.lower = -1;
         p.upper = 1;
         const bool is_place = p.name.find("position") != std::string::npos || p.name.find("point") != std::string::npos;
-        p.moves = {{p.name, is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value)), value}};
+        follow(design, p.name, p.name, is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value)), value);
         design.parameters.push_back(std::move(p));
     }
 }

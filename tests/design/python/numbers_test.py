@@ -95,7 +95,7 @@ def test_units_of_coordinates_are_those_of_their_joint():
 
 def test_units_of_requirements_are_those_of_what_they_bound():
     design = tilted_plate()
-    design.parameters[0] = fettle.Parameter("height", "8mm", "6mm", "12mm", "mm", design.parameters[0].moves)
+    design.parameters[0] = fettle.Parameter("height", "8mm", "6mm", "12mm", "mm")
     design.constraints[0].bounds = fettle.Bounds(lower="3.9mm", unit="mm")
     design.objective[1].unit = "g"
     plain = fettle.DesignProblem(tilted_plate())
@@ -136,8 +136,8 @@ def test_designs_name_bodies():
     named.constraints = [fettle.Constraint("gap", fettle.Bounds(lower=0, unit=1e-3), fettle.Clearance("plate", "part", motion=True))]
     numbered.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([(1, "volume")]))]
     named.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([("part", "volume")]))]
-    for move in [move for parameter in named.parameters for move in parameter.moves]:
-        move.place = move.place.replace("/0/", "/plate/", 1).replace("/1/", "/part/", 1)
+    for number in named.numbers:
+        number.place = number.place.replace("/0/", "/plate/", 1).replace("/1/", "/part/", 1)
     found = fettle.DesignProblem(named)
     assert found.design == fettle.DesignProblem(numbered).design
     assert named.constraints[0].quantity.a == "plate"  # what was given stays as it was

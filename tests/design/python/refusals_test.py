@@ -109,11 +109,10 @@ def changed(**members):
 
 
 def test_numbers_of_designs():
-    for name in ("scale", "offset"):
-        for bad, where in ((NAN, name), (INFINITY, "1")):
-            parameters = tilted_plate().parameters
-            setattr(parameters[0].moves[1], name, bad)
-            refused(changed(parameters=parameters), "not_finite", f"parameter `height`/moves/{where}")
+    for bad in (NAN, INFINITY):
+        numbers = tilted_plate().numbers
+        numbers[1].formula = numbers[1].formula * bad
+        refused(changed(numbers=numbers), "not_finite", "/bodies/1/position/2")
     refused(changed(clearance_tolerance=NAN), "not_finite", "design/clearance_tolerance")
     refused(changed(steps=-1), "out_of_range", "steps")
     refused(changed(optimiser=fettle.OptimiserSettings(max_evaluations=0)), "out_of_range", "optimiser/max_evaluations")
@@ -181,8 +180,8 @@ def test_misspelt_members():
     body = fettle.Body("cube")
     with pytest.raises(AttributeError, match="Body has no member 'densty'; did you mean 'density'"):
         body.densty = 5
-    with pytest.raises(AttributeError, match="there are place, scale"):
-        fettle.Move().xyz = 1
+    with pytest.raises(AttributeError, match="there are place, formula"):
+        fettle.BoundNumber().xyz = 1
     for made in (fettle.GeneratedPart("box"), fettle.FunctionShape(None, {}), fettle.Design(), fettle.PairRequest()):
         with pytest.raises(AttributeError, match="no member"):
             made.mine = 1

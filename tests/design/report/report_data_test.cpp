@@ -561,7 +561,8 @@ TEST_CASE("report: of an optimisation, an interference is what is one, not what 
             {"name": "part", "type": "static", "density": 1000,
              "shape": {"generator": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}]})");
         folder.write("cased.design.json", R"({"fettle_design": 1, "scene": "cased.scene.json", "units": "mm",
-            "parameters": [{"name": "place", "value": 0, "lower": -1, "upper": 1, "moves": [{"body": "part", "position": [1, 0, 0]}]}],
+            "parameters": [{"name": "place", "value": 0, "lower": -1, "upper": 1}],
+            "set": {"/bodies/part/position": ["= place", 0, 0]},
             "objective": [{"type": "mass", "bodies": ["part"]}],
             "constraints": [{"type": "clearance", "a": "case", "b": "part", "minimum": 1}], "optimiser": {"max_evaluations": 1}})");
         const auto tuned = run("optimise " + folder.file("cased.design.json") + " --json --out " + folder.file("cased"));

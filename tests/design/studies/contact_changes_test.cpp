@@ -32,7 +32,7 @@ CheckReport checked(const std::string& place, const std::string& parameter, cons
     const std::string design = R"({
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [ { "name": "p", )" +
-                               parameter + R"( } ],
+                               parameter + R"( },
   "objective": [ { "type": "mass", "bodies": ["block"], "weight": 1 } ],
   "constraints": [ { "type": "stroke", "body": "block", "axis": [0, 1, 0], "lower": 0, "upper": 30 } ]
 })";
@@ -69,9 +69,8 @@ void check_found(const CheckReport& report, ContactEvent event, double move) {
 }  // namespace
 
 TEST_CASE("contact changes: what comes within reach, and what leaves it", "[contact]") {
-    const std::string height =
-        R"("value": 5, "lower": 0, "upper": 10, "moves": [{ "body": "block", "position": [0, 0, 1], "offset": [0, 0, )";
-    const CheckReport apart = checked(R"("position": [0, 0, 5.12])", height + "0.12] }]");
+    const std::string height = R"("value": 5, "lower": 0, "upper": 10 } ], "set": { "/bodies/block/position/2": "= p + )";
+    const CheckReport apart = checked(R"("position": [0, 0, 5.12])", height + "0.12\"");
     check_found(apart, ContactEvent::touch, -2e-5);
     CHECK(apart.contact_changes.size() == 1);
     CHECK(apart.contact_changes[0].count == 4 * 3);  // vertices, steps
@@ -79,18 +78,17 @@ TEST_CASE("contact changes: what comes within reach, and what leaves it", "[cont
     CHECK(apart.contact_changes[0].at.is.on_a.kind == Kind::face);
     CHECK(apart.contact_changes[0].at.is.on_b.kind == Kind::vertex);
     CHECK_FALSE(is_kink(ContactEvent::touch));
-    const CheckReport close = checked(R"("position": [0, 0, 5.07])", height + "0.07] }]");
+    const CheckReport close = checked(R"("position": [0, 0, 5.07])", height + "0.07\"");
     check_found(close, ContactEvent::part, 3e-5);
     CHECK(close.contact_changes.size() == 1);
     CHECK(close.contacts_reach(0, 0) == Approx(1e-3));  // farther down they would intersect
     // Farther than a hundredth of the range: nothing is about to change.
-    CHECK(checked(R"("position": [0, 0, 5.3])", height + "0.3] }]").contact_changes.empty());
+    CHECK(checked(R"("position": [0, 0, 5.3])", height + "0.3\"").contact_changes.empty());
 }
 
 TEST_CASE("contact changes: a corner that leaves a face for its edge", "[contact]") {
-    const CheckReport report =
-        checked(R"("position": [19.98, 0, 5.05])",
-                R"("value": 19.98, "lower": 15, "upper": 25, "moves": [{ "body": "block", "position": [1, 0, 0] }])");
+    const CheckReport report = checked(R"("position": [19.98, 0, 5.05])",
+                                       R"("value": 19.98, "lower": 15, "upper": 25 } ], "set": { "/bodies/block/position/0": "= p")");
     check_found(report, ContactEvent::new_features, 2e-5);
     const ContactChange& change = *find(report, ContactEvent::new_features);
     CHECK(change.at.was.on_a.kind == Kind::face);
@@ -104,9 +102,10 @@ TEST_CASE("contact changes: a corner that leaves a face for its edge", "[contact
 TEST_CASE("contact changes: what begins to slide, and what begins to stick", "[contact]") {
     const auto driven = [](double speed) {
         const std::string rate = std::to_string(speed);
-        return checked(R"("position": [0, 0, 5.05])",
-                       "\"value\": " + rate + R"(, "lower": 0, "upper": 10, "unit": "mm/s", "moves": [{ "motor": "table", "rate": "px" }])",
-                       R"("type": "kinematic", "prescribed": { "px": { "rate": )" + rate + " } }");
+        return checked(
+            R"("position": [0, 0, 5.05])",
+            "\"value\": " + rate + R"(, "lower": 0, "upper": 10, "unit": "mm/s" } ], "set": { "/bodies/table/prescribed/px/rate": "= p")",
+            R"("type": "kinematic", "prescribed": { "px": { "rate": )" + rate + " } }");
     };
     check_found(driven(0.95), ContactEvent::slide, 5e-5);
     CHECK(driven(0.95).contact_changes.size() == 1);
@@ -119,7 +118,7 @@ TEST_CASE("contact changes: edges that become nearly parallel", "[contact]") {
     const std::string angle = std::to_string(limit + 0.02);
     const CheckReport report =
         checked(R"("position": [20, 0, 5.05], "rotation": [0, 0, )" + angle + "]",
-                R"("value": 0, "lower": -5, "upper": 5, "unit": "deg", "moves": [{ "body": "block", "turn": [0, 0, 1] }])");
+                R"("value": 0, "lower": -5, "upper": 5, "unit": "deg" } ], "set": { "/bodies/block/rotation/2": "= p + )" + angle + "\"");
     check_found(report, ContactEvent::parallel, -0.02 * std::acos(-1.0) / 180);
     CHECK(is_kink(ContactEvent::parallel));
     CHECK(find(report, ContactEvent::crossing) == nullptr);

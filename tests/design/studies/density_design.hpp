@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
 namespace fettle::tests::design_support {
@@ -65,12 +66,9 @@ inline design::problem::DesignProblem density_problem(int parameters, const std:
         body.mesh = support::box_mesh(Vector3::Constant(-0.01), Vector3::Constant(0.01));
         body.pose.position = Vector3(0.1 * k, 0, 0);
         design.scene.bodies.push_back(std::move(body));
-        design.parameters.push_back({.name = "density " + std::to_string(k),
-                                     .value = 1000,
-                                     .lower = 500,
-                                     .upper = 1500,
-                                     .unit = *find_unit("kg/m^3"),
-                                     .moves = {{"/bodies/" + std::to_string(k) + "/density"}}});
+        design.parameters.push_back(
+            {.name = "density " + std::to_string(k), .value = 1000, .lower = 500, .upper = 1500, .unit = *find_unit("kg/m^3")});
+        design_support::follow(design, design.parameters.back().name, "/bodies/" + std::to_string(k) + "/density");
     }
     design.objective = {{"objective", 1, 1, quantities.front()}};
     for (size_t q = 1; q < quantities.size(); ++q) {
