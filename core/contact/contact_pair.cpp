@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/four.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -294,7 +294,7 @@ void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) 
 }
 
 PairMatrix positive_part(const PairMatrix& lower) {
-    const SymmetricEigen<9> eigen = symmetric_eigen<9>(lower);
+    const linear::SymmetricEigen<9> eigen = linear::symmetric_eigen<9>(lower);
     if (eigen.values[0] >= 0) return lower;
     const PairVector positive = eigen.values.cwiseMax(0.0);
     return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 
 namespace fettle::core::scene {
@@ -92,7 +92,7 @@ Matrix3 fixture_principal_axes(const Body& body, int fixed_rotations) {
     Matrix3 inertia = placed_inertia(body);
     if (!inertia.allFinite()) return Matrix3::Identity();
     make_equal_what_nearly_is(inertia);
-    Matrix3 axes = symmetric_eigen<3>(inertia).vectors;
+    Matrix3 axes = linear::symmetric_eigen<3>(inertia).vectors;
     if (axes.determinant() < 0) axes.col(0) *= -1;
     return axes;
 }

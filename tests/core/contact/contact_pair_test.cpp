@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of one pair's potential against central differences, for every kind of closest feature, with and without mollifier.
 #include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -161,11 +161,11 @@ TEST_CASE("the projected Hessian is positive semi-definite and close to the exac
     for (const Case& c : cases()) {
         INFO(c.name);
         const Matrix12 projected = in_both_bodies(derivatives(c.pair, HessianKind::projected).hessian);
-        const Vector12 eigenvalues = symmetric_eigenvalues<12>(projected);
+        const Vector12 eigenvalues = linear::symmetric_eigenvalues<12>(projected);
         CHECK(eigenvalues[0] >= -1e-12 * eigenvalues[11]);
         // At least the exact one everywhere: exact <= projected.
         const Matrix12 exact = in_both_bodies(derivatives(c.pair, HessianKind::exact).hessian);
-        CHECK(symmetric_eigenvalues<12>(projected - exact)[0] >= -1e-10 * eigenvalues[11]);
+        CHECK(linear::symmetric_eigenvalues<12>(projected - exact)[0] >= -1e-10 * eigenvalues[11]);
     }
 }
 

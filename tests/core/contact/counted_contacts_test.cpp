@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
 #include "fettle/core/contact/counted_contacts.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -159,8 +159,8 @@ TEST_CASE("the projected Hessian stays semi-definite where a corner counts again
             add_pair_derivatives(pair, parameters, HessianKind::exact, poses[list.first].position, poses[list.second].position, exact);
             const Matrix12 above = in_both_bodies(projected.hessian), gap = above - in_both_bodies(exact.hessian);
             const double size = above.norm();
-            CHECK(symmetric_eigenvalues<12>(above)[0] >= -1e-12 * size);
-            CHECK(symmetric_eigenvalues<12>(gap)[0] >= -1e-10 * size);
+            CHECK(linear::symmetric_eigenvalues<12>(above)[0] >= -1e-12 * size);
+            CHECK(linear::symmetric_eigenvalues<12>(gap)[0] >= -1e-10 * size);
             against += pair.weight < 0;
         }
     CHECK(against == 1);
@@ -206,7 +206,7 @@ TEST_CASE("contacts with the same closest features are one, of the same potentia
         CHECK((g_few - g_many).norm() <= 1e-9 * g_many.norm() + 1e-20);
         CHECK((h_few - h_many).norm() <= 1e-8 * h_many.norm() + 1e-20);
         const Matrix12 projected = derivatives(few, poses, HessianKind::projected).second;
-        const double least = symmetric_eigenvalues<12>(projected.transpose())[0];
+        const double least = linear::symmetric_eigenvalues<12>(projected.transpose())[0];
         CHECK(least >= -1e-12 * projected.norm());
         fewer += 2 * few.count < many.count;
     }

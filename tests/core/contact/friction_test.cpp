@@ -2,7 +2,7 @@
 // Friction: the mollifier against its formula and its limits, the potential's derivatives against differences, and the force against
 // Coulomb's law for a contact that slides and for one that sticks.
 #include "fettle/core/contact/friction.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -119,9 +119,9 @@ TEST_CASE("friction's gradient and Hessian agree with differences", "[friction]"
         const MatrixX symmetric = 0.5 * (difference + difference.transpose());
         CHECK((symmetric - d.hessian).norm() < 2e-4 * d.hessian.norm());
         const MatrixX majoriser = derivatives_at(s, s.poses, HessianKind::projected).gauss_newton - d.gauss_newton;
-        CHECK(symmetric_eigenvalues(majoriser).minCoeff() >= -1e-12 * d.gauss_newton.norm());
+        CHECK(linear::symmetric_eigenvalues(majoriser).minCoeff() >= -1e-12 * d.gauss_newton.norm());
         CHECK((slid > 0) == (majoriser.norm() > 1e-6 * d.gauss_newton.norm()));  // stiffer only where something slides
-        const double least = symmetric_eigenvalues(d.gauss_newton).minCoeff();
+        const double least = linear::symmetric_eigenvalues(d.gauss_newton).minCoeff();
         CHECK(least >= -1e-12 * d.gauss_newton.norm());
     }
 }

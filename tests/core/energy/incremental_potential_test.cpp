@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gradient and Hessian of a whole step's potential in chart coordinates, away from the chart's origin, against central differences.
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -95,7 +95,7 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
     Eigen::Matrix<double, 12, 12> p;
     p << projected.hessian.diagonal[0], projected.hessian.off_diagonal.at(0).block, projected.hessian.off_diagonal.at(0).block.transpose(),
         projected.hessian.diagonal[1];
-    CHECK(symmetric_eigenvalues(p).minCoeff() >= -1e-12 * p.norm());
+    CHECK(linear::symmetric_eigenvalues(p).minCoeff() >= -1e-12 * p.norm());
 }
 
 TEST_CASE("the potential does not depend on where the candidates were found", "[incremental_potential]") {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Laws of measures, and the term that they make, against central differences; a damped oscillation against its exponential.
 #include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -113,7 +113,7 @@ TEST_CASE("the term's gradient and Hessian agree with differences, its projected
         CHECK(check_gradient(value, y, gradient(y)).relative_error < 1e-7);
         CHECK(check_jacobian(gradient, y, whole(y, contact::HessianKind::exact)).relative_error < 1e-7);
         const MatrixX projected = whole(y, contact::HessianKind::projected);
-        CHECK(symmetric_eigenvalues(projected).minCoeff() > -1e-12 * projected.norm());
+        CHECK(linear::symmetric_eigenvalues(projected).minCoeff() > -1e-12 * projected.norm());
     }
 }
 

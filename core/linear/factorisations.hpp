@@ -7,7 +7,7 @@
 
 #include "fettle/core/base/types.hpp"
 
-namespace fettle::core::base {
+namespace fettle::core::linear {
 
 /// A = vectors diag(values) vectors^T of a symmetric matrix, values ascending.
 template <int n>
@@ -51,4 +51,4 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace fettle::core::base
+}  // namespace fettle::core::linear

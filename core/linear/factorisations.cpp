@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace fettle::core::base {
+namespace fettle::core::linear {
 
 template <int n>
 SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix) {
@@ -47,4 +47,4 @@ double DenseLu::reciprocal_condition() const {
 MatrixX DenseLu::solve(const MatrixX& rhs) const { return implementation_->lu.solve(rhs); }
 MatrixX DenseLu::inverse() const { return implementation_->lu.inverse(); }
 
-}  // namespace fettle::core::base
+}  // namespace fettle::core::linear
