@@ -12,12 +12,12 @@
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/fixture_state.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -92,7 +92,7 @@ MeshMass look_at_mass(const geometry::Mesh& mesh) {
     if (!geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return {MassKind::area};
     const Matrix4 moments = geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings);
     if (!centre_of_mass(moments)) return {MassKind::area};
-    return {MassKind::volume, !(moments(3, 3) > 0), !geometry::is_closed(halves)};
+    return {MassKind::volume, !(moments(3, 3) > 0), !solids::is_closed(halves)};
 }
 
 /// A solid that is inside out is turned: which side is out is not what its file meant to say. @return whether it is
@@ -173,9 +173,9 @@ FixtureBodies::MeshFile FixtureBodies::read_mesh_file(const std::string& name, c
         out.errors = found.errors();
         return out;
     }
-    geometry::MeshRequirements requirements;
+    solids::MeshRequirements requirements;
     requirements.closed = false;
-    for (const auto& fault : geometry::validate_mesh(*found, requirements, 1)) out.warnings.push_back(fault.where + ": " + fault.message);
+    for (const auto& fault : solids::validate_mesh(*found, requirements, 1)) out.warnings.push_back(fault.where + ": " + fault.message);
     out.mesh = *std::move(found);
     return out;
 }

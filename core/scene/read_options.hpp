@@ -18,7 +18,7 @@ struct ReadOptions {
     std::vector<std::string> mesh_dirs;      ///< also looked in for meshes; see find_mesh_file in mesh_files/find_mesh_file.hpp
     ShapeGenerator shape_generator;          ///< empty: a body with `shape` is an error that says so
     std::function<bool()> should_stop = {};  ///< optional, asked on any thread while a mesh is read that may take long: true ends it
-    bool strict_meshes = false;  ///< meshes of our own format: MeshPolicy::strict, and nothing is repaired (geometry/mesh_repair.hpp)
+    bool strict_meshes = false;  ///< meshes of our own format: MeshPolicy::strict, and nothing is repaired (solids/mesh_repair.hpp)
 };
 
 }  // namespace fettle::core::scene

@@ -7,12 +7,12 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
 #include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/scene_motion.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -137,7 +137,7 @@ void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& sou
     body.mesh_policy = MeshPolicy::tolerant;
     if (body.mesh.vertices.cols() == 0 || !body.mesh.vertices.allFinite()) return;
     if (sound_.count(source) != 0) return;
-    const std::vector<std::string> repairs = geometry::repair_mesh(body.mesh);
+    const std::vector<std::string> repairs = solids::repair_mesh(body.mesh);
     for (const std::string& done : repairs) node.warn("body `" + body.name + "`: " + done);
     if (repairs.empty() && !std::get<0>(source).empty()) sound_.insert(source);
 }

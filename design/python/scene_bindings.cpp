@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_judgement.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -38,7 +38,7 @@ core::geometry::Mesh read_mesh(const Path& path, const py::object& unit, bool we
 }
 
 std::vector<std::string> judge_mesh(const core::geometry::Mesh& mesh, bool as_solid) {
-    core::geometry::MeshFindings findings = core::geometry::judge_mesh(mesh, as_solid);
+    core::solids::MeshFindings findings = core::solids::judge_mesh(mesh, as_solid);
     raise_if_any(findings.errors);
     return std::move(findings.warnings);
 }

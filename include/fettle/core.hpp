@@ -18,7 +18,7 @@
 #include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
 // Files: trajectories and meshes, and whether a mesh is what it should be.
-#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/records/trajectory_io.hpp"

@@ -12,9 +12,6 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
@@ -22,6 +19,9 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/expression.hpp"
@@ -83,9 +83,9 @@ void read_mesh_as(const std::string& name, std::string_view bytes) {
     auto mesh = core::mesh_files::read_mesh(path);
     if (name == "a.3mf") (void)core::mesh_files::read_mesh_parts(path, {1e-3, false});
     if (!mesh) return;
-    (void)core::geometry::validate_mesh(*mesh, {});
-    core::geometry::repair_mesh(*mesh);
-    (void)core::geometry::judge_mesh(*mesh, true);
+    (void)core::solids::validate_mesh(*mesh, {});
+    core::solids::repair_mesh(*mesh);
+    (void)core::solids::judge_mesh(*mesh, true);
 }
 
 void visit(const JsonNode& node) {

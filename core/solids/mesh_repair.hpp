@@ -8,7 +8,7 @@
 
 #include "fettle/core/geometry/mesh.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 
 /// - A triangle that stands in the list again, with the same three vertices in the same direction, is dropped.
 /// - A shell whose edges are each in exactly two triangles, some of them the same way round, is oriented, if it is orientable: the fewer
@@ -19,6 +19,6 @@ namespace fettle::core::geometry {
 /// Connectivity is built anew where anything changed; shell names stay where their number stays.
 /// @return  What was done, one sentence each with number and place; empty: nothing, and `mesh` keeps its bits.
 /// Contract: vertex indices in range, coordinates finite, connectivity built.
-std::vector<std::string> repair_mesh(Mesh& mesh);
+std::vector<std::string> repair_mesh(geometry::Mesh& mesh);
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,12 +7,12 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
-#include "fettle/core/geometry/overlap_bound.hpp"
 #include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/geometry/shells.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/overlap_bound.hpp"
+#include "fettle/core/solids/shells.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 namespace {
 
 constexpr const char* unbounded = "what it does to the mass could not be bounded: check the volume";
@@ -26,7 +26,7 @@ std::string place(const Vector3& x) {
 
 class Judge {
 public:
-    Judge(const Mesh& mesh, bool as_solid) : mesh_(mesh), as_solid_(as_solid) {}
+    Judge(const geometry::Mesh& mesh, bool as_solid) : mesh_(mesh), as_solid_(as_solid) {}
 
     MeshFindings run() {
         findings_.errors = faults_of_numbers(mesh_);
@@ -63,10 +63,10 @@ private:
     void look_at_edges() {
         if (!as_solid_) return;
         std::size_t several = 0, turned = 0;
-        HalfEdge first_several{}, first_turned{};
-        halves_ = sorted_half_edges(mesh_);
-        const std::vector<HalfEdge>& halves = halves_;
-        visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        geometry::HalfEdge first_several{}, first_turned{};
+        halves_ = geometry::sorted_half_edges(mesh_);
+        const std::vector<geometry::HalfEdge>& halves = halves_;
+        geometry::visit_edges(halves, [&](std::size_t first, std::size_t last) {
             if (last - first > 2 && several++ == 0) first_several = halves[first];
             const bool same =
                 last - first == 2 && halves[first].forward == halves[first + 1].forward && halves[first].low != halves[first].high;
@@ -85,23 +85,23 @@ private:
                  place(mesh_.vertices.col(first_several.low)) + "; no effect on the mass where both directions stand equally often");
         }
         const std::size_t loose =
-            mesh_.codimensional_points.size() + mesh_.edges.size() - std::min(mesh_.edges.size(), count_edges(halves));
+            mesh_.codimensional_points.size() + mesh_.edges.size() - std::min(mesh_.edges.size(), geometry::count_edges(halves));
         if (loose > 0) warn(std::to_string(loose) + " edges or points belong to no triangle: they touch others, and have no mass");
     }
 
     /// Its volume, openings capped.
     void measure() {
-        const std::vector<Opening> holes = openings(mesh_.vertices, halves_);
-        if (!is_nearly_closed(mesh_.vertices, mesh_.triangles, holes)) return refuse_open();
-        volume_ = capped_solid_moments(mesh_.vertices, mesh_.triangles, holes)(3, 3);
+        const std::vector<geometry::Opening> holes = geometry::openings(mesh_.vertices, halves_);
+        if (!geometry::is_nearly_closed(mesh_.vertices, mesh_.triangles, holes)) return refuse_open();
+        volume_ = geometry::capped_solid_moments(mesh_.vertices, mesh_.triangles, holes)(3, 3);
         if (!(volume_ > 0)) {
             return refuse("mesh",
                           "its volume is not positive: it is inside out, or empty; triangles are counter-clockwise seen from outside");
         }
         if (holes.empty()) return;
         double bound = 0;  // whatever closes an opening within its hull: two of these differ by no more than its box
-        const Opening* largest = &holes.front();
-        for (const Opening& hole : holes) {
+        const geometry::Opening* largest = &holes.front();
+        for (const geometry::Opening& hole : holes) {
             Matrix3X ends(3, 2 * static_cast<Eigen::Index>(hole.edges.size()));
             for (std::size_t e = 0; e < hole.edges.size(); ++e) {
                 ends.col(2 * static_cast<Eigen::Index>(e)) = mesh_.vertices.col(hole.edges[e][0]);
@@ -161,7 +161,7 @@ private:
                                               "reverse its triangles"));
                 continue;
             }
-            const double volume = std::abs(solid_moments(mesh_.vertices, shell.triangles)(3, 3));
+            const double volume = std::abs(geometry::solid_moments(mesh_.vertices, shell.triangles)(3, 3));
             warn(name +
                  (counts_as_hole ? " is inside out, so that it counts as a hole"
                                  : " is a solid within a solid, so that its volume counts twice; for a cavity reverse its triangles") +
@@ -169,16 +169,16 @@ private:
         }
     }
 
-    const Mesh& mesh_;
+    const geometry::Mesh& mesh_;
     bool as_solid_;
     bool closed_ = true;
-    std::vector<HalfEdge> halves_;  ///< of a solid
+    std::vector<geometry::HalfEdge> halves_;  ///< of a solid
     double volume_ = 0;
     MeshFindings findings_;
 };
 
 }  // namespace
 
-MeshFindings judge_mesh(const Mesh& mesh, bool as_solid) { return Judge(mesh, as_solid).run(); }
+MeshFindings judge_mesh(const geometry::Mesh& mesh, bool as_solid) { return Judge(mesh, as_solid).run(); }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

@@ -7,13 +7,13 @@
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 
 struct Shell {
     int index = 0;  ///< of mesh.shell_names
-    std::vector<Triangle> triangles;
+    std::vector<geometry::Triangle> triangles;
     std::vector<int> vertices;  ///< sorted, distinct
-    Box box;
+    geometry::Box box;
     int volume_sign = 0;  ///< of the signed volume, exactly
     int depth = 0;        ///< within how many other shells it lies
     int around = -1;      ///< the innermost of these, -1: none
@@ -23,6 +23,6 @@ struct Shell {
 };
 
 /// All shells of a mesh with connectivity. Depths have a meaning only where shells do not cross.
-std::vector<Shell> shells_of(const Mesh& mesh);
+std::vector<Shell> shells_of(const geometry::Mesh& mesh);
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

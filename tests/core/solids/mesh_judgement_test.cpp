@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sound meshes, damaged in the ways in which real files are, mended, judged and weighed.
-#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,16 +8,16 @@
 #include <random>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
-#include "fettle/core/geometry/overlap_bound.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/overlap_bound.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-namespace fettle::core::geometry::mesh_judgement_test {
+namespace fettle::core::solids::mesh_judgement_test {
 
 namespace {
 
-double volume(const Mesh& mesh) { return capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
+double volume(const geometry::Mesh& mesh) { return geometry::capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
 
 bool mentions(const std::vector<std::string>& texts, const std::string& part) {
     return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return text.find(part) != std::string::npos; });
@@ -27,14 +27,14 @@ bool mentions(const Errors& errors, const std::string& part) {
     return std::any_of(errors.begin(), errors.end(), [&](const Error& error) { return error.message.find(part) != std::string::npos; });
 }
 
-Mesh rebuilt(Mesh mesh) {
+geometry::Mesh rebuilt(geometry::Mesh mesh) {
     mesh.shell_names.clear();
-    build_connectivity(mesh);
+    geometry::build_connectivity(mesh);
     return mesh;
 }
 
 /// Pushes one vertex through the surface on the other side of the solid.
-Mesh with_spike(Mesh mesh, int vertex, const Vector3& to) {
+geometry::Mesh with_spike(geometry::Mesh mesh, int vertex, const Vector3& to) {
     mesh.vertices.col(vertex) = to;
     return mesh;
 }
@@ -42,10 +42,11 @@ Mesh with_spike(Mesh mesh, int vertex, const Vector3& to) {
 }  // namespace
 
 TEST_CASE("a sound mesh keeps its bits and has nothing to tell") {
-    for (const Mesh& sound : {tests::box_mesh({0, 0, 0}, {1, 2, 3}), tests::torus_mesh(1, 0.3, 12), tests::ellipsoid_mesh({1, 2, 3}, 6)}) {
-        Mesh mesh = sound;
+    for (const geometry::Mesh& sound :
+         {tests::box_mesh({0, 0, 0}, {1, 2, 3}), tests::torus_mesh(1, 0.3, 12), tests::ellipsoid_mesh({1, 2, 3}, 6)}) {
+        geometry::Mesh mesh = sound;
         CHECK(repair_mesh(mesh).empty());
-        CHECK(have_same_shape(mesh, sound));
+        CHECK(geometry::have_same_shape(mesh, sound));
         const MeshFindings found = judge_mesh(mesh, true);
         CHECK(found.errors.empty());
         CHECK(found.warnings.empty());
@@ -53,10 +54,10 @@ TEST_CASE("a sound mesh keeps its bits and has nothing to tell") {
 }
 
 TEST_CASE("copies of triangles are left out") {
-    const Mesh sound = tests::torus_mesh(1, 0.3, 12);
-    Mesh mesh = sound;
+    const geometry::Mesh sound = tests::torus_mesh(1, 0.3, 12);
+    geometry::Mesh mesh = sound;
     for (int k = 0; k < 5; ++k) {
-        Triangle copy = sound.triangles[static_cast<std::size_t>(7 * k)];
+        geometry::Triangle copy = sound.triangles[static_cast<std::size_t>(7 * k)];
         std::rotate(copy.begin(), copy.begin() + k % 3, copy.end());
         mesh.triangles.push_back(copy);
     }
@@ -71,10 +72,10 @@ TEST_CASE("copies of triangles are left out") {
 
 TEST_CASE("triangles that are turned over are turned back, whole solids too") {
     std::mt19937 random(11);
-    for (const Mesh& sound : {tests::torus_mesh(1, 0.3, 12), tests::ellipsoid_mesh({1, 2, 3}, 6)}) {
+    for (const geometry::Mesh& sound : {tests::torus_mesh(1, 0.3, 12), tests::ellipsoid_mesh({1, 2, 3}, 6)}) {
         for (const double share : {0.02, 0.3, 0.7, 1.0}) {
-            Mesh mesh = sound;
-            for (Triangle& t : mesh.triangles) {
+            geometry::Mesh mesh = sound;
+            for (geometry::Triangle& t : mesh.triangles) {
                 if (std::uniform_real_distribution<double>(0, 1)(random) < share) std::swap(t[0], t[1]);
             }
             mesh = rebuilt(mesh);
@@ -86,38 +87,38 @@ TEST_CASE("triangles that are turned over are turned back, whole solids too") {
         }
     }
     // A block with a cavity: each is turned as it must be, whichever way the file had them.
-    const Mesh outer = tests::box_mesh({0, 0, 0}, {5, 5, 5}), cavity = tests::inside_out(tests::box_mesh({1, 1, 1}, {4, 4, 4}));
-    Mesh hollow = tests::joined(tests::inside_out(outer), cavity);
+    const geometry::Mesh outer = tests::box_mesh({0, 0, 0}, {5, 5, 5}), cavity = tests::inside_out(tests::box_mesh({1, 1, 1}, {4, 4, 4}));
+    geometry::Mesh hollow = tests::joined(tests::inside_out(outer), cavity);
     CHECK(mentions(repair_mesh(hollow), "the solid was inside out: 12 triangles are turned"));
     CHECK(volume(hollow) == Approx(125 - 27));
 }
 
 TEST_CASE("a hollow solid that is inside out is turned as a whole") {
     const auto block = [](double low, double high) { return tests::box_mesh({low, low, low}, {high, high, high}); };
-    const Mesh hollow = tests::joined(block(0, 10), tests::inside_out(block(2, 8)));
-    Mesh turned = tests::inside_out(hollow);
+    const geometry::Mesh hollow = tests::joined(block(0, 10), tests::inside_out(block(2, 8)));
+    geometry::Mesh turned = tests::inside_out(hollow);
     CHECK(mentions(repair_mesh(turned), "the solid was inside out: 24 triangles are turned"));
     CHECK(volume(turned) == Approx(784));
     CHECK(validate_mesh(turned, {}).empty());
     CHECK_FALSE(point_in_solid({5, 5, 5}, turned.vertices, turned.triangles));
 
     // Two cavities, one of them with a core that is hollow itself; beside it a sound block with a solid in it, which may be meant.
-    const Mesh core = tests::joined(block(11, 14), tests::inside_out(block(12, 13)));
-    const Mesh several =
+    const geometry::Mesh core = tests::joined(block(11, 14), tests::inside_out(block(12, 13)));
+    const geometry::Mesh several =
         tests::joined(tests::joined(tests::joined(block(0, 20), tests::inside_out(block(10, 15))), core), tests::inside_out(block(2, 4)));
-    Mesh nested = tests::joined(tests::inside_out(several), tests::joined(block(30, 40), block(32, 34)));
+    geometry::Mesh nested = tests::joined(tests::inside_out(several), tests::joined(block(30, 40), block(32, 34)));
     CHECK(mentions(repair_mesh(nested), "60 triangles are turned"));
     CHECK(volume(nested) == Approx(8000 - 125 + 27 - 1 - 8 + 1000 + 8));
     CHECK(judge_mesh(nested, true).warnings.size() == 1);
 
-    Mesh core_alone = tests::joined(hollow, tests::inside_out(block(4, 6)));  // sound but for what is in the cavity
+    geometry::Mesh core_alone = tests::joined(hollow, tests::inside_out(block(4, 6)));  // sound but for what is in the cavity
     CHECK(mentions(repair_mesh(core_alone), "12 triangles are turned"));
     CHECK(volume(core_alone) == Approx(784 + 8));
 }
 
 TEST_CASE("where which side is turned over cannot be told, it is an error") {
     // A Moebius strip, closed by nothing.
-    Mesh strip;
+    geometry::Mesh strip;
     strip.name = "strip";
     constexpr int n = 12;
     strip.vertices.resize(3, 2 * n);
@@ -136,7 +137,7 @@ TEST_CASE("where which side is turned over cannot be told, it is an error") {
     CHECK(repair_mesh(strip).empty());
     CHECK(mentions(judge_mesh(strip, true).errors, "run the same way round"));
 
-    Mesh open = tests::torus_mesh(1, 0.3, 12);
+    geometry::Mesh open = tests::torus_mesh(1, 0.3, 12);
     open.triangles.erase(open.triangles.begin());
     std::swap(open.triangles[40][0], open.triangles[40][1]);
     open = rebuilt(open);
@@ -145,8 +146,8 @@ TEST_CASE("where which side is turned over cannot be told, it is an error") {
 }
 
 TEST_CASE("small openings are capped with a bound, large ones are an error") {
-    const Mesh sound = tests::ellipsoid_mesh({1, 2, 3}, 10);
-    Mesh mesh = sound;
+    const geometry::Mesh sound = tests::ellipsoid_mesh({1, 2, 3}, 10);
+    geometry::Mesh mesh = sound;
     mesh.triangles.erase(mesh.triangles.begin() + 30, mesh.triangles.begin() + 32);
     mesh = rebuilt(mesh);
     CHECK(repair_mesh(mesh).empty());
@@ -158,7 +159,7 @@ TEST_CASE("small openings are capped with a bound, large ones are an error") {
     CHECK(std::abs(volume(mesh) - volume(sound)) <= 1.1 * bound * volume(mesh));
     CHECK(bound < 0.05);
 
-    Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
+    geometry::Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     box.triangles.resize(10);
     box = rebuilt(box);
     CHECK(mentions(judge_mesh(box, true).errors, "the surface is open"));
@@ -167,7 +168,7 @@ TEST_CASE("small openings are capped with a bound, large ones are an error") {
 
 TEST_CASE("self-intersections are told with a bound of what they do to the mass") {
     // Parts that overlap: two boxes in one file. The union has 1.875, the signed volume is 2.
-    const Mesh boxes = tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+    const geometry::Mesh boxes = tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
     const MeshFindings overlapping = judge_mesh(boxes, true);
     CHECK(overlapping.errors.empty());
     CHECK(mentions(overlapping.warnings, "triangles intersect"));
@@ -177,12 +178,12 @@ TEST_CASE("self-intersections are told with a bound of what they do to the mass"
     CHECK(*overlap_volume_bound(boxes, pairs) <= 1);
 
     // A vertex of a fine sphere that sticks out of its neighbours' far side: a local fault, a small bound.
-    const Mesh sphere = tests::ellipsoid_mesh({1, 1, 1}, 24);
+    const geometry::Mesh sphere = tests::ellipsoid_mesh({1, 1, 1}, 24);
     int tested = 0;
     for (const int vertex : {100, 200, 300}) {
         const Vector3 x = sphere.vertices.col(vertex);
         const Vector3 beside = x.cross(Vector3(0.3, 0.5, 0.8)).normalized();
-        const Mesh damaged = with_spike(sphere, vertex, (x + 0.4 * beside).normalized() * 1.03);
+        const geometry::Mesh damaged = with_spike(sphere, vertex, (x + 0.4 * beside).normalized() * 1.03);
         const auto crossing = self_intersections(damaged, 10000);
         if (crossing.empty()) continue;
         ++tested;
@@ -207,7 +208,7 @@ TEST_CASE("self-intersections are told with a bound of what they do to the mass"
 }
 
 TEST_CASE("triangles without area, shared edges and nested solids are told") {
-    Mesh flat = tests::box_mesh({0, 0, 0}, {1, 1, 1});
+    geometry::Mesh flat = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     flat.vertices.conservativeResize(3, 9);
     flat.vertices.col(8) = 0.5 * (flat.vertices.col(flat.triangles[0][0]) + flat.vertices.col(flat.triangles[0][1]));
     flat.triangles.push_back({flat.triangles[0][0], 8, flat.triangles[0][1]});
@@ -215,7 +216,8 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     CHECK(mentions(judge_mesh(flat, true).warnings, "1 triangle has no area"));
 
     // Two boxes that touch in an edge: closed in the sense that matters, and inside is inside.
-    const Mesh touching = weld_exactly(tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), tests::box_mesh({1, 1, 0}, {2, 2, 1})));
+    const geometry::Mesh touching =
+        geometry::weld_exactly(tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), tests::box_mesh({1, 1, 0}, {2, 2, 1})));
     const MeshFindings shared = judge_mesh(touching, true);
     CHECK(shared.errors.empty());
     CHECK(mentions(shared.warnings, "1 edge belongs to more than two triangles"));
@@ -224,8 +226,8 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     CHECK(point_in_solid({1.5, 1.5, 0.5}, touching.vertices, touching.triangles));
     CHECK_FALSE(point_in_solid({1.5, 0.5, 0.5}, touching.vertices, touching.triangles));
 
-    const Mesh nested = tests::joined(tests::box_mesh({0, 0, 0}, {5, 5, 5}), tests::box_mesh({1, 1, 1}, {4, 4, 4}));
-    Mesh mesh = nested;
+    const geometry::Mesh nested = tests::joined(tests::box_mesh({0, 0, 0}, {5, 5, 5}), tests::box_mesh({1, 1, 1}, {4, 4, 4}));
+    geometry::Mesh mesh = nested;
     CHECK(repair_mesh(mesh).empty());
     const std::vector<std::string> warnings = judge_mesh(mesh, true).warnings;
     CHECK(mentions(warnings, "a solid within a solid, so that its volume counts twice"));
@@ -238,4 +240,4 @@ TEST_CASE("triangles without area, shared edges and nested solids are told") {
     CHECK(winding_number({2, 2, 2}, mesh.vertices, mesh.triangles) == 2);
 }
 
-}  // namespace fettle::core::geometry::mesh_judgement_test
+}  // namespace fettle::core::solids::mesh_judgement_test

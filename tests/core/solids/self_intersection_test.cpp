@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/self_intersection.hpp"
+#include "fettle/core/solids/self_intersection.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,22 +8,22 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/geometry/simple_fan.hpp"
+#include "fettle/core/solids/simple_fan.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-namespace fettle::core::geometry::self_intersection_test {
+namespace fettle::core::solids::self_intersection_test {
 
 namespace {
 
 /// Of two triangles alone: those that share a vertex make no fan then, so that they are compared corner by corner.
-bool cross(const Mesh& mesh, int t, int u) {
-    Mesh two;
+bool cross(const geometry::Mesh& mesh, int t, int u) {
+    geometry::Mesh two;
     two.vertices = mesh.vertices;
     two.triangles = {mesh.triangles[static_cast<std::size_t>(t)], mesh.triangles[static_cast<std::size_t>(u)]};
     return !self_intersections(two, 2).empty();
 }
 
-std::vector<std::pair<int, int>> by_brute_force(const Mesh& mesh) {
+std::vector<std::pair<int, int>> by_brute_force(const geometry::Mesh& mesh) {
     std::vector<std::pair<int, int>> pairs;
     const int count = static_cast<int>(mesh.triangles.size());
     for (int t = 0; t < count; ++t)
@@ -33,26 +33,26 @@ std::vector<std::pair<int, int>> by_brute_force(const Mesh& mesh) {
 }
 
 /// Shaken, and put on a grid: on a coarse one much is coplanar, collinear, without area or in one place.
-Mesh shaken(Mesh mesh, double size, double grid, std::mt19937_64& random) {
+geometry::Mesh shaken(geometry::Mesh mesh, double size, double grid, std::mt19937_64& random) {
     mesh.vertices += size * tests::random_matrix(static_cast<int>(mesh.vertices.cols()), random);
     if (grid > 0) mesh.vertices = (mesh.vertices / grid).array().round().matrix() * grid;
     return mesh;
 }
 
 /// Vertex 0 in the middle, the others round it, `turns` times; heights and distances vary.
-Mesh fan(int count, int turns, double steepness) {
+geometry::Mesh fan(int count, int turns, double steepness) {
     Matrix3X x(3, count + 1);
     x.col(0).setZero();
-    std::vector<Triangle> triangles;
+    std::vector<geometry::Triangle> triangles;
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * M_PI * turns * i / count, radius = 1 + 0.1 * (i % 3);
         x.col(i + 1) << radius * std::cos(angle), radius * std::sin(angle), steepness * (i % 2 == 0 ? 1 : -1) - 0.3;
         triangles.push_back({0, i + 1, (i + 1) % count + 1});
     }
-    return make_mesh("fan", x, triangles);
+    return geometry::make_mesh("fan", x, triangles);
 }
 
-bool is_simple_at(const Mesh& mesh, int vertex) {
+bool is_simple_at(const geometry::Mesh& mesh, int vertex) {
     const VertexCorners corners(mesh);
     return FanCheck(mesh, corners).is_simple(vertex);
 }
@@ -64,8 +64,8 @@ TEST_CASE("self-intersections are those of all pairs, one by one") {
     std::size_t found = 0, meshes = 0;
     for (const double size : {0.0, 0.02, 0.1, 0.4}) {
         for (const double grid : {0.0, 0.05, 0.25}) {
-            for (const Mesh& sound : {tests::torus_mesh(1, 0.4, 8), tests::ellipsoid_mesh({1, 0.7, 0.3}, 6)}) {
-                const Mesh mesh = shaken(sound, size, grid, random);
+            for (const geometry::Mesh& sound : {tests::torus_mesh(1, 0.4, 8), tests::ellipsoid_mesh({1, 0.7, 0.3}, 6)}) {
+                const geometry::Mesh mesh = shaken(sound, size, grid, random);
                 const auto expected = by_brute_force(mesh);
                 CHECK(self_intersections(mesh, 1'000'000) == expected);
                 found += expected.size();
@@ -79,7 +79,7 @@ TEST_CASE("self-intersections are those of all pairs, one by one") {
 
 TEST_CASE("a list of self-intersections that is cut is the same for any number of threads") {
     std::mt19937_64 random(3);
-    const Mesh mesh = shaken(tests::torus_mesh(1, 0.4, 40), 0.05, 0, random);
+    const geometry::Mesh mesh = shaken(tests::torus_mesh(1, 0.4, 40), 0.05, 0, random);
     const auto all = self_intersections(mesh, 1'000'000);
     REQUIRE(all.size() > 100);
     const auto count = static_cast<int>(all.size());
@@ -94,12 +94,12 @@ TEST_CASE("a list of self-intersections that is cut is the same for any number o
 
 TEST_CASE("triangles without area are those with their corners on a line") {
     std::mt19937_64 random(4);
-    const Mesh mesh = shaken(tests::torus_mesh(1, 0.4, 20), 0.1, 0.25, random);
+    const geometry::Mesh mesh = shaken(tests::torus_mesh(1, 0.4, 20), 0.1, 0.25, random);
     const std::vector<char> without = triangles_without_area(mesh);
     std::size_t count = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Triangle& v = mesh.triangles[t];
-        const bool degenerate = is_degenerate({mesh.vertices.col(v[0]), mesh.vertices.col(v[1]), mesh.vertices.col(v[2])});
+        const geometry::Triangle& v = mesh.triangles[t];
+        const bool degenerate = geometry::is_degenerate({mesh.vertices.col(v[0]), mesh.vertices.col(v[1]), mesh.vertices.col(v[2])});
         CHECK((without[t] != 0) == degenerate);
         count += degenerate ? 1 : 0;
     }
@@ -107,7 +107,7 @@ TEST_CASE("triangles without area are those with their corners on a line") {
 }
 
 TEST_CASE("fans that close once are simple: of smooth and sharp solids, however many triangles they have") {
-    const Mesh torus = tests::torus_mesh(1, 0.4, 20), box = tests::box_mesh({0, 0, 0}, {1, 2, 3});
+    const geometry::Mesh torus = tests::torus_mesh(1, 0.4, 20), box = tests::box_mesh({0, 0, 0}, {1, 2, 3});
     const VertexCorners of_torus(torus), of_box(box);
     FanCheck on_torus(torus, of_torus), on_box(box, of_box);
     for (int v = 0; v < torus.vertices.cols(); ++v) CHECK(on_torus.is_simple(v));
@@ -118,18 +118,18 @@ TEST_CASE("fans that close once are simple: of smooth and sharp solids, however 
 TEST_CASE("fans that do not close, turn twice or fold over are not simple") {
     CHECK(!is_simple_at(fan(7, 2, 0.2), 0));
     CHECK(!is_simple_at(fan(50, 3, 0), 0));
-    Mesh open = fan(8, 1, 0.1);
+    geometry::Mesh open = fan(8, 1, 0.1);
     open.triangles.pop_back();
     CHECK(!is_simple_at(open, 0));
     CHECK(!is_simple_at(open, 3));  // on the boundary
-    Mesh two = fan(8, 1, 0.1);
+    geometry::Mesh two = fan(8, 1, 0.1);
     const auto more = two.triangles;
     two.triangles.insert(two.triangles.end(), more.begin(), more.end());
     CHECK(!is_simple_at(two, 0));
-    Mesh folded = fan(8, 1, 0);
+    geometry::Mesh folded = fan(8, 1, 0);
     folded.vertices.col(3) = 0.5 * folded.vertices.col(1) + 0.01 * Vector3::UnitZ();
     CHECK(!is_simple_at(folded, 0));
-    Mesh flat = fan(8, 1, 0);
+    geometry::Mesh flat = fan(8, 1, 0);
     flat.vertices.col(2) = 0.5 * flat.vertices.col(1);  // no area
     CHECK(!is_simple_at(flat, 0));
 }
@@ -138,7 +138,7 @@ TEST_CASE("no two triangles of a simple fan cross") {
     std::mt19937_64 random(5);
     int simple = 0, other = 0;
     for (int trial = 0; trial < 60; ++trial) {
-        const Mesh mesh = shaken(fan(7, 1, 0.3), 0.1 * (trial % 12), trial % 3 == 0 ? 0.125 : 0, random);
+        const geometry::Mesh mesh = shaken(fan(7, 1, 0.3), 0.1 * (trial % 12), trial % 3 == 0 ? 0.125 : 0, random);
         if (!is_simple_at(mesh, 0)) {
             ++other;
             continue;
@@ -150,4 +150,4 @@ TEST_CASE("no two triangles of a simple fan cross") {
     CHECK(other > 10);
 }
 
-}  // namespace fettle::core::geometry::self_intersection_test
+}  // namespace fettle::core::solids::self_intersection_test

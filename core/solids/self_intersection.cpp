@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/self_intersection.hpp"
+#include "fettle/core/solids/self_intersection.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -14,9 +14,9 @@
 #include "fettle/core/geometry/close_boxes.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/geometry/simple_fan.hpp"
+#include "fettle/core/solids/simple_fan.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 namespace {
 
 using Corners = std::array<Vector3, 3>;
@@ -24,20 +24,20 @@ using TrianglePairs = std::vector<std::pair<int, int>>;
 
 constexpr int triangles_per_piece = 4096;
 
-Corners triangle_corners(const Matrix3X& vertices, const Triangle& t) {
+Corners triangle_corners(const Matrix3X& vertices, const geometry::Triangle& t) {
     return {vertices.col(t[0]), vertices.col(t[1]), vertices.col(t[2])};
 }
 
-Box triangle_box(const Corners& x) { return {x[0].cwiseMin(x[1]).cwiseMin(x[2]), x[0].cwiseMax(x[1]).cwiseMax(x[2])}; }
+geometry::Box triangle_box(const Corners& x) { return {x[0].cwiseMin(x[1]).cwiseMin(x[2]), x[0].cwiseMax(x[1]).cwiseMax(x[2])}; }
 
 bool all_on_one_side(const Corners& triangle, const Corners& points) {
-    const int side = orient3d(triangle[0], triangle[1], triangle[2], points[0]);
-    return side != 0 && orient3d(triangle[0], triangle[1], triangle[2], points[1]) == side &&
-           orient3d(triangle[0], triangle[1], triangle[2], points[2]) == side;
+    const int side = geometry::orient3d(triangle[0], triangle[1], triangle[2], points[0]);
+    return side != 0 && geometry::orient3d(triangle[0], triangle[1], triangle[2], points[1]) == side &&
+           geometry::orient3d(triangle[0], triangle[1], triangle[2], points[2]) == side;
 }
 
 /// Corners of t in cyclic order such that the ones shared with u come first. Returns how many are shared.
-int rotate_shared_first(Triangle& t, const Triangle& u) {
+int rotate_shared_first(geometry::Triangle& t, const geometry::Triangle& u) {
     const auto is_shared = [&](int vertex) { return std::find(u.begin(), u.end(), vertex) != u.end(); };
     const int count = static_cast<int>(std::count_if(t.begin(), t.end(), is_shared));
     if (count == 1) {
@@ -49,7 +49,7 @@ int rotate_shared_first(Triangle& t, const Triangle& u) {
 }
 
 /// Two triangles with an area: do they meet anywhere but in the vertices and the edge that they share by index?
-bool intersect_improperly(const Matrix3X& vertices, Triangle t, Triangle u) {
+bool intersect_improperly(const Matrix3X& vertices, geometry::Triangle t, geometry::Triangle u) {
     const int shared = rotate_shared_first(t, u);
     rotate_shared_first(u, t);
     const Corners a = triangle_corners(vertices, t), b = triangle_corners(vertices, u);
@@ -57,13 +57,15 @@ bool intersect_improperly(const Matrix3X& vertices, Triangle t, Triangle u) {
     if (shared == 1) {
         // From a common point x other than the shared vertex v one can go on, away from v, until one of the triangles ends: on its edge
         // opposite to v, still within the other.
-        return segment_intersects_triangle(a[1], a[2], b) || segment_intersects_triangle(b[1], b[2], a);
+        return geometry::segment_intersects_triangle(a[1], a[2], b) || geometry::segment_intersects_triangle(b[1], b[2], a);
     }
     if (shared == 2) {
         // Two half planes bounded by one line meet elsewhere only if they are the same half plane.
-        if (orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
-        const int axis = projection_axis(a[0], a[1], a[2]);
-        const auto side = [&](const Vector3& x) { return orient2d(projected(a[0], axis), projected(a[1], axis), projected(x, axis)); };
+        if (geometry::orient3d(a[0], a[1], a[2], b[2]) != 0) return false;
+        const int axis = geometry::projection_axis(a[0], a[1], a[2]);
+        const auto side = [&](const Vector3& x) {
+            return geometry::orient2d(geometry::projected(a[0], axis), geometry::projected(a[1], axis), geometry::projected(x, axis));
+        };
         return side(a[2]) == side(b[2]);
     }
     return true;
@@ -78,9 +80,10 @@ int certain_orient2d(const Vector2& a, const Vector2& b, const Vector2& c) {
 
 bool has_no_area(const Corners& x) {
     for (int axis = 0; axis < 3; ++axis) {
-        if (certain_orient2d(projected(x[0], axis), projected(x[1], axis), projected(x[2], axis)) != 0) return false;
+        if (certain_orient2d(geometry::projected(x[0], axis), geometry::projected(x[1], axis), geometry::projected(x[2], axis)) != 0)
+            return false;
     }
-    return is_degenerate(x);
+    return geometry::is_degenerate(x);
 }
 
 /// Seen along the axis, is there an edge of t that has all of u strictly on its other side?
@@ -98,13 +101,13 @@ bool has_parting_edge(const std::array<Vector2, 3>& t, const std::array<Vector2,
 bool are_seen_apart(const Corners& t, const Corners& u) {
     int axis = 0;
     (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&axis);
-    const std::array<Vector2, 3> a{projected(t[0], axis), projected(t[1], axis), projected(t[2], axis)};
-    const std::array<Vector2, 3> b{projected(u[0], axis), projected(u[1], axis), projected(u[2], axis)};
+    const std::array<Vector2, 3> a{geometry::projected(t[0], axis), geometry::projected(t[1], axis), geometry::projected(t[2], axis)};
+    const std::array<Vector2, 3> b{geometry::projected(u[0], axis), geometry::projected(u[1], axis), geometry::projected(u[2], axis)};
     return has_parting_edge(a, b) || has_parting_edge(b, a);
 }
 
 /// Nine comparisons without a branch: most pairs whose boxes overlap are neighbours, by one vertex or another.
-bool share_a_vertex(const Triangle& t, const Triangle& u) {
+bool share_a_vertex(const geometry::Triangle& t, const geometry::Triangle& u) {
     unsigned shared = 0;
     for (const int v : t)
         for (const int w : u) shared |= static_cast<unsigned>(v == w);
@@ -114,7 +117,7 @@ bool share_a_vertex(const Triangle& t, const Triangle& u) {
 /// Those of one mesh, unless there are too many.
 class PairFinder {
 public:
-    PairFinder(const Mesh& mesh, const std::vector<char>& without_area, int limit)
+    PairFinder(const geometry::Mesh& mesh, const std::vector<char>& without_area, int limit)
         : mesh_(mesh), without_area_(without_area), limit_(limit) {}
 
     /// In order. nullopt: there are `limit` or more.
@@ -171,7 +174,7 @@ private:
 
     /// Of triangles without a common vertex.
     TrianglePairs of_others() {
-        std::vector<Box> boxes;
+        std::vector<geometry::Box> boxes;
         std::vector<int> triangles;
         boxes.reserve(mesh_.triangles.size());
         triangles.reserve(mesh_.triangles.size());
@@ -180,7 +183,7 @@ private:
             boxes.push_back(triangle_box(triangle_corners(mesh_.vertices, mesh_.triangles[t])));
             triangles.push_back(t);
         }
-        const CloseBoxes close(boxes);
+        const geometry::CloseBoxes close(boxes);
         return base::ordered_reduce(
             close.tasks(), 1, TrianglePairs{},
             [&](int begin, int) {
@@ -202,15 +205,15 @@ private:
         return !are_seen_apart(a, b) && triangles_intersect(a, b);
     }
 
-    const Mesh& mesh_;
+    const geometry::Mesh& mesh_;
     const std::vector<char>& without_area_;
     int limit_;
     std::atomic<bool> too_many_ = false;
 };
 
 /// The first `max_count` in the order in which one tree meets them.
-TrianglePairs first_pairs(const Mesh& mesh, const std::vector<char>& without_area, int max_count) {
-    std::vector<Box> boxes;
+TrianglePairs first_pairs(const geometry::Mesh& mesh, const std::vector<char>& without_area, int max_count) {
+    std::vector<geometry::Box> boxes;
     std::vector<int> triangles;
     for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
         if (without_area[static_cast<std::size_t>(t)] != 0) continue;
@@ -218,7 +221,7 @@ TrianglePairs first_pairs(const Mesh& mesh, const std::vector<char>& without_are
         triangles.push_back(t);
     }
     TrianglePairs pairs;
-    visit_overlapping_pairs(boxes, [&](int i, int j) {
+    geometry::visit_overlapping_pairs(boxes, [&](int i, int j) {
         const int t = triangles[i], u = triangles[j];
         if (intersect_improperly(mesh.vertices, mesh.triangles[t], mesh.triangles[u])) pairs.emplace_back(t, u);
         return static_cast<int>(pairs.size()) < max_count;
@@ -229,7 +232,7 @@ TrianglePairs first_pairs(const Mesh& mesh, const std::vector<char>& without_are
 
 }  // namespace
 
-std::vector<char> triangles_without_area(const Mesh& mesh) {
+std::vector<char> triangles_without_area(const geometry::Mesh& mesh) {
     std::vector<char> without(mesh.triangles.size(), 0);
     base::parallel_for(static_cast<int>(mesh.triangles.size()), triangles_per_piece, [&](int t) {
         const auto at = static_cast<std::size_t>(t);
@@ -238,8 +241,8 @@ std::vector<char> triangles_without_area(const Mesh& mesh) {
     return without;
 }
 
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, int max_count) {
-    for (const Triangle& t : mesh.triangles) {
+std::vector<std::pair<int, int>> self_intersections(const geometry::Mesh& mesh, int max_count) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         for (const int v : t) FETTLE_ASSERT(v >= 0 && v < mesh.vertices.cols(), "self_intersections needs vertex indices in range");
     }
     if (max_count <= 0) return {};
@@ -252,9 +255,11 @@ bool triangles_intersect(const std::array<Vector3, 3>& a, const std::array<Vecto
     if (!triangle_box(a).overlaps(triangle_box(b)) || all_on_one_side(a, b) || all_on_one_side(b, a)) return false;
     // If they meet, then an edge of one meets the other: the ends of their common segment, or a corner within, are on an edge.
     for (int k = 0; k < 3; ++k) {
-        if (segment_intersects_triangle(a[k], a[(k + 1) % 3], b) || segment_intersects_triangle(b[k], b[(k + 1) % 3], a)) return true;
+        if (geometry::segment_intersects_triangle(a[k], a[(k + 1) % 3], b) ||
+            geometry::segment_intersects_triangle(b[k], b[(k + 1) % 3], a))
+            return true;
     }
     return false;
 }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

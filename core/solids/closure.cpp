@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/closure.hpp"
+#include "fettle/core/solids/closure.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/point_in_solid.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 namespace {
 
 constexpr double next_to_none = 1e-6;  // of the root of its area: how thick a sheet may be that is flat
@@ -26,7 +26,7 @@ double distance_to_segment(const Vector3& x, const Vector3& a, const Vector3& b)
 }
 
 /// Triangles that hang together by their corners, each list a part.
-std::vector<std::vector<Triangle>> connected_parts(const std::vector<Triangle>& triangles, std::size_t vertices) {
+std::vector<std::vector<geometry::Triangle>> connected_parts(const std::vector<geometry::Triangle>& triangles, std::size_t vertices) {
     std::vector<int> parent(vertices);
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int v) {
@@ -34,22 +34,22 @@ std::vector<std::vector<Triangle>> connected_parts(const std::vector<Triangle>& 
             v = parent[static_cast<std::size_t>(v)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
         return v;
     };
-    for (const Triangle& t : triangles)
+    for (const geometry::Triangle& t : triangles)
         for (std::size_t k = 1; k < 3; ++k) parent[static_cast<std::size_t>(root(t[k]))] = root(t[0]);
-    std::map<int, std::vector<Triangle>> parts;
-    for (const Triangle& t : triangles) parts[root(t[0])].push_back(t);
-    std::vector<std::vector<Triangle>> out;
+    std::map<int, std::vector<geometry::Triangle>> parts;
+    for (const geometry::Triangle& t : triangles) parts[root(t[0])].push_back(t);
+    std::vector<std::vector<geometry::Triangle>> out;
     for (auto& [representative, part] : parts) out.push_back(std::move(part));
     return out;
 }
 
 /// Do all triangles lie between two planes that are next to no distance apart? Along the axis in which they spread least.
-bool is_flat(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
+bool is_flat(const Matrix3X& vertices, const std::vector<geometry::Triangle>& triangles) {
     const Vector3 origin = vertices.col(triangles.front()[0]);
     double area = 0;
     Vector3 first = Vector3::Zero();
     Matrix3 second = Matrix3::Zero();
-    for (const Triangle& t : triangles) {
+    for (const geometry::Triangle& t : triangles) {
         std::array<Vector3, 3> x;
         for (std::size_t k = 0; k < 3; ++k) x[k] = vertices.col(t[k]) - origin;
         const double share = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
@@ -64,7 +64,7 @@ bool is_flat(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
     const Eigen::SelfAdjointEigenSolver<Matrix3> axes(second - first * first.transpose() / area);
     const Vector3 across = axes.eigenvectors().col(0);
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Triangle& t : triangles) {
+    for (const geometry::Triangle& t : triangles) {
         for (const int v : t) {
             const double height = across.dot(vertices.col(v) - origin);
             low = std::min(low, height);
@@ -76,8 +76,8 @@ bool is_flat(const Matrix3X& vertices, const std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-std::optional<Closure> closure_of(const Mesh& mesh) {
-    const std::vector<Opening> found = openings(mesh.vertices, mesh.triangles);
+std::optional<Closure> closure_of(const geometry::Mesh& mesh) {
+    const std::vector<geometry::Opening> found = geometry::openings(mesh.vertices, mesh.triangles);
     if (found.empty()) return std::nullopt;
     Closure out;
     const Eigen::Index own = mesh.vertices.cols();
@@ -86,10 +86,10 @@ std::optional<Closure> closure_of(const Mesh& mesh) {
     out.triangles = mesh.triangles;
     out.first_lid = mesh.triangles.size();
     for (std::size_t k = 0; k < found.size(); ++k) {
-        const Opening& opening = found[k];
+        const geometry::Opening& opening = found[k];
         const auto middle = static_cast<int>(own + static_cast<Eigen::Index>(k));
         out.vertices.col(middle) = opening.centre;
-        for (const Edge& edge : opening.edges) {
+        for (const geometry::Edge& edge : opening.edges) {
             out.triangles.push_back({edge[1], edge[0], middle});
             // The distance from the edge is convex over the lid's triangle, and 0 at two of its corners.
             out.reach = std::max(out.reach, distance_to_segment(opening.centre, mesh.vertices.col(edge[0]), mesh.vertices.col(edge[1])));
@@ -107,11 +107,12 @@ bool is_within(const Vector3& point, const Closure& closure) {
     return winding_number(point, closure.vertices, closure.triangles).value_or(1) != 0;
 }
 
-Mesh lids_of(const Closure& closure) {
+geometry::Mesh lids_of(const Closure& closure) {
     std::vector<int> index(static_cast<std::size_t>(closure.vertices.cols()), -1);
     std::vector<int> used;
-    std::vector<Triangle> triangles(closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid), closure.triangles.end());
-    for (Triangle& t : triangles)
+    std::vector<geometry::Triangle> triangles(closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid),
+                                              closure.triangles.end());
+    for (geometry::Triangle& t : triangles)
         for (int& v : t) {
             int& known = index[static_cast<std::size_t>(v)];
             if (known < 0) {
@@ -120,7 +121,7 @@ Mesh lids_of(const Closure& closure) {
             }
             v = known;
         }
-    return make_mesh("lids", closure.vertices(Eigen::all, used), std::move(triangles));
+    return geometry::make_mesh("lids", closure.vertices(Eigen::all, used), std::move(triangles));
 }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,14 +7,14 @@
 #include <set>
 
 #include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/geometry/shells.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/shells.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 namespace {
 
-std::string place_of(const Mesh& mesh, std::size_t triangle) {
+std::string place_of(const geometry::Mesh& mesh, std::size_t triangle) {
     char text[160];
     const Vector3 x = mesh.vertices.col(mesh.triangles[triangle][0]);
     std::snprintf(text, sizeof text, "triangle %zu at (%.6g, %.6g, %.6g) m", triangle, x.x(), x.y(), x.z());
@@ -26,15 +26,15 @@ std::string counted(std::size_t count, const std::string& what, const std::strin
 }
 
 /// The same corners in the same direction, whichever is first.
-Triangle from_smallest(Triangle t) {
+geometry::Triangle from_smallest(geometry::Triangle t) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
 }
 
 /// For every triangle: may it be a copy, or have one? Then it runs along a side that another runs along too, in the same direction.
-std::vector<bool> possible_copies(const Mesh& mesh, const std::vector<HalfEdge>& halves) {
+std::vector<bool> possible_copies(const geometry::Mesh& mesh, const std::vector<geometry::HalfEdge>& halves) {
     std::vector<bool> out(mesh.triangles.size(), false);
-    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+    geometry::visit_edges(halves, [&](std::size_t first, std::size_t last) {
         std::array<int, 2> count{};
         for (std::size_t i = first; i < last; ++i) ++count[halves[i].forward ? 1 : 0];
         for (std::size_t i = first; i < last; ++i)
@@ -44,11 +44,11 @@ std::vector<bool> possible_copies(const Mesh& mesh, const std::vector<HalfEdge>&
 }
 
 /// False if there were none.
-bool drop_copies(Mesh& mesh, const std::vector<HalfEdge>& halves, std::vector<std::string>& done) {
+bool drop_copies(geometry::Mesh& mesh, const std::vector<geometry::HalfEdge>& halves, std::vector<std::string>& done) {
     const std::vector<bool> possible = possible_copies(mesh, halves);
     if (std::find(possible.begin(), possible.end(), true) == possible.end()) return false;
-    std::set<Triangle> seen;
-    std::vector<Triangle> kept;
+    std::set<geometry::Triangle> seen;
+    std::vector<geometry::Triangle> kept;
     std::size_t first = mesh.triangles.size();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (!possible[t] || seen.insert(from_smallest(mesh.triangles[t])).second) {
@@ -62,15 +62,15 @@ bool drop_copies(Mesh& mesh, const std::vector<HalfEdge>& halves, std::vector<st
     done.push_back(counted(count, "copy of a triangle is", "copies of triangles are") + " left out, first " + place_of(mesh, first) +
                    ": no effect on the mass");
     mesh.triangles = std::move(kept);
-    const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
-    build_connectivity(mesh, edges);
+    const std::vector<geometry::Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
+    geometry::build_connectivity(mesh, edges);
     return true;
 }
 
 /// Is there an edge of two triangles that both run along it the same way?
-bool some_are_turned_over(const std::vector<HalfEdge>& halves) {
+bool some_are_turned_over(const std::vector<geometry::HalfEdge>& halves) {
     bool found = false;
-    visit_edges(halves, [&](std::size_t first, std::size_t last) {
+    geometry::visit_edges(halves, [&](std::size_t first, std::size_t last) {
         found =
             found || (last - first == 2 && halves[first].low != halves[first].high && halves[first].forward == halves[first + 1].forward);
     });
@@ -78,7 +78,7 @@ bool some_are_turned_over(const std::vector<HalfEdge>& halves) {
 }
 
 /// For every triangle whether it is to be turned, so that each shell is oriented within itself; shells that cannot be are left as they are.
-std::vector<bool> turns_within_shells(const Mesh& mesh, const std::vector<HalfEdge>& halves) {
+std::vector<bool> turns_within_shells(const geometry::Mesh& mesh, const std::vector<geometry::HalfEdge>& halves) {
     if (!some_are_turned_over(halves)) return std::vector<bool>(mesh.triangles.size(), false);
     struct Link {
         int other;
@@ -86,8 +86,8 @@ std::vector<bool> turns_within_shells(const Mesh& mesh, const std::vector<HalfEd
     };
     std::vector<std::vector<Link>> links(mesh.triangles.size());
     std::vector<bool> orientable(mesh.shell_names.size(), true);
-    visit_edges(halves, [&](std::size_t first, std::size_t last) {
-        const HalfEdge &a = halves[first], &b = halves[last - 1];
+    geometry::visit_edges(halves, [&](std::size_t first, std::size_t last) {
+        const geometry::HalfEdge &a = halves[first], &b = halves[last - 1];
         if (last - first != 2 || a.low == a.high) {
             orientable[static_cast<std::size_t>(mesh.triangle_shell[static_cast<std::size_t>(a.triangle)])] = false;
             return;
@@ -122,7 +122,7 @@ std::vector<bool> turns_within_shells(const Mesh& mesh, const std::vector<HalfEd
 }
 
 /// False if there were none.
-bool turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& what, std::vector<std::string>& done) {
+bool turn_over(geometry::Mesh& mesh, const std::vector<bool>& turns, const std::string& what, std::vector<std::string>& done) {
     const auto count = static_cast<std::size_t>(std::count(turns.begin(), turns.end(), true));
     if (count == 0) return false;
     const auto first = static_cast<std::size_t>(std::find(turns.begin(), turns.end(), true) - turns.begin());
@@ -130,19 +130,19 @@ bool turn_over(Mesh& mesh, const std::vector<bool>& turns, const std::string& wh
     for (std::size_t t = 0; t < turns.size(); ++t) {
         if (turns[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     }
-    const std::vector<Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
-    build_connectivity(mesh, edges);
+    const std::vector<geometry::Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
+    geometry::build_connectivity(mesh, edges);
     return true;
 }
 
 /// Which triangles of a closed mesh belong to shells that are inside out.
-std::vector<bool> turns_of_shells(const Mesh& mesh) {
+std::vector<bool> turns_of_shells(const geometry::Mesh& mesh) {
     std::vector<bool> out(mesh.triangles.size(), false);
     const std::vector<Shell> shells = shells_of(mesh);
     const bool sound = std::all_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.is_oriented(); });
     if (sound) return out;
     if (!self_intersections(mesh, 1).empty()) {  // then which is within which has no answer
-        out.assign(out.size(), volume_sign(mesh.vertices, mesh.triangles) < 0);
+        out.assign(out.size(), geometry::volume_sign(mesh.vertices, mesh.triangles) < 0);
         return out;
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -159,15 +159,15 @@ std::vector<bool> turns_of_shells(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<std::string> repair_mesh(Mesh& mesh) {
+std::vector<std::string> repair_mesh(geometry::Mesh& mesh) {
     std::vector<std::string> done;
     if (mesh.triangles.empty()) return done;
-    std::vector<HalfEdge> halves = sorted_half_edges(mesh);
-    if (drop_copies(mesh, halves, done)) halves = sorted_half_edges(mesh);
+    std::vector<geometry::HalfEdge> halves = geometry::sorted_half_edges(mesh);
+    if (drop_copies(mesh, halves, done)) halves = geometry::sorted_half_edges(mesh);
     if (turn_over(mesh, turns_within_shells(mesh, halves), "triangles of one surface were turned over", done))
-        halves = sorted_half_edges(mesh);
+        halves = geometry::sorted_half_edges(mesh);
     if (bounds_a_solid(halves)) turn_over(mesh, turns_of_shells(mesh), "the solid was inside out", done);
     return done;
 }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

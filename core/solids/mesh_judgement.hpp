@@ -9,7 +9,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 
 struct MeshFindings {
     Errors errors;                      ///< why it cannot be used; `where` is "<mesh name>: triangle 12" and the like
@@ -22,6 +22,6 @@ struct MeshFindings {
 /// @param as_solid  Its mass is that of the volume that it encloses. Else (static bodies, shells, wires) nothing is said of mass; solids
 ///                  within solids are told all the same, of a mesh that is closed: they decide what is inside.
 /// Contract: connectivity built, unless indices are out of range.
-MeshFindings judge_mesh(const Mesh& mesh, bool as_solid);
+MeshFindings judge_mesh(const geometry::Mesh& mesh, bool as_solid);
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "fettle/core/geometry/predicates.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
-namespace fettle::core::geometry::mesh_validity_test {
+namespace fettle::core::solids::mesh_validity_test {
 
 namespace {
 
@@ -71,7 +71,7 @@ std::array<Vector3, 3> random_triangle(std::mt19937_64& random, int kind) {
             for (int i = 0; i < 3; ++i) v(i) = kind ? std::ldexp(std::floor(std::ldexp(uniform(random), 30)), -30) : grid(random);
             if (kind == 2) v(2) = 1;  // coplanar
         }
-    } while (is_degenerate(t));
+    } while (geometry::is_degenerate(t));
     return t;
 }
 
@@ -80,9 +80,9 @@ bool mentions(const Errors& errors, const std::string& text) {
                        [&](const Error& e) { return (e.where + " " + e.message).find(text) != std::string::npos; });
 }
 
-Mesh without_triangle(Mesh mesh, int index) {
+geometry::Mesh without_triangle(geometry::Mesh mesh, int index) {
     mesh.triangles.erase(mesh.triangles.begin() + index);
-    build_connectivity(mesh);
+    geometry::build_connectivity(mesh);
     return mesh;
 }
 
@@ -92,7 +92,7 @@ const MeshRequirements strict;
 
 TEST_CASE("overlapping boxes: every pair once, as by brute force") {
     std::mt19937_64 random(1);
-    std::vector<Box> boxes;
+    std::vector<geometry::Box> boxes;
     for (int i = 0; i < 300; ++i) {
         const Matrix3X x = tests::random_matrix(2, random);
         const Vector3 half = 0.15 * x.col(1).cwiseAbs();
@@ -100,7 +100,7 @@ TEST_CASE("overlapping boxes: every pair once, as by brute force") {
     }
     boxes.push_back(boxes[7]);
     std::vector<std::pair<int, int>> found, expected;
-    visit_overlapping_pairs(boxes, [&](int i, int j) {
+    geometry::visit_overlapping_pairs(boxes, [&](int i, int j) {
         found.emplace_back(i, j);
         return true;
     });
@@ -113,9 +113,9 @@ TEST_CASE("overlapping boxes: every pair once, as by brute force") {
     CHECK(expected.size() > 100);
     CHECK(found == expected);
     int calls = 0;
-    visit_overlapping_pairs(boxes, [&](int, int) { return ++calls < 3; });
+    geometry::visit_overlapping_pairs(boxes, [&](int, int) { return ++calls < 3; });
     CHECK(calls == 3);
-    visit_overlapping_pairs({}, [&](int, int) { return ++calls < 3; });
+    geometry::visit_overlapping_pairs({}, [&](int, int) { return ++calls < 3; });
     CHECK(calls == 3);
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("triangles with a shared vertex: only what lies beyond it counts") {
         const auto a = random_triangle(random, 0);
         auto b = random_triangle(random, i % 3 == 0 ? 2 : 0);
         b[0] = a[0];
-        if (is_degenerate(b)) continue;
+        if (geometry::is_degenerate(b)) continue;
         ++count;
         const auto cut = [](const std::array<Vector3, 3>& t) {
             const Vector3 near1 = t[0] + 0x1p-20 * (t[1] - t[0]), near2 = t[0] + 0x1p-20 * (t[2] - t[0]);
@@ -164,7 +164,7 @@ TEST_CASE("triangles with a shared vertex: only what lies beyond it counts") {
         const bool expected = polygons_intersect(cut(a), cut(b));
         Matrix3X v(3, 5);
         v << a[0], a[1], a[2], b[1], b[2];
-        const Mesh mesh = make_mesh("pair", v, {{1, 2, 0}, {3, 0, 4}});
+        const geometry::Mesh mesh = geometry::make_mesh("pair", v, {{1, 2, 0}, {3, 0, 4}});
         hits += expected;
         wrong += (self_intersections(mesh, 10).size() == 1) != expected;
     }
@@ -178,7 +178,7 @@ TEST_CASE("triangles with a shared edge intersect only when folded onto each oth
     const auto folded = [](const Vector3& apex) {
         Matrix3X v(3, 4);
         v << Vector3(0, 0, 0), Vector3(1, 0.5, 0.25), Vector3(0, 1, 0), apex;
-        return self_intersections(make_mesh("fold", v, {{0, 1, 2}, {3, 1, 0}}), 10).size();
+        return self_intersections(geometry::make_mesh("fold", v, {{0, 1, 2}, {3, 1, 0}}), 10).size();
     };
     CHECK(folded({0.5, 0.25, 1}) == 0);
     CHECK(folded({1, -0.5, 0.25}) == 0);  // coplanar, on the other side
@@ -187,18 +187,18 @@ TEST_CASE("triangles with a shared edge intersect only when folded onto each oth
     CHECK(folded({0, 1, 0}) == 1);  // the same triangle with an unwelded apex
     Matrix3X v(3, 3);
     v << 0, 1, 0, 0, 0, 1, 0, 0, 0;
-    CHECK(self_intersections(make_mesh("twice", v, {{0, 1, 2}, {2, 1, 0}}), 10).size() == 1);
+    CHECK(self_intersections(geometry::make_mesh("twice", v, {{0, 1, 2}, {2, 1, 0}}), 10).size() == 1);
 }
 
 TEST_CASE("self-intersections of a mesh as by brute force over all pairs") {
     std::mt19937_64 random(4);
-    Mesh mesh = tests::torus_mesh(1, 0.4, 8);
+    geometry::Mesh mesh = tests::torus_mesh(1, 0.4, 8);
     mesh.vertices += 0.3 * tests::random_matrix(64, random);
     const auto pairs = self_intersections(mesh, 100000);
     std::vector<std::pair<int, int>> expected;
     for (int i = 0; i < 128; ++i) {
         for (int j = i + 1; j < 128; ++j) {
-            Mesh two = mesh;
+            geometry::Mesh two = mesh;
             two.triangles = {mesh.triangles[i], mesh.triangles[j]};
             if (!self_intersections(two, 1).empty()) expected.emplace_back(i, j);
         }
@@ -214,12 +214,12 @@ TEST_CASE("valid solids have no faults") {
     CHECK(validate_mesh(tests::torus_mesh(1, 0.3, 12), strict).empty());
     CHECK(validate_mesh(tests::ellipsoid_mesh({1, 2, 3}, 6), strict).empty());
     CHECK(is_closed(tests::torus_mesh(1, 0.3, 12)));
-    CHECK_FALSE(is_closed(Mesh{}));
+    CHECK_FALSE(is_closed(geometry::Mesh{}));
 }
 
 TEST_CASE("open, inconsistently oriented and non-manifold edges") {
-    const Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
-    const Mesh open = without_triangle(box, 5);
+    const geometry::Mesh box = tests::box_mesh({0, 0, 0}, {1, 1, 1});
+    const geometry::Mesh open = without_triangle(box, 5);
     CHECK_FALSE(is_closed(open));
     const Errors open_errors = validate_mesh(open, strict);
     CHECK(open_errors.size() == 3);
@@ -227,30 +227,30 @@ TEST_CASE("open, inconsistently oriented and non-manifold edges") {
     CHECK(open_errors[0].where.substr(0, 14) == "box: triangle ");
     CHECK(validate_mesh(open, {false, true}).empty());
 
-    Mesh turned = box;
+    geometry::Mesh turned = box;
     std::swap(turned.triangles[4][0], turned.triangles[4][1]);
-    build_connectivity(turned);
+    geometry::build_connectivity(turned);
     CHECK_FALSE(is_closed(turned));
     CHECK(mentions(validate_mesh(turned, strict), "is turned over"));
 
     // Two boxes that touch in an edge: that edge has four triangles.
-    const Mesh touching = weld_exactly(tests::joined(box, tests::box_mesh({1, 1, 0}, {2, 2, 1})));
+    const geometry::Mesh touching = geometry::weld_exactly(tests::joined(box, tests::box_mesh({1, 1, 0}, {2, 2, 1})));
     CHECK_FALSE(is_closed(touching));
     CHECK(mentions(validate_mesh(touching, strict), "is shared with 3 triangles"));
 
-    CHECK(mentions(validate_mesh(make_mesh("none", Matrix3X(3, 0), {}), strict), "has no triangles"));
-    Mesh loose = box;
+    CHECK(mentions(validate_mesh(geometry::make_mesh("none", Matrix3X(3, 0), {}), strict), "has no triangles"));
+    geometry::Mesh loose = box;
     loose.vertices.conservativeResize(3, 10);
     loose.vertices.rightCols(2) << 5, 6, 5, 5, 5, 5;
-    build_connectivity(loose, {{0, 8}});
+    geometry::build_connectivity(loose, {{0, 8}});
     CHECK(mentions(validate_mesh(loose, strict), "edge 18 from (0, 0, 0) m to (5, 5, 5) m belongs to no triangle"));
     CHECK(mentions(validate_mesh(loose, strict), "vertex 9 at (6, 5, 5) m belongs to no triangle"));
     CHECK(validate_mesh(loose, {false, true}).empty());
 }
 
 TEST_CASE("inside-out solids, cavities, solids within solids") {
-    const Mesh outer = tests::box_mesh({0, 0, 0}, {5, 5, 5}), inner = tests::box_mesh({1, 1, 1}, {4, 4, 4}),
-               core = tests::box_mesh({2, 2, 2}, {3, 3, 3}), apart = tests::box_mesh({7, 7, 7}, {8, 8, 8});
+    const geometry::Mesh outer = tests::box_mesh({0, 0, 0}, {5, 5, 5}), inner = tests::box_mesh({1, 1, 1}, {4, 4, 4}),
+                         core = tests::box_mesh({2, 2, 2}, {3, 3, 3}), apart = tests::box_mesh({7, 7, 7}, {8, 8, 8});
     CHECK(mentions(validate_mesh(tests::inside_out(outer), strict), "is inside out"));
     CHECK(mentions(validate_mesh(tests::inside_out(outer), {true, false}), "not positive"));
     CHECK(validate_mesh(tests::joined(outer, tests::inside_out(inner)), strict).empty());
@@ -264,7 +264,7 @@ TEST_CASE("inside-out solids, cavities, solids within solids") {
 }
 
 TEST_CASE("numbers that are no numbers, indices out of range, triangles without area") {
-    Mesh mesh = tests::box_mesh({0, 0, 0}, {1, 1, 1});
+    geometry::Mesh mesh = tests::box_mesh({0, 0, 0}, {1, 1, 1});
     mesh.vertices(1, 3) = std::numeric_limits<double>::quiet_NaN();
     mesh.vertices(0, 5) = std::numeric_limits<double>::infinity();
     const Errors not_finite = validate_mesh(mesh, strict);
@@ -288,7 +288,7 @@ TEST_CASE("numbers that are no numbers, indices out of range, triangles without 
     mesh.triangles[1] = {8, 3, 1};
     mesh.triangles.push_back({0, 3, 8});
     mesh.triangles.push_back({0, 8, 1});
-    build_connectivity(mesh);
+    geometry::build_connectivity(mesh);
     CHECK(is_closed(mesh));
     CHECK(validate_mesh(mesh, strict).size() == 3);
     const Errors flat = validate_mesh(mesh, {true, false});
@@ -298,25 +298,25 @@ TEST_CASE("numbers that are no numbers, indices out of range, triangles without 
 }
 
 TEST_CASE("self-intersection is reported with both triangles and the place, long lists are cut") {
-    const Mesh cross = tests::joined(tests::box_mesh({-2, -1, -1}, {2, 1, 1}), tests::box_mesh({-1, -2, -0.5}, {1, 2, 0.5}));
+    const geometry::Mesh cross = tests::joined(tests::box_mesh({-2, -1, -1}, {2, 1, 1}), tests::box_mesh({-1, -2, -0.5}, {1, 2, 0.5}));
     const Errors errors = validate_mesh(cross, strict, 3);
     REQUIRE(errors.size() == 4);
     CHECK(errors[0].code == ErrorCode::mesh_invalid);
     CHECK(mentions(errors, "intersects triangle"));
     CHECK(mentions(errors, "more pairs of intersecting triangles"));
     CHECK(validate_mesh(cross, {true, false}).empty());
-    Mesh soup;
+    geometry::Mesh soup;
     soup.name = "soup";
     soup.vertices = Matrix3X::Random(3, 60);
     for (int i = 0; i < 20; ++i) soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    build_connectivity(soup);
+    geometry::build_connectivity(soup);
     CHECK(mentions(validate_mesh(soup, strict, 4), "and 56 more edges"));
 }
 
 TEST_CASE("point in solid: rays through vertices, edges and coplanar faces") {
     // Grid points against a box and a torus-like frame whose coordinates are on the same grid: every ray is degenerate.
-    const Mesh box = tests::box_mesh({1, 1, 1}, {3, 3, 3});
-    const Mesh shell = tests::joined(tests::box_mesh({0, 0, 0}, {4, 4, 4}), tests::inside_out(box));
+    const geometry::Mesh box = tests::box_mesh({1, 1, 1}, {3, 3, 3});
+    const geometry::Mesh shell = tests::joined(tests::box_mesh({0, 0, 0}, {4, 4, 4}), tests::inside_out(box));
     for (int i = -2; i <= 10; ++i) {
         for (int j = -2; j <= 10; ++j) {
             for (int k = -2; k <= 10; ++k) {
@@ -336,13 +336,13 @@ TEST_CASE("point in solid: rays through vertices, edges and coplanar faces") {
 
 TEST_CASE("point in solid agrees with the winding angle") {
     std::mt19937_64 random(5);
-    Mesh torus = tests::torus_mesh(1, 0.4, 9);
+    geometry::Mesh torus = tests::torus_mesh(1, 0.4, 9);
     torus.vertices += 0.05 * tests::random_matrix(81, random);
     int inside_count = 0;
     for (int i = 0; i < 3000; ++i) {
         const Vector3 p = 1.4 * tests::random_matrix(1, random).col(0).cwiseProduct(Vector3(1, 1, 0.4));
         double angle = 0;  // solid angle after van Oosterom and Strackee
-        for (const Triangle& t : torus.triangles) {
+        for (const geometry::Triangle& t : torus.triangles) {
             const Vector3 a = torus.vertices.col(t[0]) - p, b = torus.vertices.col(t[1]) - p, c = torus.vertices.col(t[2]) - p;
             angle += 2 * std::atan2(a.dot(b.cross(c)),
                                     a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() + b.dot(c) * a.norm() + c.dot(a) * b.norm());
@@ -355,9 +355,9 @@ TEST_CASE("point in solid agrees with the winding angle") {
 }
 
 TEST_CASE("validity of fifty thousand triangles", "[slow]") {
-    const Mesh sphere = tests::ellipsoid_mesh({1, 1, 2}, 112);
+    const geometry::Mesh sphere = tests::ellipsoid_mesh({1, 1, 2}, 112);
     REQUIRE(sphere.triangles.size() > 49000);
     CHECK(validate_mesh(sphere, strict).empty());
 }
 
-}  // namespace fettle::core::geometry::mesh_validity_test
+}  // namespace fettle::core::solids::mesh_validity_test

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/shells.hpp"
+#include "fettle/core/solids/shells.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/point_in_solid.hpp"
 #include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 namespace {
 
 /// Of two shells that do not cross: is `inner` within `outer`? Asked of a vertex that is not on `outer`; all others are on the same side.
@@ -22,9 +22,9 @@ bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertice
 }
 
 /// Of the triangles of a shell, in order. @param last_shell  per vertex the last shell that it was found in.
-std::vector<int> distinct_vertices(const std::vector<Triangle>& triangles, std::vector<int>& last_shell, int shell) {
+std::vector<int> distinct_vertices(const std::vector<geometry::Triangle>& triangles, std::vector<int>& last_shell, int shell) {
     std::vector<int> out;
-    for (const Triangle& t : triangles) {
+    for (const geometry::Triangle& t : triangles) {
         for (const int v : t) {
             if (std::exchange(last_shell[static_cast<std::size_t>(v)], shell) != shell) out.push_back(v);
         }
@@ -42,7 +42,7 @@ std::vector<int> distinct_vertices(const std::vector<Triangle>& triangles, std::
 
 }  // namespace
 
-std::vector<Shell> shells_of(const Mesh& mesh) {
+std::vector<Shell> shells_of(const geometry::Mesh& mesh) {
     FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "shells need a mesh with connectivity (build_connectivity)");
     std::vector<Shell> shells(mesh.shell_names.size());
     std::vector<int> last_shell(static_cast<std::size_t>(mesh.vertices.cols()), -1);
@@ -51,7 +51,7 @@ std::vector<Shell> shells_of(const Mesh& mesh) {
     for (std::size_t s = 0; s < shells.size(); ++s) {
         Shell& shell = shells[s];
         shell.index = static_cast<int>(s);
-        shell.volume_sign = volume_sign(mesh.vertices, shell.triangles);
+        shell.volume_sign = geometry::volume_sign(mesh.vertices, shell.triangles);
         shell.vertices = distinct_vertices(shell.triangles, last_shell, shell.index);
         shell.box = {mesh.vertices.col(shell.vertices[0]), mesh.vertices.col(shell.vertices[0])};
         for (const int v : shell.vertices) {
@@ -77,4 +77,4 @@ std::vector<Shell> shells_of(const Mesh& mesh) {
     return shells;
 }
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

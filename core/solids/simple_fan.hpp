@@ -7,13 +7,13 @@
 
 #include "fettle/core/geometry/mesh.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 
 /// Corners (3 t + k) of triangles by vertex, in order.
 class VertexCorners {
 public:
     /// Contract: vertex indices in range.
-    explicit VertexCorners(const Mesh& mesh);
+    explicit VertexCorners(const geometry::Mesh& mesh);
 
     const int* begin(int vertex) const { return corners_.data() + first_[static_cast<std::size_t>(vertex)]; }
     const int* end(int vertex) const { return corners_.data() + first_[static_cast<std::size_t>(vertex) + 1]; }
@@ -30,7 +30,7 @@ struct FanSector {
 /// Asks vertex after vertex of one mesh; for use by one thread. Both arguments outlive it.
 class FanCheck {
 public:
-    FanCheck(const Mesh& mesh, const VertexCorners& corners) : mesh_(mesh), corners_(corners) {}
+    FanCheck(const geometry::Mesh& mesh, const VertexCorners& corners) : mesh_(mesh), corners_(corners) {}
 
     /// True only if the triangles round the vertex close up once and no two of them have a point in common but the vertex and the edges
     /// that they share: there is a direction along which all of them are seen from the same side, and together they turn once round the
@@ -39,9 +39,9 @@ public:
     bool is_simple(int vertex);
 
 private:
-    const Mesh& mesh_;
+    const geometry::Mesh& mesh_;
     const VertexCorners& corners_;
     std::vector<FanSector> sectors_;  ///< of the vertex that is asked of
 };
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids

@@ -9,7 +9,7 @@
 
 #include "fettle/core/geometry/mesh.hpp"
 
-namespace fettle::core::geometry {
+namespace fettle::core::solids {
 
 /// |signed volume - volume of the union| <= the result [m^3], up to rounding. nullopt: it could not be bounded.
 ///   - Triangles of no pair, joined over shared edges, are patches: no other surface crosses them, so one place tells what their sides are.
@@ -18,6 +18,6 @@ namespace fettle::core::geometry {
 ///     volume times count.
 ///   - If only different shells cross: all but the largest shell's volume, if that is less.
 /// @param pairs  All of self_intersections(mesh). Contract: bounds_a_solid(mesh).
-std::optional<double> overlap_volume_bound(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
+std::optional<double> overlap_volume_bound(const geometry::Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
 
-}  // namespace fettle::core::geometry
+}  // namespace fettle::core::solids
