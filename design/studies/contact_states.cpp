@@ -16,7 +16,7 @@ namespace fettle::design::studies {
 namespace {
 
 using core::contact::ContactPair;
-using core::contact::PairType;
+using core::geometry::PairType;
 using core::model::Body;
 using core::model::Model;
 
@@ -108,7 +108,7 @@ public:
     std::vector<ContactState> find() const {
         std::vector<ContactState> out;
         std::vector<double> weights;
-        const core::contact::ContactSet set = find_contacts(model_, core::contact::find_candidates(model_, poses_, 0), poses_);
+        const core::contact::ContactSet set = core::contact::find_contacts(model_, core::ccd::find_candidates(model_, poses_, 0), poses_);
         for (const core::contact::BodyPairContacts& list : set.pairs)
             for (const ContactPair& pair : list.contacts) {
                 out.push_back(state_of(list, pair));

@@ -52,7 +52,7 @@ std::vector<kinematics::Pose> poses_at(const Setup& s, const VectorX& y) {
 }
 
 ContactSet contacts_at(const Setup& s, const std::vector<kinematics::Pose>& poses) {
-    return find_contacts(s.model, find_candidates(s.model, poses, 0.3), poses);
+    return find_contacts(s.model, ccd::find_candidates(s.model, poses, 0.3), poses);
 }
 
 double value(const Setup& s, const VectorX& y) {
@@ -86,7 +86,7 @@ int mollified(const ContactSet& contacts) {
     int count = 0;
     for (const BodyPairContacts& list : contacts.pairs)
         for (const ContactPair& pair : list.contacts)
-            count += pair.type == PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps;
+            count += pair.type == geometry::PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps;
     return count;
 }
 

@@ -34,7 +34,7 @@ Scene make_scene(double slid) {
     s.model.friction.mu = MatrixX::Constant(1, 1, 0.4);
     s.model.friction.eps_v = 0.01;
     for (const model::Body& body : s.model.bodies) s.lagged_at.push_back(body.pose_start);
-    const Candidates candidates = find_candidates(s.model, s.lagged_at, 0.3);
+    const ccd::Candidates candidates = ccd::find_candidates(s.model, s.lagged_at, 0.3);
     const ContactSet contacts = find_contacts(s.model, candidates, s.lagged_at);
     REQUIRE(contacts.count > 10);
     std::vector<Matrix34> reference;
@@ -160,7 +160,7 @@ TEST_CASE("the share of the load that slides is that of the contacts beyond the 
 TEST_CASE("pairs without friction are left out", "[friction]") {
     Scene s = make_scene(0);
     s.model.friction.mu(0, 0) = 0;
-    const Candidates candidates = find_candidates(s.model, s.lagged_at, 0.3);
+    const ccd::Candidates candidates = ccd::find_candidates(s.model, s.lagged_at, 0.3);
     const ContactSet contacts = find_contacts(s.model, candidates, s.lagged_at);
     std::vector<Matrix34> reference(2, Matrix34::Zero());
     CHECK(lag_friction(s.model, contacts, s.lagged_at, barrier_parameters(0.2, 0, 2e4, 4e-4), reference, 0.02).pairs.empty());

@@ -79,7 +79,7 @@ TEST_CASE("the term's gradient and Hessian agree with differences, its projected
          {scene::Integrator::implicit_euler, scene::Integrator::bdf2, scene::Integrator::quasi_static}) {
         const model::Model model = loose_bars(integrator);
         const StepProblem problem = step_problem(model, start_history(model), model.kappa);
-        const contact::Candidates none;
+        const ccd::Candidates none;
         const auto points_at = [&](const VectorX& y) {
             std::vector<kinematics::ChartPoint> out;
             for (int i = 0; i < 2; ++i) out.push_back({problem.poses_t0[i].position + y.segment<3>(6 * i), y.segment<3>(6 * i + 3)});

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 
-namespace fettle::core::contact::narrow_gap_test {
+namespace fettle::core::ccd::narrow_gap_test {
 
 namespace {
 
 /// A pair of size about 1 with a gap, in a chosen position, then turned and moved anyhow.
 struct NarrowPair {
-    PairType type = PairType::edge_edge;
-    PairVertices x;
+    geometry::PairType type = geometry::PairType::edge_edge;
+    geometry::PairVertices x;
 };
 
 constexpr int kinds = 12;
@@ -29,7 +29,7 @@ public:
             Eigen::Quaterniond(normal_(random_), normal_(random_), normal_(random_), normal_(random_)).normalized().toRotationMatrix();
         const Vector3 offset(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
         for (Vector3& v : p.x) v = turn * v + offset;
-        if (p.type == PairType::edge_edge && uniform(0, 1) < 0.5) p.x = {p.x[3], p.x[2], p.x[0], p.x[1]};
+        if (p.type == geometry::PairType::edge_edge && uniform(0, 1) < 0.5) p.x = {p.x[3], p.x[2], p.x[0], p.x[1]};
         return p;
     }
     double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
@@ -41,38 +41,38 @@ private:
         const double small = std::pow(10.0, uniform(-12, 0)), s = uniform(0.1, 0.9);
         switch (kind) {
             case 0:  // vertex over face
-                return {PairType::point_triangle, {Vector3(uniform(0.1, 0.4), uniform(0.1, 0.4), g), o, x, y}};
+                return {geometry::PairType::point_triangle, {Vector3(uniform(0.1, 0.4), uniform(0.1, 0.4), g), o, x, y}};
             case 1:  // vertex beside an edge, in the plane
-                return {PairType::point_triangle, {Vector3(s, -g, 0), o, x, y}};
+                return {geometry::PairType::point_triangle, {Vector3(s, -g, 0), o, x, y}};
             case 2:  // vertex at vertex
-                return {PairType::point_triangle, {Vector3(-0.6 * g, -0.8 * g, 0), o, x, y}};
+                return {geometry::PairType::point_triangle, {Vector3(-0.6 * g, -0.8 * g, 0), o, x, y}};
             case 3:  // edges that cross
-                return {PairType::edge_edge, {Vector3(-0.5, 0, g), Vector3(0.5, 0, g), Vector3(0, -0.5, 0), Vector3(0, 0.5, 0)}};
+                return {geometry::PairType::edge_edge, {Vector3(-0.5, 0, g), Vector3(0.5, 0, g), Vector3(0, -0.5, 0), Vector3(0, 0.5, 0)}};
             case 4:  // collinear, end to end
-                return {PairType::edge_edge, {o, x, (1 + g) * x, 2 * x}};
+                return {geometry::PairType::edge_edge, {o, x, (1 + g) * x, 2 * x}};
             case 5:  // parallel, side by side
-                return {PairType::edge_edge, {o, x, Vector3(s, g, 0), Vector3(s + 1, g, 0)}};
+                return {geometry::PairType::edge_edge, {o, x, Vector3(s, g, 0), Vector3(s + 1, g, 0)}};
             case 6:  // an end over an edge, the rest leaning away by any angle
-                return {PairType::edge_edge,
+                return {geometry::PairType::edge_edge,
                         {o, x, Vector3(s, g * std::cos(3 * small), g * std::sin(3 * small)),
                          Vector3(s + uniform(-1, 1), g + small, uniform(-0.5, 0.5))}};
             case 7: {  // edges that cross at any angle
                 const Vector3 b(0.5 * std::cos(small), 0.5 * std::sin(small), 0);
-                return {PairType::edge_edge, {Vector3(-0.5, 0, g), Vector3(0.5, 0, g), -b, b}};
+                return {geometry::PairType::edge_edge, {Vector3(-0.5, 0, g), Vector3(0.5, 0, g), -b, b}};
             }
             case 8:  // a T in a plane
-                return {PairType::edge_edge, {o, x, Vector3(s, g, 0), Vector3(s + uniform(-0.5, 0.5), g + uniform(0.1, 1), 0)}};
+                return {geometry::PairType::edge_edge, {o, x, Vector3(s, g, 0), Vector3(s + uniform(-0.5, 0.5), g + uniform(0.1, 1), 0)}};
             case 9: {  // vertex over a sliver, its corner anywhere along
                 const double along = uniform(-0.2, 1.2), b1 = uniform(0.05, 0.4), b2 = uniform(0.05, 0.4);
                 const Vector3 corner(along, small, 0);
-                return {PairType::point_triangle, {b1 * x + b2 * corner + g * Vector3(0, 0, 1), o, x, corner}};
+                return {geometry::PairType::point_triangle, {b1 * x + b2 * corner + g * Vector3(0, 0, 1), o, x, corner}};
             }
             case 10: {  // vertex beside a sliver, anywhere
                 const Vector3 corner(uniform(-0.2, 1.2), small, 0), p(uniform(-0.2, 1.2), uniform(-1, 1) * small, 0);
-                return {PairType::point_triangle, {p + g * Vector3(0, 0, 1), o, x, corner}};
+                return {geometry::PairType::point_triangle, {p + g * Vector3(0, 0, 1), o, x, corner}};
             }
             default:  // end to end, nearly collinear
-                return {PairType::edge_edge,
+                return {geometry::PairType::edge_edge,
                         {Vector3(-g, 0, 0), Vector3(-g - 1, small, uniform(-1, 1) * small), o,
                          Vector3(1, uniform(-1, 1) * small, uniform(-1, 1) * small)}};
         }
@@ -89,8 +89,8 @@ CurvedCcdResult curved(const NarrowPair& p, const Vector3& step, const Vector3& 
     a.position_step = step;
     a.rotation_vector_step = turn;
     b.position_t0 = p.x[3];
-    PairVertices X;
-    const std::size_t n = p.type == PairType::point_triangle ? 1 : 2;
+    geometry::PairVertices X;
+    const std::size_t n = p.type == geometry::PairType::point_triangle ? 1 : 2;
     for (std::size_t i = 0; i < 4; ++i) X[i] = p.x[i] - (i < n ? p.x[0] : p.x[3]);
     return curved_ccd(p.type, a, b, X, 0);
 }
@@ -120,8 +120,8 @@ TEST_CASE("a small approach over a narrow gap is no hit at the start") {
             // Less than half of what is there: never a hit.
             const Vector3 way = g.vector().normalized();
             const double distance = distance_lower_bound(p.type, p.x);
-            PairVertices moved = p.x;
-            const std::size_t n = p.type == PairType::point_triangle ? 1 : 2;
+            geometry::PairVertices moved = p.x;
+            const std::size_t n = p.type == geometry::PairType::point_triangle ? 1 : 2;
             for (std::size_t k = 0; k < n; ++k) moved[k] += 0.4 * distance * way;
             REQUIRE(!linear_ccd(p.type, p.x, moved, 0).hit);
             const Vector3 turn = 0.05 * distance * g.vector().normalized();
@@ -138,4 +138,4 @@ TEST_CASE("a small approach over a narrow gap is no hit at the start") {
     CHECK(hits > 500);
 }
 
-}  // namespace fettle::core::contact::narrow_gap_test
+}  // namespace fettle::core::ccd::narrow_gap_test

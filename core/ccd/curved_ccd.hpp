@@ -22,11 +22,11 @@
 
 #include <array>
 
-#include "fettle/core/contact/chord_deviation.hpp"
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 struct CurvedCcdOptions {
     DeviationBound deviation = DeviationBound::closed_form;
@@ -41,7 +41,7 @@ struct CurvedCcdResult {
 
 /// `X`: the pair's vertices in their bodies' frames. point_triangle: X[0] on body a, X[1..3] on body b; edge_edge: X[0..1] on a,
 /// X[2..3] on b. Contract: dmin >= 0.
-CurvedCcdResult curved_ccd(PairType type, const kinematics::PathSegment& a, const kinematics::PathSegment& b, const PairVertices& X,
-                           double dmin, const CurvedCcdOptions& options = {});
+CurvedCcdResult curved_ccd(geometry::PairType type, const kinematics::PathSegment& a, const kinematics::PathSegment& b,
+                           const geometry::PairVertices& X, double dmin, const CurvedCcdOptions& options = {});
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

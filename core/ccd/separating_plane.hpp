@@ -6,27 +6,27 @@
 /// square roots and divisions, in a layout that compilers turn into vector instructions (of the same bits).
 #pragma once
 
-#include "fettle/core/contact/primitive_pair.hpp"
+#include "fettle/core/geometry/primitive_pair.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// One number per pair of vertices. edge_edge: a0 b0, a0 b1, a1 b0, a1 b1; point_triangle: p t0, p t1, p t2, p t2.
 using Lanes = Eigen::Array4d;
 /// x_i - x_j: a row per pair of vertices, a column per axis.
 using Differences = Eigen::Array<double, 4, 3>;
 
-Differences differences(PairType type, const PairVertices& x);
+Differences differences(geometry::PairType type, const geometry::PairVertices& x);
 
 /// Straight motion of a pair from t = 0 to 1.
 struct RelativeMotion {
-    PairType type;
+    geometry::PairType type;
     Differences d, e;  ///< at t = 0, 1
     Vector3 largest;   ///< of |d|, |e| per axis: D_k of linear_ccd.hpp
     bool usable;       ///< nothing is NaN, nothing above 1e150: squares do not overflow
 
     Differences at(double t) const { return (1 - t) * d + t * e; }
 };
-RelativeMotion relative_motion(PairType type, const PairVertices& t0, const PairVertices& t1);
+RelativeMotion relative_motion(geometry::PairType type, const geometry::PairVertices& t0, const geometry::PairVertices& t1);
 
 /// One axis separates the pair by more than dmin at both ends of the motion, and on the same side: the commonest way for candidates to
 /// miss.
@@ -59,7 +59,7 @@ struct ClosestDirection {
 
 /// Where the direction is normal to an edge or a face it is computed as such: the difference itself is off by u times the size of the pair,
 /// which tilts it by much more than u when the distance is small.
-ClosestDirection closest_direction(PairType type, const Differences& r);
+ClosestDirection closest_direction(geometry::PairType type, const Differences& r);
 
 /// All directions that could separate: for slivers and nearly parallel edges, where the closest points are unreliable. Normals are
 /// perpendicular to what they are normal to up to rounding, however nearly parallel that is: a gap of 1e-12 of the size can be proven.
@@ -67,6 +67,6 @@ struct CandidateDirections {
     std::array<Vector3, 18> direction;
     int count = 0;
 };
-CandidateDirections candidate_directions(PairType type, const Differences& r);
+CandidateDirections candidate_directions(geometry::PairType type, const Differences& r);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

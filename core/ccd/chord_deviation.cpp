@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 using geometry::Interval;
 using geometry::Interval3;
@@ -86,4 +86,4 @@ double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X,
     return (std::min(arc_deviation(theta, w, Y), arc_deviation_cubic(theta, w, Y)) + rounding) * raised;
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

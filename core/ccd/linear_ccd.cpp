@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/contact/separating_plane.hpp"
+#include "fettle/core/ccd/separating_plane.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 namespace {
 
@@ -103,7 +103,8 @@ private:
 
 }  // namespace
 
-LinearCcdResult linear_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin, const LinearCcdOptions& options) {
+LinearCcdResult linear_ccd(geometry::PairType type, const geometry::PairVertices& t0, const geometry::PairVertices& t1, double dmin,
+                           const LinearCcdOptions& options) {
     FETTLE_ASSERT(dmin >= 0, "a minimum separation is not negative");
     const RelativeMotion m = relative_motion(type, t0, t1);
     if (!m.usable) return {true, 0};
@@ -111,7 +112,7 @@ LinearCcdResult linear_ccd(PairType type, const PairVertices& t0, const PairVert
     return Advancement(m, dmin, options).run();
 }
 
-double distance_lower_bound(PairType type, const PairVertices& x) {
+double distance_lower_bound(geometry::PairType type, const geometry::PairVertices& x) {
     const Differences r = differences(type, x);
     const Vector3 largest = r.abs().colwise().maxCoeff().matrix().transpose();
     if (!((0 * r).sum() == 0 && largest.maxCoeff() < 1e150)) return 0;
@@ -123,4 +124,4 @@ double distance_lower_bound(PairType type, const PairVertices& x) {
     return best;
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

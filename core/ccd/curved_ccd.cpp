@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 using kinematics::PathSegment;
 using kinematics::rotation;
@@ -86,10 +86,10 @@ private:
 
 class CurvedQuery {
 public:
-    CurvedQuery(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin,
+    CurvedQuery(geometry::PairType type, const PathSegment& a, const PathSegment& b, const geometry::PairVertices& X, double dmin,
                 const CurvedCcdOptions& options)
         : type_(type),
-          first_count_(type == PairType::point_triangle ? 1 : 2),
+          first_count_(type == geometry::PairType::point_triangle ? 1 : 2),
           a_(a, X.data(), first_count_),
           b_(b, X.data() + first_count_, 4 - first_count_),
           offset_(a.position_t0 - b.position_t0),
@@ -100,7 +100,7 @@ public:
     }
 
     CurvedCcdResult run() {
-        PairVertices x = place(0);
+        geometry::PairVertices x = place(0);
         double gap = gap_at(0, x);
         if (!(gap > 0)) return {true, 0};
         if (gap > (a_.travel() + b_.travel() + offset_step_.norm()) * rounded_up) return {};
@@ -120,8 +120,8 @@ public:
 
 private:
     /// Vertices at s, relative to body b's reference point: differences of positions keep the rounding small far from the origin.
-    PairVertices place(double s) const {
-        PairVertices x;
+    geometry::PairVertices place(double s) const {
+        geometry::PairVertices x;
         a_.place(s, offset_ + s * offset_step_, x.data());
         b_.place(s, Vector3::Zero(), x.data() + first_count_);
         return x;
@@ -130,7 +130,7 @@ private:
     /// What the computed vertices of a piece up to s are off by, both primitives together, chord and arc (hence twice).
     double rounding(double s) const { return 2 * (a_.rounding(s) + b_.rounding(s) + offset_rounding_); }
 
-    double gap_at(double s, const PairVertices& x) const {
+    double gap_at(double s, const geometry::PairVertices& x) const {
         return (distance_lower_bound(type_, x) - dmin_ - rounding(s)) * (1 - 4 * unit_roundoff);
     }
 
@@ -141,7 +141,7 @@ private:
 
     /// Advances from s over the longest piece whose deviation is small against the gap, or as far in it as is proven to be clear.
     /// Returns where it got to, and the vertices there in x; s itself if there is no progress.
-    double advance(double s, PairVertices& x, double gap) {
+    double advance(double s, geometry::PairVertices& x, double gap) {
         double end = std::min(1.0, s + 4 * piece_), charge = deviation(s, end - s);
         double allowed = whole_share * gap;
         while (!(charge <= allowed)) {
@@ -154,7 +154,7 @@ private:
             charge = deviation(s, end - s);
         }
         piece_ = end - s;
-        const PairVertices x_end = place(end);
+        const geometry::PairVertices x_end = place(end);
         const double separation = (dmin_ + charge + rounding(end)) * rounded_up;
         const LinearCcdResult linear = linear_ccd(type_, x, x_end, separation, options_.linear);
         if (!linear.hit) {
@@ -168,7 +168,7 @@ private:
         return reached;
     }
 
-    PairType type_;
+    geometry::PairType type_;
     std::size_t first_count_;
     TurningArms a_, b_;
     Vector3 offset_, offset_step_;
@@ -181,10 +181,10 @@ private:
 
 }  // namespace
 
-CurvedCcdResult curved_ccd(PairType type, const PathSegment& a, const PathSegment& b, const PairVertices& X, double dmin,
-                           const CurvedCcdOptions& options) {
+CurvedCcdResult curved_ccd(geometry::PairType type, const PathSegment& a, const PathSegment& b, const geometry::PairVertices& X,
+                           double dmin, const CurvedCcdOptions& options) {
     FETTLE_ASSERT(dmin >= 0, "a minimum separation is not negative");
     return CurvedQuery(type, a, b, X, dmin, options).run();
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

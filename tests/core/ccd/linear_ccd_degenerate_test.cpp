@@ -4,44 +4,44 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 
-namespace fettle::core::contact::linear_ccd_degenerate_test {
+namespace fettle::core::ccd::linear_ccd_degenerate_test {
 
 namespace {
 
 struct Case {
     std::string name;
-    PairType type;
-    PairVertices t0, t1;
+    geometry::PairType type;
+    geometry::PairVertices t0, t1;
     bool hit;
 };
 
-PairVertices moved(PairVertices x, std::size_t from, std::size_t to, const Vector3& by) {
+geometry::PairVertices moved(geometry::PairVertices x, std::size_t from, std::size_t to, const Vector3& by) {
     for (std::size_t i = from; i < to; ++i) x[i] += by;
     return x;
 }
 
 /// Sizes around 1, coordinates in 2^-40: scaled by powers of two and shifted by whole numbers they stay exact.
 std::vector<Case> cases() {
-    constexpr PairType face = PairType::point_triangle, edges = PairType::edge_edge;
-    const PairVertices above{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
-    const PairVertices in_plane{Vector3(-2, 0.25, 0), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
-    const PairVertices sliver{Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0.5, 0x1p-40, 0)};
-    const PairVertices line{Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0.25, 0, 0)};
-    const PairVertices point{Vector3(0.25, 0.25, 1), Vector3(0.25, 0.25, 0), Vector3(0.25, 0.25, 0), Vector3(0.25, 0.25, 0)};
-    const PairVertices crossed{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, -1, 0), Vector3(0, 1, 0)};
-    const PairVertices parallel{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
-    const PairVertices beside{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(2, 0, 0), Vector3(3, 0, 0)};
-    const PairVertices nearly{Vector3(-1, -0x1p-40, 1), Vector3(1, 0x1p-40, 1), Vector3(-0.5, 0, 0), Vector3(2, 0, 0)};
-    const PairVertices collinear{Vector3(-3, 0, 0), Vector3(-2, 0, 0), Vector3(0, 0, 0), Vector3(2, 0, 0)};
-    const PairVertices flat{Vector3(-2, -2, 0), Vector3(-1, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0)};
-    const PairVertices shrunk{Vector3(0.5, 0, 1), Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
+    constexpr geometry::PairType face = geometry::PairType::point_triangle, edges = geometry::PairType::edge_edge;
+    const geometry::PairVertices above{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+    const geometry::PairVertices in_plane{Vector3(-2, 0.25, 0), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+    const geometry::PairVertices sliver{Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0.5, 0x1p-40, 0)};
+    const geometry::PairVertices line{Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0.25, 0, 0)};
+    const geometry::PairVertices point{Vector3(0.25, 0.25, 1), Vector3(0.25, 0.25, 0), Vector3(0.25, 0.25, 0), Vector3(0.25, 0.25, 0)};
+    const geometry::PairVertices crossed{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, -1, 0), Vector3(0, 1, 0)};
+    const geometry::PairVertices parallel{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
+    const geometry::PairVertices beside{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(2, 0, 0), Vector3(3, 0, 0)};
+    const geometry::PairVertices nearly{Vector3(-1, -0x1p-40, 1), Vector3(1, 0x1p-40, 1), Vector3(-0.5, 0, 0), Vector3(2, 0, 0)};
+    const geometry::PairVertices collinear{Vector3(-3, 0, 0), Vector3(-2, 0, 0), Vector3(0, 0, 0), Vector3(2, 0, 0)};
+    const geometry::PairVertices flat{Vector3(-2, -2, 0), Vector3(-1, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0)};
+    const geometry::PairVertices shrunk{Vector3(0.5, 0, 1), Vector3(0.5, 0, 1), Vector3(0, 0, 0), Vector3(2, 0, 0)};
     const Vector3 down(0, 0, -2), along(4, 0, 0), up(0, 0, 1), far(1e8, 0, -2e8), corner(3, 3, 0);
     const double half = 0.5;
-    PairVertices touching = above, through_edge = above;
+    geometry::PairVertices touching = above, through_edge = above;
     touching[0].z() = 0;
     through_edge[0] = Vector3(half, half, 1);
     std::vector<Case> all{
@@ -94,8 +94,8 @@ TEST_CASE("linear CCD decides each kind of degenerate pair, at every size and pl
         CHECK(tests::exact_linear_contact(c.type, c.t0, c.t1) == c.hit);
         for (const double scale : {0x1p-20, 1.0, 0x1p20}) {
             for (const Vector3& offset : {Vector3(0, 0, 0), Vector3(1000, -2000, 500)}) {
-                PairVertices t0 = c.t0, t1 = c.t1;
-                for (PairVertices* x : {&t0, &t1})
+                geometry::PairVertices t0 = c.t0, t1 = c.t1;
+                for (geometry::PairVertices* x : {&t0, &t1})
                     for (Vector3& v : *x) v = scale * (v + offset);
                 for (const auto ccd : {&linear_ccd, &tests::support::inclusion_ccd}) {
                     CAPTURE(scale, offset.x(), ccd == &linear_ccd);
@@ -128,4 +128,4 @@ TEST_CASE("linear CCD keeps a minimum separation on each kind of degenerate pair
     }
 }
 
-}  // namespace fettle::core::contact::linear_ccd_degenerate_test
+}  // namespace fettle::core::ccd::linear_ccd_degenerate_test

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 #include "fettle/core/geometry/interval.hpp"
 
-namespace fettle::core::contact::arc_deviation_interval_test {
+namespace fettle::core::ccd::arc_deviation_interval_test {
 
 using core::geometry::Interval;
 
@@ -120,7 +120,7 @@ TEST_CASE("the interval bound of a deviation contains MPFI's, and is no wider th
     for (int i = 0; i < 4000; ++i) {
         const Vector3 theta = i % 4 == 0 ? Vector3::Zero() : Vector3(4 * g.uniform() * g.vector());
         const Vector3 w = g.vector() * std::pow(10.0, 10 * g.uniform() - 8), Y = g.vector() * std::pow(10.0, 6 * g.uniform() - 3);
-        const double ours = core::contact::arc_deviation_interval(theta, w, Y);
+        const double ours = core::ccd::arc_deviation_interval(theta, w, Y);
         const Wide theirs = deviation(theta, w, Y);
         below += Real(ours) < Real(upper(theirs));
         // Products of the angle's square: rounding is relative to |theta|^2 |Y|.
@@ -141,4 +141,4 @@ TEST_CASE("the MPFI comparison sees rounding that is not outward") {
     CHECK(outside > 300);
 }
 
-}  // namespace fettle::core::contact::arc_deviation_interval_test
+}  // namespace fettle::core::ccd::arc_deviation_interval_test

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/swept_pair.hpp"
+#include "fettle/core/ccd/swept_pair.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 namespace {
 
 SweptAxis swept_axis(const SweptBody& a, const SweptBody& b, const Vector3& n) {
@@ -85,4 +85,4 @@ std::vector<NodePair> close_nodes(const SweptPair& pair, NodePair from, std::siz
     return leaves;
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -9,12 +9,15 @@
 
 #include "fettle/core/base/types.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::geometry {
 
 enum class PairType { point_triangle, edge_edge };
 
 /// Vertices of a pair: point_triangle p t0 t1 t2, edge_edge ea0 ea1 eb0 eb1.
 using PairVertices = std::array<Vector3, 4>;
+
+/// How many of the four vertices lie on the first body.
+inline int first_count(PairType type) { return type == PairType::point_triangle ? 1 : 2; }
 
 /// Two primitives by index into their bodies' meshes, and a lower bound of their distance along the segments: while the bodies have left
 /// those by less, the pair needs no second look.
@@ -38,4 +41,4 @@ inline int pairs_at_once(std::size_t pairs, std::size_t primitives) {
     return static_cast<int>(std::clamp<std::size_t>(enough * pairs / std::max<std::size_t>(primitives, 1), 1, most));
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::geometry

@@ -16,7 +16,7 @@
 #include "fettle/core/geometry/interval.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// Least of B0 and B1.
 double arc_deviation(const Vector3& theta, const Vector3& w, const Vector3& Y);
@@ -57,4 +57,4 @@ enum class DeviationBound { closed_form, interval };
 /// the least of B0, B1, B3 (closed form), or the paper's interval bound without what it charges for translation.
 double chord_deviation(const kinematics::PathSegment& segment, const Vector3& X, DeviationBound bound = DeviationBound::closed_form);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

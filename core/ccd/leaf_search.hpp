@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include "fettle/core/contact/primitive_pair.hpp"
-#include "fettle/core/contact/swept_pair.hpp"
+#include "fettle/core/ccd/swept_pair.hpp"
+#include "fettle/core/geometry/primitive_pair.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// Appends to the lists of `out` every pair of primitives of the given pairs of leaves that may come within pair.margin along the
 /// segments, with lower bounds of their distances: proven ones, by a plane that separates the pair at both ends (separating_plane.hpp);
 /// -infinity where nothing is finite. Contract: no pair of leaves comes twice.
-void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, PrimitivePairs& out);
+void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, geometry::PrimitivePairs& out);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The broad phase against all pairs of primitives: nothing that comes within the activation distance is missing, and stored distances are
 // bounds.
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/ccd/candidates.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -14,7 +14,7 @@
 #include "fettle/core/geometry/predicates.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::contact::candidates_test {
+namespace fettle::core::ccd::candidates_test {
 
 using fettle::tests::support::box_mesh;
 using fettle::tests::support::make_body;
@@ -71,9 +71,9 @@ std::map<Key, double> all_distances(const model::Model& m, const std::vector<kin
 std::map<Key, double> listed(const Candidates& candidates) {
     std::map<Key, double> out;
     for (const BodyPairCandidates& pair : candidates.pairs) {
-        const std::vector<PrimitivePair>* lists[] = {&pair.vertex_triangle, &pair.triangle_vertex, &pair.edge_edge};
+        const std::vector<geometry::PrimitivePair>* lists[] = {&pair.vertex_triangle, &pair.triangle_vertex, &pair.edge_edge};
         for (int kind = 0; kind < 3; ++kind)
-            for (const PrimitivePair& p : *lists[kind]) {
+            for (const geometry::PrimitivePair& p : *lists[kind]) {
                 CHECK(out.count({kind, p.a, p.b}) == 0);
                 out[{kind, p.a, p.b}] = p.distance;
             }
@@ -328,14 +328,14 @@ TEST_CASE("contacts of points, wires and solids have the bodies' least distance,
         add(box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)));
         const int n = static_cast<int>(poses.size());
         const Candidates candidates = find_candidates(model, poses, 0);
-        const ContactSet contacts = find_contacts(model, candidates, poses);
+        const contact::ContactSet contacts = contact::find_contacts(model, candidates, poses);
         for (int a = 0; a < n; ++a)
             for (int b = a + 1; b < n; ++b) {
                 double found = std::numeric_limits<double>::infinity();
-                std::set<std::pair<PairType, std::array<int, 5>>> seen;
-                for (const BodyPairContacts& list : contacts.pairs) {
+                std::set<std::pair<geometry::PairType, std::array<int, 5>>> seen;
+                for (const contact::BodyPairContacts& list : contacts.pairs) {
                     if (std::minmax(list.first, list.second) != std::minmax(a, b)) continue;
-                    for (const ContactPair& pair : list.contacts) {
+                    for (const contact::ContactPair& pair : list.contacts) {
                         found = std::min(found, std::sqrt(pair.closest.distance_squared));
                         REQUIRE(
                             seen.insert({pair.type, {list.first, pair.vertex[0], pair.vertex[1], pair.vertex[2], pair.vertex[3]}}).second);
@@ -362,7 +362,7 @@ TEST_CASE("two clouds of points meet in each pair of points once", "[candidates]
     Matrix3X x(3, 3);
     x << 0, 1, 2, 0, 0, 0, 0, 0, 0;
     for (const kinematics::Pose& pose : poses) model.bodies.push_back(make_body("cloud", loose_mesh(x, {}), pose));
-    CHECK(find_contacts(model, find_candidates(model, poses, 0), poses).count == 9);
+    CHECK(contact::find_contacts(model, find_candidates(model, poses, 0), poses).count == 9);
 }
 
 TEST_CASE("many bodies are searched as few are", "[candidates]") {
@@ -396,4 +396,4 @@ TEST_CASE("many bodies are searched as few are", "[candidates]") {
     CHECK(pairs > 10);
 }
 
-}  // namespace fettle::core::contact::candidates_test
+}  // namespace fettle::core::ccd::candidates_test

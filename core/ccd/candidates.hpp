@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/contact/primitive_pair.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "fettle/core/geometry/primitive_pair.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// What a search has found between two bodies, a < b, and where.
-struct BodyPairCandidates : PrimitivePairs {
+struct BodyPairCandidates : geometry::PrimitivePairs {
     int a = 0, b = 0;
     double allowance = 0;                          ///< of the search [m]
     bool fresh = false;                            ///< found by the last cover(), and not settled yet
@@ -41,6 +41,13 @@ struct Candidates {
     std::vector<std::pair<int, int>> bodies;  ///< of `pairs`
     std::vector<int> fresh;                   ///< those of `pairs` that are
     std::vector<BodyPairCandidates> spare;    ///< memory for the next list of pairs; empty
+};
+
+/// Least distance of two bodies, a < b, that have contacts, computed, not proven: of all their primitives, but for flat edges, which are
+/// nearer by no more than the heights of the bodies' flat features (geometry/flat_features.hpp).
+struct BodyDistance {
+    int a = 0, b = 0;
+    double distance = 0;  ///< [m], finite
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
@@ -68,4 +75,4 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
 double motion_over(const model::Model& model, const BodyPairCandidates& pair, const std::vector<kinematics::PathSegment>& segments,
                    const kinematics::Pose& start_a, const kinematics::Pose& start_b);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What is not a number, or infinite, never means "far enough": each query of the folder answers "hit", "kept", "near" or "not finite".
+// What is not a number, or infinite, never means "far enough": each query of the folder, and the contacts found there, answer "hit",
+// "kept", "near" or "not finite".
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "fettle/core/ccd/curved_ccd.hpp"
+#include "fettle/core/ccd/swept_pair.hpp"
 #include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/contact/curved_ccd.hpp"
-#include "fettle/core/contact/swept_pair.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::contact::not_finite_test {
+namespace fettle::core::ccd::not_finite_test {
 
 using namespace fettle::tests::support;
 using kinematics::PathSegment;
@@ -22,7 +23,7 @@ const double not_finite[] = {std::numeric_limits<double>::quiet_NaN(), std::nume
                              -std::numeric_limits<double>::infinity()};
 
 // A vertex 1 m over a face; edges 1 m apart.
-const PairVertices apart{Vector3(0.2, 0.3, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+const geometry::PairVertices apart{Vector3(0.2, 0.3, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
 
 /// Calls visit(vertices) with one coordinate replaced by each such value.
 template <class Visit>
@@ -30,7 +31,7 @@ void for_each_damage(const Visit& visit) {
     for (const double bad : not_finite)
         for (std::size_t i = 0; i < 4; ++i)
             for (int k = 0; k < 3; ++k) {
-                PairVertices x = apart;
+                geometry::PairVertices x = apart;
                 x[i][k] = bad;
                 visit(x);
             }
@@ -67,8 +68,8 @@ constexpr int border_pairs = 12 * 12;  // edges that are no diagonals of faces
 }  // namespace
 
 TEST_CASE("collision queries hit at once where a vertex is not finite") {
-    for_each_damage([](const PairVertices& bad) {
-        for (const PairType type : {PairType::point_triangle, PairType::edge_edge}) {
+    for_each_damage([](const geometry::PairVertices& bad) {
+        for (const geometry::PairType type : {geometry::PairType::point_triangle, geometry::PairType::edge_edge}) {
             CHECK(distance_lower_bound(type, bad) == 0);
             for (const auto& [t0, t1] : {std::pair(bad, apart), std::pair(apart, bad), std::pair(bad, bad)}) {
                 const LinearCcdResult advanced = linear_ccd(type, t0, t1, 0), included = tests::support::inclusion_ccd(type, t0, t1, 0);
@@ -89,8 +90,8 @@ TEST_CASE("curved queries hit at once where a path is not finite") {
                 CurvedCcdOptions options;
                 options.deviation = bound;
                 INFO("value " << bad << " at " << k);
-                const CurvedCcdResult first = curved_ccd(PairType::point_triangle, path, {}, apart, 0, options);
-                const CurvedCcdResult second = curved_ccd(PairType::edge_edge, {}, path, apart, 0, options);
+                const CurvedCcdResult first = curved_ccd(geometry::PairType::point_triangle, path, {}, apart, 0, options);
+                const CurvedCcdResult second = curved_ccd(geometry::PairType::edge_edge, {}, path, apart, 0, options);
                 CHECK((first.hit && first.toi == 0));
                 CHECK((second.hit && second.toi == 0));
             }
@@ -113,7 +114,7 @@ TEST_CASE("a body whose path is not finite is near everything") {
                 CHECK(static_cast<int>(pair.vertex_triangle.size()) == vertex_triangle_pairs);
                 CHECK(static_cast<int>(pair.triangle_vertex.size()) == vertex_triangle_pairs);
                 CHECK(static_cast<int>(pair.edge_edge.size()) == edge_pairs);
-                for (const PrimitivePair& p : pair.edge_edge) CHECK(p.distance <= 0);
+                for (const geometry::PrimitivePair& p : pair.edge_edge) CHECK(p.distance <= 0);
             }
 }
 
@@ -143,12 +144,13 @@ TEST_CASE("contacts of a pose that is not finite stay contacts, of infinite pote
             std::vector<Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
             (k < 9 ? poses[1].rotation(k / 3, k % 3) : poses[1].position[k - 9]) = bad;
             const Candidates candidates = find_candidates(model, poses, model.dhat);
-            const ContactSet set = find_contacts(model, candidates, poses);
+            const contact::ContactSet set = contact::find_contacts(model, candidates, poses);
             INFO("value " << bad << " at " << k);
             CHECK(set.count == 2 * vertex_triangle_pairs + border_pairs);
             CHECK(!(set.minimum_distance > 0 && set.minimum_distance < std::numeric_limits<double>::max()));
-            CHECK(barrier_potential(set, barrier_parameters(model.dhat, 0, 1, 1)) == std::numeric_limits<double>::infinity());
+            CHECK(contact::barrier_potential(set, contact::barrier_parameters(model.dhat, 0, 1, 1)) ==
+                  std::numeric_limits<double>::infinity());
         }
 }
 
-}  // namespace fettle::core::contact::not_finite_test
+}  // namespace fettle::core::ccd::not_finite_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/ccd/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/leaf_search.hpp"
-#include "fettle/core/contact/swept_pair.hpp"
+#include "fettle/core/ccd/leaf_search.hpp"
+#include "fettle/core/ccd/swept_pair.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 namespace {
 
 using kinematics::PathSegment;
@@ -163,7 +163,7 @@ struct Search {
 struct Task {
     int pair = 0;  // among those searched
     NodePair from{0, 0};
-    PrimitivePairs found;
+    geometry::PrimitivePairs found;
 };
 
 // Large meshes in parts where there are few pairs: enough for two threads or more.
@@ -183,11 +183,13 @@ std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, c
     return tasks;
 }
 
-void append(std::vector<PrimitivePair>& to, const std::vector<PrimitivePair>& from) { to.insert(to.end(), from.begin(), from.end()); }
+void append(std::vector<geometry::PrimitivePair>& to, const std::vector<geometry::PrimitivePair>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
 
-void sort_by_distance(PrimitivePairs& pairs) {
+void sort_by_distance(geometry::PrimitivePairs& pairs) {
     for (auto* list : {&pairs.vertex_triangle, &pairs.triangle_vertex, &pairs.edge_edge})
-        std::sort(list->begin(), list->end(), [](const PrimitivePair& x, const PrimitivePair& y) {
+        std::sort(list->begin(), list->end(), [](const geometry::PrimitivePair& x, const geometry::PrimitivePair& y) {
             return std::tie(x.distance, x.a, x.b) < std::tie(y.distance, y.a, y.b);
         });
 }
@@ -206,11 +208,11 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
     for (std::size_t p = searched.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
     std::size_t found = 0;
     for (const Task& task : tasks) found += task.found.size();
-    base::parallel_for(static_cast<int>(searched.size()), pairs_at_once(searched.size(), found), [&](int p) {
+    base::parallel_for(static_cast<int>(searched.size()), geometry::pairs_at_once(searched.size(), found), [&](int p) {
         BodyPairCandidates& pair = *searched[p];
         pair.allowance = along.allowance;
         pair.along = {along.segments[pair.a], along.segments[pair.b]};
-        PrimitivePairs& out = pair;
+        geometry::PrimitivePairs& out = pair;
         out = {};
         for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
             if (k == first[p]) {
@@ -230,7 +232,7 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
 int Candidates::pairs_at_once() const {
     std::size_t primitives = 0;
     for (const BodyPairCandidates& pair : pairs) primitives += pair.size();
-    return contact::pairs_at_once(pairs.size(), primitives);
+    return geometry::pairs_at_once(pairs.size(), primitives);
 }
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
@@ -307,4 +309,4 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
            rounding_of(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/leaf_search.hpp"
+#include "fettle/core/ccd/leaf_search.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/contact/separating_plane.hpp"
+#include "fettle/core/ccd/separating_plane.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 namespace {
 
 using Ends = std::array<Vector3, 2>;  // a vertex at both ends of the segments
@@ -76,7 +76,7 @@ private:
 
 class LeafSearch {
 public:
-    LeafSearch(const SweptPair& pair, PlacedLeaves& placed_a, PlacedLeaves& placed_b, PrimitivePairs& out)
+    LeafSearch(const SweptPair& pair, PlacedLeaves& placed_a, PlacedLeaves& placed_b, geometry::PrimitivePairs& out)
         : pair_(pair),
           body_a_(*pair.a->body->hierarchy),
           body_b_(*pair.b->body->hierarchy),
@@ -122,7 +122,7 @@ private:
     }
 
     // Lower bound of the distance of the chords: the better of the planes between the closest points at each end.
-    double least_separation(PairType type, const std::array<Ends, 4>& x) const {
+    double least_separation(geometry::PairType type, const std::array<Ends, 4>& x) const {
         const RelativeMotion motion = relative_motion(type, {x[0][0], x[1][0], x[2][0], x[3][0]}, {x[0][1], x[1][1], x[2][1], x[3][1]});
         double best = 0;
         const bool still = pair_.a->still && pair_.b->still;
@@ -135,7 +135,7 @@ private:
         return motion.usable ? best : 0;
     }
 
-    void add(std::vector<PrimitivePair>& list, int i, int j, PairType type, const std::array<Ends, 4>& x) const {
+    void add(std::vector<geometry::PrimitivePair>& list, int i, int j, geometry::PairType type, const std::array<Ends, 4>& x) const {
         const double separation = least_separation(type, x);
         if (separation > margin_) return;
         // In this order: what is not a number loses.
@@ -160,9 +160,9 @@ private:
             const int i = owner.owned_vertices[k];
             const std::array<Ends, 4> x{p, t.corners[0], t.corners[1], t.corners[2]};
             if (vertex_first)
-                add(out_.vertex_triangle, i, other.face, PairType::point_triangle, x);
+                add(out_.vertex_triangle, i, other.face, geometry::PairType::point_triangle, x);
             else
-                add(out_.triangle_vertex, other.face, i, PairType::point_triangle, x);
+                add(out_.triangle_vertex, other.face, i, geometry::PairType::point_triangle, x);
         }
     }
 
@@ -180,7 +180,7 @@ private:
                 const Vector3 low_b = b0[0].cwiseMin(b0[1]).cwiseMin(b1[0].cwiseMin(b1[1]));
                 const Vector3 high_b = b0[0].cwiseMax(b0[1]).cwiseMax(b1[0].cwiseMax(b1[1]));
                 if (((low - high_b).array() > margin_).any() || ((low_b - high).array() > margin_).any()) continue;
-                add(out_.edge_edge, ea.owned_edges[k], eb.owned_edges[l], PairType::edge_edge, {a0, a1, b0, b1});
+                add(out_.edge_edge, ea.owned_edges[k], eb.owned_edges[l], geometry::PairType::edge_edge, {a0, a1, b0, b1});
             }
         }
     }
@@ -189,12 +189,12 @@ private:
     const geometry::BodyHierarchy &body_a_, &body_b_;
     PlacedLeaves &placed_a_, &placed_b_;
     double margin_ = 0, lost_ = 0;  // of the pair of leaves being visited
-    PrimitivePairs& out_;
+    geometry::PrimitivePairs& out_;
 };
 
 }  // namespace
 
-void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, PrimitivePairs& out) {
+void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, geometry::PrimitivePairs& out) {
     if (leaves.empty()) return;
     // Kept for their memory.
     static thread_local PlacedLeaves placed_a, placed_b;
@@ -205,4 +205,4 @@ void search_leaves(const SweptPair& pair, const std::vector<NodePair>& leaves, P
     }
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: paths built so that they touch at a known time, dense sampling, and motions with a closed form.
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "fettle/core/geometry/distance.hpp"
 
-namespace fettle::core::contact::curved_ccd_test {
+namespace fettle::core::ccd::curved_ccd_test {
 
 using fettle::core::kinematics::PathSegment;
 using fettle::core::kinematics::Pose;
@@ -16,23 +16,23 @@ using fettle::core::kinematics::Pose;
 namespace {
 
 struct Query {
-    PairType type = PairType::point_triangle;
+    geometry::PairType type = geometry::PairType::point_triangle;
     PathSegment a, b;
-    PairVertices X;
+    geometry::PairVertices X;
 };
 
-PairVertices vertices_at(const Query& q, double s) {
+geometry::PairVertices vertices_at(const Query& q, double s) {
     const Pose a = pose_at(q.a, s), b = pose_at(q.b, s);
-    PairVertices x;
-    const std::size_t first_count = q.type == PairType::point_triangle ? 1 : 2;
+    geometry::PairVertices x;
+    const std::size_t first_count = q.type == geometry::PairType::point_triangle ? 1 : 2;
     for (std::size_t i = 0; i < 4; ++i) x[i] = world_position(i < first_count ? a : b, q.X[i]);
     return x;
 }
 
 core::geometry::ClosestPoints closest_at(const Query& q, double s) {
-    const PairVertices x = vertices_at(q, s);
-    return q.type == PairType::point_triangle ? core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3])
-                                              : core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3]);
+    const geometry::PairVertices x = vertices_at(q, s);
+    return q.type == geometry::PairType::point_triangle ? core::geometry::point_triangle_closest(x[0], x[1], x[2], x[3])
+                                                        : core::geometry::edge_edge_closest(x[0], x[1], x[2], x[3]);
 }
 double distance_at(const Query& q, double s) { return std::sqrt(closest_at(q, s).distance_squared); }
 
@@ -46,7 +46,7 @@ public:
     }
     Query query() {
         Query q;
-        q.type = uniform() < 0.5 ? PairType::point_triangle : PairType::edge_edge;
+        q.type = uniform() < 0.5 ? geometry::PairType::point_triangle : geometry::PairType::edge_edge;
         for (PathSegment* p : {&q.a, &q.b}) {
             p->base = core::kinematics::rotation(vector());
             if (uniform() < 0.5) p->rotation_vector_t0 = 3 * vector();
@@ -192,4 +192,4 @@ TEST_CASE("curved CCD at rest or touching at the start") {
     CHECK_FALSE(curved_ccd(q.type, q.a, q.b, q.X, 0).hit);
 }
 
-}  // namespace fettle::core::contact::curved_ccd_test
+}  // namespace fettle::core::ccd::curved_ccd_test

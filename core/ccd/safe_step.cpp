@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -8,11 +8,10 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 namespace {
 
 using kinematics::PathSegment;
@@ -47,7 +46,8 @@ PlaceRounding place_rounding(const PathSegment& s) {
 // which pairs are looked at closely depends on how far the search has come, on all threads, but none of those passed over has the least.
 class StepSearch {
 public:
-    StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits, const ContactSet* start = nullptr)
+    StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits,
+               const std::vector<BodyDistance>* start = nullptr)
         : model_(model), segments_(segments), limits_(limits), start_(start), starts_(segments.size()), start_roundings_(segments.size()) {
         base::parallel_for(static_cast<int>(segments.size()), bodies_at_once, [&](int i) {
             starts_[i] = pose_at(segments[i], 0);
@@ -82,24 +82,24 @@ private:
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;
-        const auto check = [&](PairType type, int first, int second, const PairVertices& X) {
+        const auto check = [&](geometry::PairType type, int first, int second, const geometry::PairVertices& X) {
             const double fraction = free_fraction(type, first, second, X);
             if (fraction < shortest.fraction) shortest = {fraction, first, second};
         };
         for (const auto& [v, t, distance] : list.vertex_triangle) {
             if (distance > reach) break;
             const geometry::Triangle& c = b.hierarchy->faces()[t];
-            check(PairType::point_triangle, list.a, list.b, {va.col(v), vb.col(c[0]), vb.col(c[1]), vb.col(c[2])});
+            check(geometry::PairType::point_triangle, list.a, list.b, {va.col(v), vb.col(c[0]), vb.col(c[1]), vb.col(c[2])});
         }
         for (const auto& [t, v, distance] : list.triangle_vertex) {
             if (distance > reach) break;
             const geometry::Triangle& c = a.hierarchy->faces()[t];
-            check(PairType::point_triangle, list.b, list.a, {vb.col(v), va.col(c[0]), va.col(c[1]), va.col(c[2])});
+            check(geometry::PairType::point_triangle, list.b, list.a, {vb.col(v), va.col(c[0]), va.col(c[1]), va.col(c[2])});
         }
         for (const auto& [i, j, distance] : list.edge_edge) {
             if (distance > reach) break;
             const geometry::Edge &ea = a.mesh.edges[i], &eb = b.mesh.edges[j];
-            check(PairType::edge_edge, list.a, list.b, {va.col(ea[0]), va.col(ea[1]), vb.col(eb[0]), vb.col(eb[1])});
+            check(geometry::PairType::edge_edge, list.a, list.b, {va.col(ea[0]), va.col(ea[1]), vb.col(eb[0]), vb.col(eb[1])});
         }
     }
 
@@ -115,8 +115,8 @@ private:
         if (start_ == nullptr) return false;
         const auto before = [](const BodyDistance& x, const std::pair<int, int>& key) { return std::pair(x.a, x.b) < key; };
         const std::pair key(list.a, list.b);
-        const auto known = std::lower_bound(start_->distances.begin(), start_->distances.end(), key, before);
-        if (known == start_->distances.end() || std::pair(known->a, known->b) != key) return false;
+        const auto known = std::lower_bound(start_->begin(), start_->end(), key, before);
+        if (known == start_->end() || std::pair(known->a, known->b) != key) return false;
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const PathSegment &sa = segments_[list.a], &sb = segments_[list.b];
         const double size = 2 * (a.radius + b.radius), place = sa.position_t0.norm() + sb.position_t0.norm() + size;
@@ -134,11 +134,11 @@ private:
     }
 
     // The pair's fraction, or some larger one than the least of all.
-    double free_fraction(PairType type, int first, int second, const PairVertices& X) {
+    double free_fraction(geometry::PairType type, int first, int second, const geometry::PairVertices& X) {
         const PathSegment &sa = segments_[first], &sb = segments_[second];
-        PairVertices x;
+        geometry::PairVertices x;
         double radius_a = 0, radius_b = 0;
-        const int n = first_count(type);
+        const int n = geometry::first_count(type);
         for (int i = 0; i < 4; ++i) {
             x[i] = world_position(starts_[i < n ? first : second], X[i]);
             double& radius = i < n ? radius_a : radius_b;
@@ -166,7 +166,7 @@ private:
     const model::Model& model_;
     const std::vector<PathSegment>& segments_;
     const Limits limits_;
-    const ContactSet* start_;
+    const std::vector<BodyDistance>* start_;
     std::vector<Pose> starts_;
     std::vector<PlaceRounding> start_roundings_;
     std::atomic<double> least_ = 1;  // so far, on all threads
@@ -175,7 +175,7 @@ private:
 }  // namespace
 
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<PathSegment>& segments,
-                           const ContactSet* start) {
+                           const std::vector<BodyDistance>* start) {
     return StepSearch(model, segments, {0.1, 0.25 * model.dhat}, start).longest(candidates);
 }
 
@@ -183,4 +183,4 @@ bool is_path_clear(const model::Model& model, const Candidates& candidates, cons
     return StepSearch(model, segments, {0.01, 0.01 * model.dhat}).is_free(candidates);
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 #include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-namespace fettle::core::contact::ccd_ground_truth_test {
+namespace fettle::core::ccd::ccd_ground_truth_test {
 
 using namespace fettle::tests;
 using support::CcdQueries;
@@ -38,7 +38,8 @@ bool comes_near(const LinearQuery& q, double toi, double dmin) {
            exact_distance_at_most(q.type, q.t0, q.t1, linear_ccd(q.type, q.t0, q.t1, dmin).toi, reach);
 }
 
-using LinearCcd = LinearCcdResult(PairType, const PairVertices&, const PairVertices&, double, const LinearCcdOptions&);
+using LinearCcd = LinearCcdResult(geometry::PairType, const geometry::PairVertices&, const geometry::PairVertices&, double,
+                                  const LinearCcdOptions&);
 
 /// Runs every query of the folder; `far` counts false positives beyond sqrt(3) (tolerance + dmin), `zero` tois of 0 of pairs that start
 /// apart.
@@ -135,4 +136,4 @@ TEST_CASE("curved CCD on the public rigid queries") {
     }
 }
 
-}  // namespace fettle::core::contact::ccd_ground_truth_test
+}  // namespace fettle::core::ccd::ccd_ground_truth_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: dense sampling of curve and chord in 200-bit arithmetic (MPFR).
-#include "fettle/core/contact/chord_deviation.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 
 #include <boost/multiprecision/mpfr.hpp>
 #include <catch2/catch.hpp>
@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 
-namespace fettle::core::contact::chord_deviation_test {
+namespace fettle::core::ccd::chord_deviation_test {
 
 using fettle::core::kinematics::PathSegment;
 
@@ -256,4 +256,4 @@ TEST_CASE("rotated_rounding bounds what is computed") {
     CHECK(largest > 0.005);  // a bound hundreds of times too large would hide a mistake in its derivation
 }
 
-}  // namespace fettle::core::contact::chord_deviation_test
+}  // namespace fettle::core::ccd::chord_deviation_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The longest safe step against exact distances along the path: nothing comes within dmin on [0, fraction], and what stops the step is
 // near.
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -11,10 +11,11 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/contact/contact_set.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::core::contact::safe_step_test {
+namespace fettle::core::ccd::safe_step_test {
 
 using namespace fettle::tests::support;
 using kinematics::PathSegment;
@@ -52,8 +53,9 @@ SafeStep step_of(const model::Model& model, const std::vector<PathSegment>& segm
     const SafeStep step = longest_safe_step(model, candidates, segments);
     std::vector<Pose> start;
     for (const PathSegment& s : segments) start.push_back(pose_at(s, 0));
-    const ContactSet contacts = find_contacts(model, candidates, start);
-    const SafeStep known = longest_safe_step(model, candidates, segments, &contacts);  // what is known at the start changes nothing
+    const contact::ContactSet contacts = contact::find_contacts(model, candidates, start);
+    const SafeStep known =
+        longest_safe_step(model, candidates, segments, &contacts.distances);  // what is known at the start changes nothing
     CHECK(known.fraction == step.fraction);
     CHECK(known.limiting_a == step.limiting_a);
     CHECK(known.limiting_b == step.limiting_b);
@@ -61,8 +63,8 @@ SafeStep step_of(const model::Model& model, const std::vector<PathSegment>& segm
 }
 
 /// Vertices of a pair of edges at s, by a path of its own: long enough expressions in extended precision, rounded once.
-PairVertices edges_at(const model::Model& model, const std::vector<PathSegment>& segments, int edge_a, int edge_b, double s) {
-    PairVertices x;
+geometry::PairVertices edges_at(const model::Model& model, const std::vector<PathSegment>& segments, int edge_a, int edge_b, double s) {
+    geometry::PairVertices x;
     for (int k = 0; k < 4; ++k) {
         const int body = k / 2;
         const geometry::Edge& e = model.bodies[body].mesh.edges[body == 0 ? edge_a : edge_b];
@@ -76,8 +78,8 @@ bool comes_within(const model::Model& model, const std::vector<PathSegment>& seg
     for (int i = 0; i <= samples; ++i)
         for (std::size_t a = 0; a < model.bodies[0].mesh.edges.size(); ++a)
             for (std::size_t b = 0; b < model.bodies[1].mesh.edges.size(); ++b) {
-                const PairVertices x = edges_at(model, segments, static_cast<int>(a), static_cast<int>(b), until * i / samples);
-                if (tests::exact_distance_at_most(PairType::edge_edge, x, x, 0, distance)) return true;
+                const geometry::PairVertices x = edges_at(model, segments, static_cast<int>(a), static_cast<int>(b), until * i / samples);
+                if (tests::exact_distance_at_most(geometry::PairType::edge_edge, x, x, 0, distance)) return true;
             }
     return false;
 }
@@ -217,8 +219,8 @@ TEST_CASE("the search for pairs and the longest safe step end when that is asked
         CHECK(times([&] { longest_safe_step(model, candidates, segments); }) > 20);
     }
     const auto ccd = [&] {
-        const PairVertices X{Vector3(0.5, 0, 0), Vector3(-0.5, -1, -1), Vector3(-0.5, 1, -1), Vector3(-0.5, 0, 1)};
-        return curved_ccd(PairType::point_triangle, segments[0], segments[1], X, 0);
+        const geometry::PairVertices X{Vector3(0.5, 0, 0), Vector3(-0.5, -1, -1), Vector3(-0.5, 1, -1), Vector3(-0.5, 0, 1)};
+        return curved_ccd(geometry::PairType::point_triangle, segments[0], segments[1], X, 0);
     };
     CHECK(ccd().hit);
     const base::StopScope scope([] { return true; });
@@ -242,4 +244,4 @@ TEST_CASE("a path that is not finite is not safe") {
         }
 }
 
-}  // namespace fettle::core::contact::safe_step_test
+}  // namespace fettle::core::ccd::safe_step_test

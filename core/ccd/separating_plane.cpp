@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/separating_plane.hpp"
+#include "fettle/core/ccd/separating_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/geometry/accurate_cross.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 using geometry::accurate_cross;
 
@@ -58,11 +58,11 @@ void judge(SeparatingPlane& s, const Lanes& values, const Vector3& largest, doub
 struct PointEdges {
     Differences to_start, edge;  // vertex less the edge's start; the edge
 };
-PointEdges point_edges(PairType type, const Differences& r) {
+PointEdges point_edges(geometry::PairType type, const Differences& r) {
     PointEdges pe;
     for (Eigen::Index k = 0; k < 3; ++k) {
         const double r0 = r(0, k), r1 = r(1, k), r2 = r(2, k);
-        if (type == PairType::point_triangle) {
+        if (type == geometry::PairType::point_triangle) {
             pe.to_start.col(k) << r0, r1, r2, r2;
             pe.edge.col(k) << r0 - r1, r1 - r2, r2 - r0, r2 - r0;
         } else {
@@ -82,7 +82,7 @@ Eigen::Index corner_of_shorter_edges(const Differences& r) {
 }
 
 /// The closest of the vertex-edge cases.
-ClosestDirection closest_point_edge(PairType type, const Differences& r) {
+ClosestDirection closest_point_edge(geometry::PairType type, const Differences& r) {
     const PointEdges pe = point_edges(type, r);
     const Lanes length_squared = dot(pe.edge, pe.edge).max(1e-300);
     const Lanes s = (dot(pe.to_start, pe.edge) / length_squared).max(0.0).min(1.0);
@@ -104,23 +104,23 @@ ClosestDirection closest_point_edge(PairType type, const Differences& r) {
 struct Inside {
     Vector3 w, a, b;
 };
-Inside inside_case(PairType type, const Differences& r) {
+Inside inside_case(geometry::PairType type, const Differences& r) {
     // Triangle: the two shorter edges, and the point, from the vertex they share (in a sliver the longer ones are parallel to rounding).
     // Edges: both, and the difference of their starts.
-    const bool face = type == PairType::point_triangle;
+    const bool face = type == geometry::PairType::point_triangle;
     const Eigen::Index c = face ? corner_of_shorter_edges(r) : 0;
     const Vector3 w = row(r, c);
     return {w, face ? w - row(r, (c + 1) % 3) : row(r, 2) - w, face ? w - row(r, (c + 2) % 3) : w - row(r, 1)};
 }
 
 /// @param first, second  (w x b) . n and (a x w) . n
-bool lies_inside(PairType type, double first, double second, double nn) {
-    if (type == PairType::point_triangle) return first > 0 && second > 0 && nn - first - second > 0;
+bool lies_inside(geometry::PairType type, double first, double second, double nn) {
+    if (type == geometry::PairType::point_triangle) return first > 0 && second > 0 && nn - first - second > 0;
     return -first > 0 && -first < nn && second > 0 && second < nn;
 }
 
 /// For slivers and nearly parallel edges.
-ClosestDirection closest_nearly_parallel(PairType type, const Differences& r, const Inside& i) {
+ClosestDirection closest_nearly_parallel(geometry::PairType type, const Differences& r, const Inside& i) {
     const Vector3 n = accurate_cross(i.a, i.b);
     const double nn = n.squaredNorm();
     const ClosestDirection boundary = closest_point_edge(type, r);
@@ -131,10 +131,10 @@ ClosestDirection closest_nearly_parallel(PairType type, const Differences& r, co
 
 }  // namespace
 
-Differences differences(PairType type, const PairVertices& x) {
+Differences differences(geometry::PairType type, const geometry::PairVertices& x) {
     Differences r;
     for (Eigen::Index k = 0; k < 3; ++k) {
-        if (type == PairType::point_triangle) {
+        if (type == geometry::PairType::point_triangle) {
             r.col(k) << x[0][k] - x[1][k], x[0][k] - x[2][k], x[0][k] - x[3][k], x[0][k] - x[3][k];
         } else {
             r.col(k) << x[0][k] - x[2][k], x[0][k] - x[3][k], x[1][k] - x[2][k], x[1][k] - x[3][k];
@@ -143,7 +143,7 @@ Differences differences(PairType type, const PairVertices& x) {
     return r;
 }
 
-RelativeMotion relative_motion(PairType type, const PairVertices& t0, const PairVertices& t1) {
+RelativeMotion relative_motion(geometry::PairType type, const geometry::PairVertices& t0, const geometry::PairVertices& t1) {
     RelativeMotion m{type, differences(type, t0), differences(type, t1), Vector3::Zero(), false};
     const Differences largest = m.d.abs().max(m.e.abs());
     m.largest = largest.colwise().maxCoeff().matrix().transpose();
@@ -178,7 +178,7 @@ SeparatingPlane separating_plane_at_rest(const Differences& r, const Vector3& la
     return s;
 }
 
-ClosestDirection closest_direction(PairType type, const Differences& r) {
+ClosestDirection closest_direction(geometry::PairType type, const Differences& r) {
     const Inside i = inside_case(type, r);
     const Vector3 n = i.a.cross(i.b);
     const double nn = n.squaredNorm();
@@ -189,11 +189,11 @@ ClosestDirection closest_direction(PairType type, const Differences& r) {
     return {n, height * height / nn};
 }
 
-CandidateDirections candidate_directions(PairType type, const Differences& r) {
+CandidateDirections candidate_directions(geometry::PairType type, const Differences& r) {
     CandidateDirections c;
     const auto add = [&](const Vector3& direction) { c.direction[static_cast<std::size_t>(c.count++)] = direction; };
     const PointEdges pe = point_edges(type, r);
-    const bool face = type == PairType::point_triangle;
+    const bool face = type == geometry::PairType::point_triangle;
     for (Eigen::Index i = 0; i < (face ? 3 : 4); ++i) {
         const Vector3 w = row(pe.to_start, i), e = row(pe.edge, i);
         if (face) add(accurate_cross(e, row(pe.edge, (i + 1) % 3)));
@@ -207,4 +207,4 @@ CandidateDirections candidate_directions(PairType type, const Differences& r) {
     return c;
 }
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

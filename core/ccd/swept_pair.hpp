@@ -14,7 +14,7 @@
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// Rounding of sums of some thirty products, relative to the sizes that enter them.
 inline constexpr double search_rounding = 1e-14;
@@ -56,4 +56,4 @@ using NodePair = std::array<int, 2>;
 /// them, leaves or not.
 std::vector<NodePair> close_nodes(const SweptPair& pair, NodePair from, std::size_t most = 0);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -28,9 +28,9 @@
 /// at the reported toi > 0 the distance still is dmin + g/2 or more. toi is 0 only if no gap can be proven at t = 0.
 #pragma once
 
-#include "fettle/core/contact/primitive_pair.hpp"
+#include "fettle/core/geometry/primitive_pair.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 /// Share of the first gap at which an approach counts as a hit.
 inline constexpr double hit_share = 0.1;
@@ -51,12 +51,12 @@ struct LinearCcdResult {
 /// Measured on the public queries (tests/benchmarks/ccd_benchmark, one thread): 0 misses, 0.10 us a query on sample-queries, 1.2 us on
 /// scalable, at most 10 us. On 6 million slivers, near-parallel edges and mixed sizes from 1e-6 to 1e6 that nearly meet: 1.5 us, at most
 /// 0.3 ms.
-LinearCcdResult linear_ccd(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin,
+LinearCcdResult linear_ccd(geometry::PairType type, const geometry::PairVertices& t0, const geometry::PairVertices& t1, double dmin,
                            const LinearCcdOptions& options = {});
 
 /// Proven lower bound of the distance of a pair at rest: 0 or the separation along one direction n, less its rounding (as above). As |n|
 /// may be 1 + 6u, the distance is at least (1 - 8u) times this. 0 if anything is not finite.
 /// At least 0.7 of the true distance where that is 1e-9 or more of the pair's size, in general all but 1e-15 of the size.
-double distance_lower_bound(PairType type, const PairVertices& x);
+double distance_lower_bound(geometry::PairType type, const geometry::PairVertices& x);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

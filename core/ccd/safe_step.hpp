@@ -4,11 +4,10 @@
 
 #include <vector>
 
-#include "fettle/core/contact/candidates.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/candidates.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 
-namespace fettle::core::contact {
+namespace fettle::core::ccd {
 
 struct SafeStep {
     double fraction = 1;                   ///< proven: every pair stays farther apart than dmin on [0, fraction]
@@ -18,11 +17,12 @@ struct SafeStep {
 /// Longest safe fraction of the segments; 0 where a pair's path is not finite. A pair may lose at most nine tenths of its distance (or come
 /// to a quarter of dhat, whichever is less), so that the barrier stays finite and the next step has room. Contract: the candidates cover
 /// the segments (candidates.hpp).
-/// @param start  contacts where the segments start, or null: bodies whose known distance is more than they can lose need no closer look
+/// @param start  distances of bodies where the segments start, sorted by (a, b), or null: bodies whose known distance is more than they can
+///               lose need no closer look
 SafeStep longest_safe_step(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments,
-                           const ContactSet* start = nullptr);
+                           const std::vector<BodyDistance>* start = nullptr);
 
 /// Is the whole of each segment free of pairs at or below dmin? Contract: as above.
 bool is_path_clear(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::PathSegment>& segments);
 
-}  // namespace fettle::core::contact
+}  // namespace fettle::core::ccd

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: exact rational arithmetic (tests/support/exact_ccd.hpp). A false negative or a toi too late is a bug, whatever the input.
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 
-namespace fettle::core::contact::linear_ccd_test {
+namespace fettle::core::ccd::linear_ccd_test {
 
 using fettle::tests::exact_distance_at_most;
 using fettle::tests::exact_linear_contact;
@@ -19,8 +19,8 @@ using fettle::tests::exact_linear_contact_by_algebra;
 namespace {
 
 struct Query {
-    PairType type = PairType::point_triangle;
-    PairVertices t0, t1;
+    geometry::PairType type = geometry::PairType::point_triangle;
+    geometry::PairVertices t0, t1;
 };
 
 struct Tally {
@@ -36,7 +36,7 @@ public:
     explicit Generator(unsigned seed) : random_(seed) {}
     int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
     Vector3 point(int range) { return Vector3(integer(-range, range), integer(-range, range), integer(-range, range)); }
-    PairType type() { return integer(0, 1) == 0 ? PairType::point_triangle : PairType::edge_edge; }
+    geometry::PairType type() { return integer(0, 1) == 0 ? geometry::PairType::point_triangle : geometry::PairType::edge_edge; }
     Query grid(int range) {
         Query q{type(), {}, {}};
         for (Vector3& x : q.t0) x = point(range);
@@ -90,14 +90,14 @@ public:
     Query nearly_degenerate() {
         Query q{type(), {}, {}};
         const auto size = [&] { return std::pow(10.0, 6 * uniform()); };
-        for (PairVertices* x : {&q.t0, &q.t1}) {
+        for (geometry::PairVertices* x : {&q.t0, &q.t1}) {
             const double whole = size();
             for (Vector3& v : *x) v = (integer(0, 3) == 0 ? size() : whole) * vector();
             const double thin = std::pow(10.0, -9 + 7 * uniform());
             switch (integer(0, 3)) {
                 case 0:  // the last vertex nearly on the line of the two before it, or the edges nearly parallel
                     (*x)[3] = (*x)[2] + uniform() * ((*x)[1] - (*x)[0]) + thin * (*x)[3];
-                    if (q.type == PairType::point_triangle) (*x)[3] = (*x)[2] + uniform() * ((*x)[2] - (*x)[1]) + thin * (*x)[3];
+                    if (q.type == geometry::PairType::point_triangle) (*x)[3] = (*x)[2] + uniform() * ((*x)[2] - (*x)[1]) + thin * (*x)[3];
                     break;
                 case 1:  // an edge of nearly no length
                     (*x)[3] = (*x)[2] + thin * (*x)[3];
@@ -111,7 +111,7 @@ public:
         }
         const double t = 0.5 + 0.5 * uniform(), u = 0.5 + 0.5 * uniform(), v = (1 - u) * (0.5 + 0.5 * uniform());
         const auto at = [&](std::size_t i) -> Vector3 { return q.t0[i] + t * (q.t1[i] - q.t0[i]); };
-        const bool face = q.type == PairType::point_triangle;
+        const bool face = q.type == geometry::PairType::point_triangle;
         const Vector3 first = face ? at(0) : Vector3(at(0) + u * (at(1) - at(0)));
         const Vector3 second = face ? Vector3(at(1) + u * (at(2) - at(1)) + v * (at(3) - at(1))) : Vector3(at(2) + v * (at(3) - at(2)));
         for (std::size_t i = 0; i < (face ? 1u : 2u); ++i) {
@@ -126,7 +126,7 @@ private:
 };
 
 Query transformed(Query q, double scale, const Vector3& offset) {
-    for (PairVertices* x : {&q.t0, &q.t1})
+    for (geometry::PairVertices* x : {&q.t0, &q.t1})
         for (Vector3& v : *x) v = scale * (v + offset);
     return q;
 }
@@ -187,20 +187,20 @@ void check_slivers(int queries, unsigned seed) {
 }  // namespace
 
 TEST_CASE("the exact oracle knows simple cases") {
-    const PairVertices above{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
-    PairVertices below = above;
+    const geometry::PairVertices above{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+    geometry::PairVertices below = above;
     below[0].z() = -1;
-    CHECK(exact_linear_contact(PairType::point_triangle, above, below));
-    CHECK_FALSE(exact_linear_contact(PairType::point_triangle, above, above));
+    CHECK(exact_linear_contact(geometry::PairType::point_triangle, above, below));
+    CHECK_FALSE(exact_linear_contact(geometry::PairType::point_triangle, above, above));
     below[0].x() = 2;  // crosses the plane at x = 1.125: beside the triangle
-    CHECK_FALSE(exact_linear_contact(PairType::point_triangle, above, below));
-    CHECK(exact_distance_at_most(PairType::point_triangle, above, above, 0.5, 1));
-    CHECK_FALSE(exact_distance_at_most(PairType::point_triangle, above, above, 0.5, 1 - 1e-15));
-    const PairVertices crossed{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, -1, 0), Vector3(0, 1, 0)};
-    PairVertices through = crossed;
+    CHECK_FALSE(exact_linear_contact(geometry::PairType::point_triangle, above, below));
+    CHECK(exact_distance_at_most(geometry::PairType::point_triangle, above, above, 0.5, 1));
+    CHECK_FALSE(exact_distance_at_most(geometry::PairType::point_triangle, above, above, 0.5, 1 - 1e-15));
+    const geometry::PairVertices crossed{Vector3(-1, 0, 1), Vector3(1, 0, 1), Vector3(0, -1, 0), Vector3(0, 1, 0)};
+    geometry::PairVertices through = crossed;
     through[0].z() = through[1].z() = -1;
-    CHECK(exact_linear_contact(PairType::edge_edge, crossed, through));
-    CHECK_FALSE(exact_linear_contact(PairType::edge_edge, crossed, crossed));
+    CHECK(exact_linear_contact(geometry::PairType::edge_edge, crossed, through));
+    CHECK_FALSE(exact_linear_contact(geometry::PairType::edge_edge, crossed, crossed));
 }
 
 TEST_CASE("the exact oracle's filter and its algebra agree") {
@@ -256,7 +256,7 @@ TEST_CASE("linear CCD survives motion of 1e8 times the size") {
     for (int i = 0; i < 400; ++i) {
         Query q = generator.grid(4);
         const Vector3 stride = 1e8 * generator.point(2);
-        const std::size_t movers = q.type == PairType::point_triangle ? 1 : 2;
+        const std::size_t movers = q.type == geometry::PairType::point_triangle ? 1 : 2;
         // Through the other primitive, roughly half way.
         for (std::size_t j = 0; j < movers; ++j) {
             q.t0[j] -= stride;
@@ -298,35 +298,35 @@ TEST_CASE("linear CCD with a minimum separation never reports it late") {
 }
 
 TEST_CASE("toi is positive when the primitives start apart, and the motion up to it is clear") {
-    const PairVertices t0{Vector3(0.25, 0.25, 1e-9), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
-    PairVertices t1 = t0;
+    const geometry::PairVertices t0{Vector3(0.25, 0.25, 1e-9), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+    geometry::PairVertices t1 = t0;
     t1[0].z() = -1;
-    const LinearCcdResult r = linear_ccd(PairType::point_triangle, t0, t1, 0);
+    const LinearCcdResult r = linear_ccd(geometry::PairType::point_triangle, t0, t1, 0);
     CHECK(r.hit);
     CHECK(r.toi > 0.8e-9);
     CHECK(r.toi < 1e-9);
     // Starting closer than dmin is a hit at once.
-    CHECK(linear_ccd(PairType::point_triangle, t0, t1, 1e-8).toi == 0);
+    CHECK(linear_ccd(geometry::PairType::point_triangle, t0, t1, 1e-8).toi == 0);
     // At rest nearer than the tolerance is no hit: nothing comes closer.
-    CHECK_FALSE(linear_ccd(PairType::point_triangle, t0, t0, 0).hit);
-    CHECK_FALSE(linear_ccd(PairType::point_triangle, t0, t0, 0.9e-9).hit);
+    CHECK_FALSE(linear_ccd(geometry::PairType::point_triangle, t0, t0, 0).hit);
+    CHECK_FALSE(linear_ccd(geometry::PairType::point_triangle, t0, t0, 0.9e-9).hit);
 }
 
 TEST_CASE("linear CCD treats what is not a number as a hit") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    const PairVertices t0{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
+    const geometry::PairVertices t0{Vector3(0.25, 0.25, 1), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
     for (const double bad : {nan, infinity, -infinity, 1e200, -1e308}) {
         for (int k = 0; k < 3; ++k) {
-            PairVertices t1 = t0;
+            geometry::PairVertices t1 = t0;
             t1[0][k] = bad;
             if (std::isnan(bad)) {
-                CHECK(linear_ccd(PairType::point_triangle, t0, t1, 0).hit);
-                CHECK(by_inclusion({PairType::point_triangle, t0, t1}).hit);
+                CHECK(linear_ccd(geometry::PairType::point_triangle, t0, t1, 0).hit);
+                CHECK(by_inclusion({geometry::PairType::point_triangle, t0, t1}).hit);
             }
-            CHECK(linear_ccd(PairType::point_triangle, t1, t0, 0).toi <= 1);
+            CHECK(linear_ccd(geometry::PairType::point_triangle, t1, t0, 0).toi <= 1);
         }
     }
-    CHECK_THROWS(linear_ccd(PairType::point_triangle, t0, t0, -1));
+    CHECK_THROWS(linear_ccd(geometry::PairType::point_triangle, t0, t0, -1));
 }
 
 TEST_CASE("distance_lower_bound is below the exact distance and close to it") {
@@ -342,4 +342,4 @@ TEST_CASE("distance_lower_bound is below the exact distance and close to it") {
     CHECK(loose == 0);
 }
 
-}  // namespace fettle::core::contact::linear_ccd_test
+}  // namespace fettle::core::ccd::linear_ccd_test
