@@ -11,7 +11,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
@@ -83,7 +83,7 @@ private:
             return false;
         }
         Result<core::scene::Scene> scene =
-            core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs, parts_));
+            core::scene_files::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs, parts_));
         if (!scene) {
             scene_errors_ = scene.errors();
             if (scene_errors_.front().code == ErrorCode::file_not_found && scene_errors_.front().where == file_.scene_path) {

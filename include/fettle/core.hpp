@@ -5,7 +5,7 @@
 
 // A scene: as data, and read from its file.
 #include "fettle/core/scene/scene.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 // The model that is built from it, const from then on.
 #include "fettle/core/model/build_model.hpp"
 // Its motion: by dynamics, or where scripts or joints and motors say everything.

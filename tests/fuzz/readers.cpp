@@ -18,7 +18,7 @@
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
@@ -123,7 +123,7 @@ void read_scene(std::string_view bytes) {
     for (const bool strict : {false, true}) {
         core::scene::ReadOptions options = design::reading::scene_read_options();
         options.strict_meshes = strict;
-        const auto scene = core::scene::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
+        const auto scene = core::scene_files::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
         if (!scene || !is_small(*scene)) return;
         (void)core::model::check_scene(*scene, strict);
         if (!strict) (void)core::model::build_model(*scene);
@@ -166,7 +166,7 @@ void read_urdf(std::string_view bytes) {
     const auto robot = design::urdf::parse_urdf(bytes, "a.urdf");
     if (!robot) return;
     const auto scene = design::urdf::scene_of_robot(*robot, {scratch().file(""), {}, "a", false});
-    if (scene && bytes.size() < 10'000) (void)core::scene::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
+    if (scene && bytes.size() < 10'000) (void)core::scene_files::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
 }
 
 void read_expression(std::string_view bytes) {

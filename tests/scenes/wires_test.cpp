@@ -6,7 +6,7 @@
 #include <random>
 
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -121,7 +121,7 @@ TEST_CASE("two wires do not pass through each other end-on") {
         {"name": "b", "vertices": [[0, 0, 0], [1, 0, 0]], "edges": [[0, 1]], "mass_per": "length", "density": 1, "rotation": [24, 15, 61],
          "position": [0.48031750995645456, 0.8665157256545014, -0.2654664501871178],
          "linear_velocity": [-22.395771348614076, -40.40304102903929, 12.377907937726317]}]})");
-    const auto scene = scene::read_scene(path);
+    const auto scene = scene_files::read_scene(path);
     REQUIRE(scene.has_value());
     const auto model = model::build_model(*scene);
     REQUIRE(model.has_value());

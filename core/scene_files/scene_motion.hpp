@@ -6,12 +6,12 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 
 /// `position`, `rotation` or `rotation_vector`, where absent those of `otherwise`. @param unit  of lengths [m].
 kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise);
 
 /// Velocities, loads, `fixed`, `prescribed` and `script` of a body whose type and pose are known.
-void read_motion(const files::JsonNode& node, double unit, Body& body);
+void read_motion(const files::JsonNode& node, double unit, scene::Body& body);
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

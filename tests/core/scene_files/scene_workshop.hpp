@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::scene::test_support {
+namespace fettle::core::scene_files::test_support {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -36,7 +36,7 @@ public:
         for (const auto& t : box.triangles) file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
         file << more;
     }
-    base::Result<Scene> read(const json& scene, ReadOptions options = {}) const {
+    base::Result<scene::Scene> read(const json& scene, scene::ReadOptions options = {}) const {
         options.mesh_dirs.push_back((root / "elsewhere").string());
         return parse_scene(scene.dump(), (root / "scenes" / "a.scene.json").string(), options);
     }
@@ -58,4 +58,4 @@ inline json with(const std::string& pointer, const json& value) {
 
 using fettle::tests::support::contains;
 
-}  // namespace fettle::core::scene::test_support
+}  // namespace fettle::core::scene_files::test_support

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/fixture_state.hpp"
+#include "fettle/core/paper_scenes/fixture_state.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "fettle/core/linear/factorisations.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::paper_scenes {
 namespace {
 
 using base::ErrorCode;
@@ -16,8 +16,8 @@ using base::ErrorCode;
 constexpr double equal_moments = 1e-9;  ///< relative
 
 /// Inertia tensor with unit density about the centre of mass, world axes at the start.
-Matrix3 placed_inertia(const Body& body) {
-    const Matrix4 moments = unit_moments(body.mesh, body.mass_kind);
+Matrix3 placed_inertia(const scene::Body& body) {
+    const Matrix4 moments = scene::unit_moments(body.mesh, body.mass_kind);
     const Vector3 first = moments.col(3).head<3>();
     const Matrix3 central = moments.topLeftCorner<3, 3>() - first * first.transpose() / moments(3, 3);
     const Matrix3 placed = body.pose.rotation * central * body.pose.rotation.transpose();
@@ -54,8 +54,8 @@ Vector3 saved_angular_velocity(const files::JsonNode& node, const Matrix3& rotat
     return 0.5 * Vector3(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1));
 }
 
-void shift_script(Body& body, double passed) {
-    const PoseScript script = body.script;
+void shift_script(scene::Body& body, double passed) {
+    const scene::PoseScript script = body.script;
     body.script = {};
     for (std::size_t k = 0; k < script.times.size(); ++k) {
         // A pose is used up at a whole number of steps: rounding must not leave one an instant away.
@@ -68,7 +68,7 @@ void shift_script(Body& body, double passed) {
     }
 }
 
-void continue_body(const files::JsonNode& first, const files::JsonNode& last, Body& body) {
+void continue_body(const files::JsonNode& first, const files::JsonNode& last, scene::Body& body) {
     const SavedPose start = saved_pose(first), end = saved_pose(last);
     const bool moved = start.position != end.position || start.rotation != end.rotation;
     if (moved) {  // a body at rest stays where its file puts it, to the last bit
@@ -76,18 +76,18 @@ void continue_body(const files::JsonNode& first, const files::JsonNode& last, Bo
         body.pose.position = turn * (body.pose.position - start.position) + end.position;
         body.pose.rotation = kinematics::orthonormalised(turn * body.pose.rotation);
     }
-    if (body.type != BodyType::dynamic_body) return;
+    if (body.type != scene::BodyType::dynamic_body) return;
     body.linear_velocity = fixture_vector(last["linear_velocity"].unless_null()).value_or(Vector3::Zero());
     body.angular_velocity = saved_angular_velocity(last, end.rotation);
     // Of that program's centre of mass, which for an open mesh is another than ours.
-    if (const auto centre = centre_of_mass(body.mesh, body.mass_kind)) {
+    if (const auto centre = scene::centre_of_mass(body.mesh, body.mass_kind)) {
         body.linear_velocity += body.angular_velocity.cross(kinematics::world_position(body.pose, *centre) - end.position);
     }
 }
 
 }  // namespace
 
-Matrix3 fixture_principal_axes(const Body& body, int fixed_rotations) {
+Matrix3 fixture_principal_axes(const scene::Body& body, int fixed_rotations) {
     if (fixed_rotations == 2) return Matrix3::Identity();
     Matrix3 inertia = placed_inertia(body);
     if (!inertia.allFinite()) return Matrix3::Identity();
@@ -97,12 +97,12 @@ Matrix3 fixture_principal_axes(const Body& body, int fixed_rotations) {
     return axes;
 }
 
-PoseScript read_kinematic_poses(const files::JsonNode& node, const Body& body, int fixed_rotations, double timestep,
-                                std::optional<double> stop_time) {
-    PoseScript script;
+scene::PoseScript read_kinematic_poses(const files::JsonNode& node, const scene::Body& body, int fixed_rotations, double timestep,
+                                       std::optional<double> stop_time) {
+    scene::PoseScript script;
     const auto entries = node.elements();
     if (entries.empty() || stop_time == 0.0) return script;
-    const Vector3 centre = centre_of_mass(body.mesh, body.mass_kind).value_or(Vector3::Zero());
+    const Vector3 centre = scene::centre_of_mass(body.mesh, body.mass_kind).value_or(Vector3::Zero());
     const Matrix3 unturned = fixture_principal_axes(body, fixed_rotations).transpose() * body.pose.rotation;
     for (const files::JsonNode& entry : entries) {
         entry.warn_of_other_keys({"position", "rotation"});
@@ -115,7 +115,7 @@ PoseScript read_kinematic_poses(const files::JsonNode& node, const Body& body, i
         script.poses.push_back({rotation, pose.position - rotation * centre});
     }
     if (!stop_time || script.empty() || *stop_time >= script.times.back()) return script;
-    const kinematics::Pose last = scripted_pose(script, body.pose, *stop_time);
+    const kinematics::Pose last = scene::scripted_pose(script, body.pose, *stop_time);
     const auto kept =
         static_cast<std::size_t>(std::lower_bound(script.times.begin(), script.times.end(), *stop_time) - script.times.begin());
     script.times.resize(kept);
@@ -125,7 +125,7 @@ PoseScript read_kinematic_poses(const files::JsonNode& node, const Body& body, i
     return script;
 }
 
-void continue_from_last_state(const files::JsonNode& animation, Scene& scene) {
+void continue_from_last_state(const files::JsonNode& animation, scene::Scene& scene) {
     const files::JsonNode sequence = animation["state_sequence"].unless_null();
     const auto states = sequence.elements();
     if (states.size() < 2) return;
@@ -147,4 +147,4 @@ void continue_from_last_state(const files::JsonNode& animation, Scene& scene) {
     if (scene.end_time == 0.0) sequence.warn("the saved simulation has reached its end: say how much further to go");
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::paper_scenes

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/scene/scene_workshop.hpp"
+#include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
-namespace fettle::core::scene::scene_faults_test {
+namespace fettle::core::scene_files::scene_faults_test {
 
 namespace {
 
@@ -43,12 +43,12 @@ TEST_CASE("Meshes from elsewhere are mended with a warning, or refused when stri
     REQUIRE(read);
     REQUIRE(read->warnings.size() == 1);
     CHECK(contains(read->warnings[0], "left out"));
-    ReadOptions strict;
+    scene::ReadOptions strict;
     strict.strict_meshes = true;
     const auto untouched = shop.read(scene, strict);
     REQUIRE(untouched);
     CHECK(untouched->warnings.empty());
-    CHECK(untouched->bodies[0].mesh_policy == MeshPolicy::strict);
+    CHECK(untouched->bodies[0].mesh_policy == scene::MeshPolicy::strict);
     CHECK(untouched->bodies[0].mesh.triangles.size() > read->bodies[0].mesh.triangles.size());
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("Each copy of a mesh is mended, scaled and told for itself", "[scene]"
     CHECK(size(3).isApprox(Vector3(10, 20, 30)));
     CHECK(size(4).isApprox(Vector3(10, 20, 30)));
     CHECK(geometry::have_same_shape(read->bodies[0].mesh, read->bodies[5].mesh));
-    for (const Body& body : read->bodies) CHECK(body.mesh.triangles.size() == 12);
+    for (const scene::Body& body : read->bodies) CHECK(body.mesh.triangles.size() == 12);
 }
 
 TEST_CASE("A static body without a density has none", "[scene]") {
@@ -259,4 +259,4 @@ TEST_CASE("A mesh that cannot be read is the body's fault", "[scene]") {
 
 }  // namespace
 
-}  // namespace fettle::core::scene::scene_faults_test
+}  // namespace fettle::core::scene_files::scene_faults_test

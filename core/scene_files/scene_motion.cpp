@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/scene_motion.hpp"
+#include "fettle/core/scene_files/scene_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "fettle/core/scene/angles.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 namespace {
 
 using base::ErrorCode;
@@ -18,9 +18,11 @@ std::size_t dof_index(const std::string& name) {
     return static_cast<std::size_t>(std::find(dof_names.begin(), dof_names.end(), name) - dof_names.begin());
 }
 
-MotionCurve read_curve(const files::JsonNode& node, double unit, bool angle) {
-    MotionCurve curve;
-    const auto amount = [&](const files::JsonNode& n) { return angle ? radians(n.number().value_or(0)) : n.length(unit).value_or(0); };
+scene::MotionCurve read_curve(const files::JsonNode& node, double unit, bool angle) {
+    scene::MotionCurve curve;
+    const auto amount = [&](const files::JsonNode& n) {
+        return angle ? scene::radians(n.number().value_or(0)) : n.length(unit).value_or(0);
+    };
     node.allow_keys({"rate", "times", "values", "stop_time"});
     if (!node.is_object()) return curve;
     curve.rate = amount(node["rate"]);
@@ -30,20 +32,20 @@ MotionCurve read_curve(const files::JsonNode& node, double unit, bool angle) {
     if (curve.times.size() != curve.values.size()) {
         node.fail(ErrorCode::inconsistent, std::to_string(curve.times.size()) + " `times` for " + std::to_string(curve.values.size()) +
                                                " `values`; one value for each time is wanted");
-        return MotionCurve{};
+        return scene::MotionCurve{};
     }
     for (std::size_t i = 1; i < curve.times.size(); ++i) {
         if (curve.times[i] > curve.times[i - 1]) continue;
         node["times"].elements()[i].fail(ErrorCode::out_of_range, "times must increase from entry to entry");
     }
-    if (motion_value(curve, 0) != 0) {
+    if (scene::motion_value(curve, 0) != 0) {
         node["values"].fail(ErrorCode::inconsistent, "values are measured from the start pose, so the value at time 0 must be 0");
     }
     return curve;
 }
 
-void read_prescribed(const files::JsonNode& node, double unit, Body& body) {
-    if (node.exists() && body.type == BodyType::static_body) {
+void read_prescribed(const files::JsonNode& node, double unit, scene::Body& body) {
+    if (node.exists() && body.type == scene::BodyType::static_body) {
         node.fail(ErrorCode::inconsistent, "a static body does not move; make it kinematic");
         return;
     }
@@ -62,7 +64,7 @@ bool turns_by_half(const kinematics::Pose& from, const kinematics::Pose& to) {
     return kinematics::rotation_vector(to.rotation * from.rotation.transpose()).norm() > std::numbers::pi - room;
 }
 
-void read_damping(const files::JsonNode& node, Body& body) {
+void read_damping(const files::JsonNode& node, scene::Body& body) {
     if (!node.exists()) return;
     if (node.is_object()) {
         node.allow_keys({"linear", "angular"});
@@ -73,8 +75,8 @@ void read_damping(const files::JsonNode& node, Body& body) {
     }
 }
 
-void read_script(const files::JsonNode& node, double unit, Body& body) {
-    if (node.exists() && body.type != BodyType::kinematic_body) {
+void read_script(const files::JsonNode& node, double unit, scene::Body& body) {
+    if (node.exists() && body.type != scene::BodyType::kinematic_body) {
         node.fail(ErrorCode::inconsistent, "only a kinematic body has a `script`");
         return;
     }
@@ -106,32 +108,32 @@ kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinem
     pose.position = node["position"].length3(unit).value_or(pose.position);
     const files::JsonNode angles = node["rotation"], vector = node["rotation_vector"];
     if (angles.exists() && vector.exists()) node.fail(ErrorCode::inconsistent, "either `rotation` or `rotation_vector`, not both");
-    if (const auto found = angles.vector3()) pose.rotation = rotation_from_degrees(*found);
-    if (const auto found = vector.vector3()) pose.rotation = kinematics::rotation(radians(1) * *found);
+    if (const auto found = angles.vector3()) pose.rotation = scene::rotation_from_degrees(*found);
+    if (const auto found = vector.vector3()) pose.rotation = kinematics::rotation(scene::radians(1) * *found);
     return pose;
 }
 
-void read_motion(const files::JsonNode& node, double unit, Body& body) {
-    const bool dynamic = body.type == BodyType::dynamic_body;
+void read_motion(const files::JsonNode& node, double unit, scene::Body& body) {
+    const bool dynamic = body.type == scene::BodyType::dynamic_body;
     for (const char* key : {"linear_velocity", "angular_velocity", "force", "torque", "damping", "fixed"}) {
         if (dynamic || !node[key].exists()) continue;
-        const bool kinematic = body.type == BodyType::kinematic_body;
+        const bool kinematic = body.type == scene::BodyType::kinematic_body;
         node[key].fail(ErrorCode::inconsistent, std::string("only a dynamic body has `") + key + "`" +
                                                     (kinematic ? "; a kinematic one moves as its `script` and `prescribed` say" : ""));
     }
     body.linear_velocity = node["linear_velocity"].length3(unit).value_or(Vector3::Zero());
-    body.angular_velocity = radians(1) * node["angular_velocity"].vector3().value_or(Vector3::Zero());
+    body.angular_velocity = scene::radians(1) * node["angular_velocity"].vector3().value_or(Vector3::Zero());
     body.force = node["force"].vector3().value_or(Vector3::Zero());
     body.torque = node["torque"].vector3().value_or(Vector3::Zero());
     read_damping(node["damping"], body);
     for (const files::JsonNode& entry : node["fixed"].elements()) {
-        if (const auto name = entry.choice(dof_names)) body.prescribed[dof_index(*name)] = MotionCurve{};
+        if (const auto name = entry.choice(dof_names)) body.prescribed[dof_index(*name)] = scene::MotionCurve{};
     }
     read_prescribed(node["prescribed"], unit, body);
     for (auto& dof : body.prescribed) {
-        if (!dynamic && !dof) dof = MotionCurve{};
+        if (!dynamic && !dof) dof = scene::MotionCurve{};
     }
     read_script(node["script"], unit, body);
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

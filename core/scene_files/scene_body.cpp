@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/scene_body.hpp"
+#include "fettle/core/scene_files/scene_body.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,10 +11,10 @@
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene/scene_motion.hpp"
+#include "fettle/core/scene_files/scene_motion.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 namespace {
 
 using base::ErrorCode;
@@ -49,8 +49,8 @@ const std::vector<std::string_view> body_keys{"name",
                                               "split_components"};
 
 // A part that a program makes: what runs it.
-MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
-    MeshProgram program;
+scene::MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
+    scene::MeshProgram program;
     const files::JsonNode command = node["program"];
     for (const files::JsonNode& word : command.elements()) program.command.push_back(word.string().value_or(""));
     if (command.is_array() && (program.command.empty() || program.command.front().empty()))
@@ -72,8 +72,8 @@ std::optional<std::string> read_material_name(const files::JsonNode& node, const
     return std::nullopt;
 }
 
-std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
-    Body body;
+std::vector<scene::Body> SceneBodies::read(const files::JsonNode& node) {
+    scene::Body body;
     body.where = node.where();
     node.allow_keys(body_keys);
     if (!node.is_object()) return {body};
@@ -83,14 +83,16 @@ std::vector<Body> SceneBodies::read(const files::JsonNode& node) {
     body.pose = read_pose(node, unit_, {});
     body.reference_point = node["reference_point"].length3(unit_);
     const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
-    body.type = type == "static" ? BodyType::static_body : type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
+    body.type = type == "static"      ? scene::BodyType::static_body
+                : type == "kinematic" ? scene::BodyType::kinematic_body
+                                      : scene::BodyType::dynamic_body;
     read_motion(node, unit_, body);
     read_mass(node, body);
     read_group(node["group"], body);
     return components(node, std::move(body));
 }
 
-void SceneBodies::read_name(const files::JsonNode& node, Body& body) {
+void SceneBodies::read_name(const files::JsonNode& node, scene::Body& body) {
     body.name = node.string().value_or("");
     if (!node.is_string()) return;
     if (body.name.empty() || body.name.find_first_of(":,") != std::string::npos) {
@@ -100,7 +102,7 @@ void SceneBodies::read_name(const files::JsonNode& node, Body& body) {
     }
 }
 
-SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, Body& body) {
+SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, scene::Body& body) {
     MeshSource source;
     const files::JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
     const int sources = static_cast<int>(mesh.exists()) + static_cast<int>(shape.exists()) + static_cast<int>(vertices.exists());
@@ -132,9 +134,9 @@ SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, 
 }
 
 /// Files from elsewhere have small faults: what has one answer is mended, and told.
-void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& source, Body& body) {
+void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body) {
     if (body.shape || options_.strict_meshes) return;
-    body.mesh_policy = MeshPolicy::tolerant;
+    body.mesh_policy = scene::MeshPolicy::tolerant;
     if (body.mesh.vertices.cols() == 0 || !body.mesh.vertices.allFinite()) return;
     if (sound_.count(source) != 0) return;
     const std::vector<std::string> repairs = solids::repair_mesh(body.mesh);
@@ -142,7 +144,7 @@ void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& sou
     if (repairs.empty() && !std::get<0>(source).empty()) sound_.insert(source);
 }
 
-SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node, Body& body) {
+SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node, scene::Body& body) {
     const files::JsonNode mesh = node["mesh"];
     mesh_files::MeshReadOptions options;
     options.unit = unit_;
@@ -171,12 +173,12 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     return source;
 }
 
-void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
-    ShapeSpec spec;
+void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
+    scene::ShapeSpec spec;
     if (node["program"].exists()) {
         node.allow_keys({"program", "format", "time_limit", "dimensions"});
         spec.program = read_program(node, document_.path(), unit_);
-        body.mesh_policy = MeshPolicy::tolerant;
+        body.mesh_policy = scene::MeshPolicy::tolerant;
     } else {
         node.allow_keys({"generator", "program", "dimensions", "counts"});
         spec.generator = node.require("generator").string().value_or("");
@@ -197,7 +199,7 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
     body.mesh = std::move(made).value();
 }
 
-void SceneBodies::read_inline(const files::JsonNode& node, Body& body) {
+void SceneBodies::read_inline(const files::JsonNode& node, scene::Body& body) {
     const std::size_t faults = document_.errors().size();
     geometry::Mesh mesh;
     mesh.name = body.name;
@@ -218,33 +220,33 @@ void SceneBodies::read_inline(const files::JsonNode& node, Body& body) {
     body.mesh = geometry::weld_exactly(mesh);
 }
 
-void SceneBodies::read_mass(const files::JsonNode& node, Body& body) {
+void SceneBodies::read_mass(const files::JsonNode& node, scene::Body& body) {
     body.mu = node["mu"].number(files::not_negative);
     body.material = read_material_name(node["material"], densities_).value_or("");
     if (node["inertial"].exists()) return read_inertial(node, body);
     const std::string per = node["mass_per"].choice({"volume", "area", "length", "vertex"}).value_or("volume");
-    body.mass_kind = per == "area"     ? MassKind::area
-                     : per == "length" ? MassKind::length
-                     : per == "vertex" ? MassKind::vertex
-                                       : MassKind::volume;
+    body.mass_kind = per == "area"     ? scene::MassKind::area
+                     : per == "length" ? scene::MassKind::length
+                     : per == "vertex" ? scene::MassKind::vertex
+                                       : scene::MassKind::volume;
     std::optional<double> density = node["density"].number(files::positive);
     const auto known = densities_.find(body.material);
     const bool given = node["density"].exists();
-    if (!given && known != densities_.end() && body.mass_kind == MassKind::volume) density = known->second;
-    if (body.type == BodyType::dynamic_body && !given && !density) node.require("density");
+    if (!given && known != densities_.end() && body.mass_kind == scene::MassKind::volume) density = known->second;
+    if (body.type == scene::BodyType::dynamic_body && !given && !density) node.require("density");
     body.density = density.value_or(body.density);
     body.density_given = density.has_value();
 }
 
 // Given mass and inertia, about the centre of mass, along the mesh's axes.
-void SceneBodies::read_inertial(const files::JsonNode& node, Body& body) {
+void SceneBodies::read_inertial(const files::JsonNode& node, scene::Body& body) {
     body.density_given = false;
     for (const char* key : {"density", "mass_per", "split_components"})
         if (node[key].exists()) node[key].fail(ErrorCode::inconsistent, "a body with an `inertial` of its own has its mass from there");
     const files::JsonNode own = node["inertial"];
     own.allow_keys({"mass", "centre", "inertia"});
     if (!own.is_object()) return;
-    Inertial inertial;
+    scene::Inertial inertial;
     const std::size_t faults = document_.errors().size();
     inertial.mass = own.require("mass").quantity(base::Dimension::mass, 1, files::positive).value_or(1);
     inertial.centre = own.require("centre").length3(unit_).value_or(inertial.centre);
@@ -254,11 +256,11 @@ void SceneBodies::read_inertial(const files::JsonNode& node, Body& body) {
     for (std::size_t k = 0; k < rows.size() && k < 3; ++k)
         inertial.inertia.row(static_cast<Eigen::Index>(k)) = rows[k].vector3().value_or(Vector3::Zero()).transpose();
     if (document_.errors().size() > faults) return;
-    if (const std::string fault = fault_of(inertial); !fault.empty()) own.fail(ErrorCode::out_of_range, fault);
+    if (const std::string fault = scene::fault_of(inertial); !fault.empty()) own.fail(ErrorCode::out_of_range, fault);
     body.inertial = inertial;
 }
 
-void SceneBodies::read_group(const files::JsonNode& node, Body& body) {
+void SceneBodies::read_group(const files::JsonNode& node, scene::Body& body) {
     if (!node.is_string()) {
         body.group = node.integer(0).value_or(-1);
         return;
@@ -269,15 +271,15 @@ void SceneBodies::read_group(const files::JsonNode& node, Body& body) {
     if (place == group_names_.end()) group_names_.push_back(name);
 }
 
-void SceneBodies::number_groups(std::vector<Body>& bodies) const {
+void SceneBodies::number_groups(std::vector<scene::Body>& bodies) const {
     int highest = -1;
-    for (const Body& body : bodies) highest = std::max(highest, body.group);
-    for (Body& body : bodies) {
+    for (const scene::Body& body : bodies) highest = std::max(highest, body.group);
+    for (scene::Body& body : bodies) {
         if (body.group < -1) body.group = highest + (-1 - body.group);
     }
 }
 
-std::vector<Body> SceneBodies::components(const files::JsonNode& node, Body body) {
+std::vector<scene::Body> SceneBodies::components(const files::JsonNode& node, scene::Body body) {
     const files::JsonNode key = node["split_components"];
     if (!key.boolean().value_or(false) || body.mesh.vertices.cols() == 0) return {std::move(body)};
     if (body.shape) key.fail(ErrorCode::inconsistent, "a generated `shape` is one part");
@@ -294,7 +296,7 @@ std::vector<Body> SceneBodies::components(const files::JsonNode& node, Body body
         key.fail(ErrorCode::inconsistent, "the mesh has edges or points that belong to no triangle, and so to no component");
     }
     if (parts.size() == 1) return {std::move(body)};
-    std::vector<Body> bodies;
+    std::vector<scene::Body> bodies;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         bodies.push_back(body);
         bodies.back().name += "-" + std::to_string(i);
@@ -314,4 +316,4 @@ void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node
     }
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

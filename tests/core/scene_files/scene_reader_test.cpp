@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -12,9 +12,9 @@
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/core/scene/scene_workshop.hpp"
+#include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
-namespace fettle::core::scene::scene_reader_test {
+namespace fettle::core::scene_files::scene_reader_test {
 
 namespace {
 
@@ -35,9 +35,9 @@ TEST_CASE("A plain scene needs no tuning", "[scene]") {
     CHECK_FALSE(scene->kappa);
     CHECK(scene->gravity == Vector3::Zero());
     REQUIRE(scene->bodies.size() == 1);
-    const Body& body = scene->bodies[0];
-    CHECK(body.type == BodyType::dynamic_body);
-    CHECK(body.mesh_policy == MeshPolicy::tolerant);
+    const scene::Body& body = scene->bodies[0];
+    CHECK(body.type == scene::BodyType::dynamic_body);
+    CHECK(body.mesh_policy == scene::MeshPolicy::tolerant);
     CHECK(contains(body.where, "a.scene.json#/bodies/0"));
     CHECK((body.mesh.vertices.rowwise().maxCoeff() - Vector3(0.001, 0.002, 0.003)).norm() < 1e-17);
     for (const auto& dof : body.prescribed) CHECK_FALSE(dof);
@@ -64,7 +64,7 @@ TEST_CASE("Every key arrives, in SI units", "[scene]") {
     CHECK(scene->kappa == 3e4);
     CHECK(scene->velocity_tolerance == 1e-3);
     CHECK(scene->max_newton_iterations == 50);
-    const Body &a = scene->bodies[0], &b = scene->bodies[1], &c = scene->bodies[2];
+    const scene::Body &a = scene->bodies[0], &b = scene->bodies[1], &c = scene->bodies[2];
     CHECK(a.mesh.vertices.rowwise().maxCoeff().isApprox(Vector3(0.01, 0.04, 0.015)));
     CHECK(a.density == 1240);
     CHECK(a.pose.position.isApprox(Vector3(0.001, 0.02, 0.003)));
@@ -77,22 +77,22 @@ TEST_CASE("Every key arrives, in SI units", "[scene]") {
     CHECK(a.force == Vector3(1, 2, 3));
     CHECK(a.group == 2);
     REQUIRE(a.prescribed[0]);
-    CHECK(motion_value(*a.prescribed[0], 5) == 0);
+    CHECK(scene::motion_value(*a.prescribed[0], 5) == 0);
     REQUIRE(a.prescribed[1]);
-    CHECK(motion_value(*a.prescribed[1], 0.5) == Approx(0.0127));
+    CHECK(scene::motion_value(*a.prescribed[1], 0.5) == Approx(0.0127));
     CHECK_FALSE(a.prescribed[2]);
     REQUIRE(a.prescribed[5]);
-    CHECK(motion_value(*a.prescribed[5], 0.25) == Approx(pi / 2));
-    CHECK(motion_value(*a.prescribed[5], 7) == Approx(2 * pi));
+    CHECK(scene::motion_value(*a.prescribed[5], 0.25) == Approx(pi / 2));
+    CHECK(scene::motion_value(*a.prescribed[5], 7) == Approx(2 * pi));
     CHECK((b.pose.rotation * Vector3::UnitZ() - Vector3::UnitX()).norm() < 1e-15);
-    CHECK(b.type == BodyType::static_body);
-    CHECK(c.type == BodyType::kinematic_body);
+    CHECK(b.type == scene::BodyType::static_body);
+    CHECK(c.type == scene::BodyType::kinematic_body);
     CHECK(c.mesh.vertices.maxCoeff() == Approx(0.006));
     for (int dof = 0; dof < 6; ++dof) {
         REQUIRE(b.prescribed[dof]);
         REQUIRE(c.prescribed[dof]);
-        CHECK(motion_value(*b.prescribed[dof], 3) == 0);
-        CHECK(motion_value(*c.prescribed[dof], 3) == Approx(dof == 0 ? 0.015 : 0));
+        CHECK(scene::motion_value(*b.prescribed[dof], 3) == 0);
+        CHECK(scene::motion_value(*c.prescribed[dof], 3) == Approx(dof == 0 ? 0.015 : 0));
     }
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
           {"name": "d", "mesh": "near.obj", "type": "static", "material": "felt", "group": "other"}]})");
     const auto scene = shop.read(text);
     REQUIRE(scene);
-    CHECK(scene->integrator == Integrator::bdf2);
+    CHECK(scene->integrator == scene::Integrator::bdf2);
     CHECK(scene->area_weighted);
     CHECK(scene->contact_damping_time == 0.004);
     CHECK(scene->friction.mu == 0.2);
@@ -131,17 +131,17 @@ TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
     CHECK(bodies[0].group == bodies[2].group);
     CHECK(std::set<int>{bodies[0].group, bodies[1].group, bodies[3].group}.size() == 3);
     CHECK(bodies[1].group == 7);
-    for (const Body& body : bodies) CHECK(body.group >= 0);
+    for (const scene::Body& body : bodies) CHECK(body.group >= 0);
 
     const auto plainly = shop.read(plain());
-    CHECK(plainly->integrator == Integrator::implicit_euler);
+    CHECK(plainly->integrator == scene::Integrator::implicit_euler);
     CHECK(plainly->friction.mu == 0);
     CHECK(plainly->friction.eps_v == 1e-3);
     CHECK(plainly->friction.rounds == 1);
     CHECK(plainly->bodies[0].group == -1);
-    CHECK(plainly->bodies[0].mass_kind == MassKind::volume);
-    CHECK(shop.read(with("/integrator", "newmark"))->integrator == Integrator::newmark);
-    CHECK(shop.read(with("/integrator", "quasi_static"))->integrator == Integrator::quasi_static);
+    CHECK(plainly->bodies[0].mass_kind == scene::MassKind::volume);
+    CHECK(shop.read(with("/integrator", "newmark"))->integrator == scene::Integrator::newmark);
+    CHECK(shop.read(with("/integrator", "quasi_static"))->integrator == scene::Integrator::quasi_static);
     CHECK(plainly->bodies[0].damping.linear == 0);
     CHECK(shop.read(with("/bodies/0/damping", 2.5))->bodies[0].damping.linear == 2.5);
     CHECK(shop.read(with("/bodies/0/damping", 2.5))->bodies[0].damping.angular == 2.5);
@@ -162,7 +162,7 @@ TEST_CASE("A script holds what it does not say", "[scene]") {
     text["bodies"][0]["prescribed"] = {{"rz", {{"rate", 360}}}};
     const auto scene = shop.read(text);
     REQUIRE(scene);
-    const PoseScript& script = scene->bodies[0].script;
+    const scene::PoseScript& script = scene->bodies[0].script;
     CHECK(script.times == std::vector<double>{0.5, 1, 1.5});
     CHECK(script.poses[0].position.isApprox(Vector3(0.02, 0, 0)));
     CHECK(script.poses[0].rotation == scene->bodies[0].pose.rotation);
@@ -170,7 +170,7 @@ TEST_CASE("A script holds what it does not say", "[scene]") {
     CHECK(script.poses[1].rotation.isApprox(kinematics::rotation({0, 0, pi / 2})));
     CHECK(script.poses[2].position.isApprox(Vector3(0, 0.01, 0)));
     CHECK(script.poses[2].rotation.isApprox(kinematics::rotation({pi / 2, 0, 0})));
-    CHECK(motion_value(*scene->bodies[0].prescribed[5], 1) == Approx(2 * pi));
+    CHECK(scene::motion_value(*scene->bodies[0].prescribed[5], 1) == Approx(2 * pi));
 }
 
 TEST_CASE("Shells, wires and points, from files and written out", "[scene]") {
@@ -258,19 +258,19 @@ TEST_CASE("Components become bodies of their own", "[scene]") {
 }
 
 TEST_CASE("A motion table is piecewise linear, constant outside, and stops", "[scene]") {
-    MotionCurve curve;
+    scene::MotionCurve curve;
     curve.times = {1, 2, 4};
     curve.values = {0, 3, -1};
-    CHECK(motion_value(curve, 0) == 0);
-    CHECK(motion_value(curve, 1.5) == 1.5);
-    CHECK(motion_value(curve, 2) == 3);
-    CHECK(motion_value(curve, 3) == 1);
-    CHECK(motion_value(curve, 9) == -1);
+    CHECK(scene::motion_value(curve, 0) == 0);
+    CHECK(scene::motion_value(curve, 1.5) == 1.5);
+    CHECK(scene::motion_value(curve, 2) == 3);
+    CHECK(scene::motion_value(curve, 3) == 1);
+    CHECK(scene::motion_value(curve, 9) == -1);
     curve.rate = 2;
-    CHECK(motion_value(curve, 3) == 7);
+    CHECK(scene::motion_value(curve, 3) == 7);
     curve.stop_time = 2;
-    CHECK(motion_value(curve, 3) == 7);  // 2 * 2 + 3
-    CHECK(motion_value(curve, 1.5) == 4.5);
+    CHECK(scene::motion_value(curve, 3) == 7);  // 2 * 2 + 3
+    CHECK(scene::motion_value(curve, 1.5) == 4.5);
 }
 
 TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
@@ -286,8 +286,8 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
         CHECK(contains(errors[0].where, "#/bodies/0/shape"));
     }
     SECTION("given") {
-        ReadOptions options;
-        options.shape_generator = [](const ShapeSpec& spec) -> base::Result<geometry::Mesh> {
+        scene::ReadOptions options;
+        options.shape_generator = [](const scene::ShapeSpec& spec) -> base::Result<geometry::Mesh> {
             CHECK(spec.generator == "pin");
             const double r = spec.dimensions.at("radius");
             CHECK(r == 0.0025);
@@ -301,8 +301,8 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
         CHECK(scene->bodies[0].mesh.vertices.maxCoeff() == 0.01);
     }
     SECTION("none is asked for where a number or the unit is wrong, which alone is told") {
-        ReadOptions options;
-        options.shape_generator = [](const ShapeSpec&) -> base::Result<geometry::Mesh> {
+        scene::ReadOptions options;
+        options.shape_generator = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
             return base::Error{ErrorCode::out_of_range, "facets", "facets is 0"};
         };
         json many = text, unknown = text;
@@ -315,8 +315,8 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
         }
     }
     SECTION("that fails") {
-        ReadOptions options;
-        options.shape_generator = [](const ShapeSpec&) -> base::Result<geometry::Mesh> {
+        scene::ReadOptions options;
+        options.shape_generator = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
             return base::Error{ErrorCode::out_of_range, "radius", "too small"};
         };
         const auto errors = shop.read(text, options).errors();
@@ -345,7 +345,7 @@ std::vector<std::string> accepted_keys(const Workshop& shop, json scene, const s
 
 TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]") {
     const Workshop shop;
-    const json schema = json::parse(std::ifstream(FETTLE_SOURCE_DIR "/core/scene/scene.schema.json"));
+    const json schema = json::parse(std::ifstream(FETTLE_SOURCE_DIR "/core/scene_files/scene.schema.json"));
     json scene = with("/contact", json::object());
     scene["friction"]["pairs"] = json::array({json::object()});
     scene["materials"] = {{"PLA", json::object()}};
@@ -382,4 +382,4 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
 
 }  // namespace
 
-}  // namespace fettle::core::scene::scene_reader_test
+}  // namespace fettle::core::scene_files::scene_reader_test

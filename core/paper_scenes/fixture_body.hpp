@@ -15,11 +15,11 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/read_options.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::paper_scenes {
 
 /// What the density of a mesh is per, and what is odd about its volume.
 struct MeshMass {
-    MassKind kind = MassKind::volume;
+    scene::MassKind kind = scene::MassKind::volume;
     bool inside_out = false;  ///< its volume is not positive
     bool has_gaps = false;
 };
@@ -32,14 +32,14 @@ struct MeshSource {
 };
 
 struct FixtureBody {
-    Body body;
+    scene::Body body;
     MeshSource source;
 };
 
 class FixtureBodies {
 public:
     /// Both outlive this object.
-    FixtureBodies(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
+    FixtureBodies(files::JsonDocument& document, const scene::ReadOptions& options) : document_(document), options_(options) {}
 
     /// [element of `list`] One body, or one per facet-connected component (`split_components`); none if it is switched off
     /// (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
@@ -47,7 +47,7 @@ public:
     std::vector<std::vector<FixtureBody>> read(const files::JsonNode& list, double timestep);
 
     /// Gives bodies[i] the mesh of sources[i]: copies of many large meshes take longer than all the rest, and all threads.
-    static void fill(std::vector<Body>& bodies, const std::vector<MeshSource>& sources);
+    static void fill(std::vector<scene::Body>& bodies, const std::vector<MeshSource>& sources);
 
 private:
     /// Scenes repeat one mesh many times: it is read once.
@@ -58,7 +58,7 @@ private:
         std::string where;                  ///< that place
     };
     struct Placed {
-        Body body;                                  ///< without a mesh
+        scene::Body body;                           ///< without a mesh
         const geometry::Mesh* mesh = nullptr;       ///< as in the file; nullptr: none that is of use
         std::shared_ptr<const geometry::Mesh> own;  ///< that mesh, if it is the scene's own
         std::string file;                           ///< of its mesh; empty: the scene's own
@@ -76,11 +76,11 @@ private:
     MeshMass mass_of(const Placed& from, std::size_t part, const std::function<geometry::Mesh()>& mesh);
 
     files::JsonDocument& document_;
-    const ReadOptions& options_;
+    const scene::ReadOptions& options_;
     std::map<std::string, MeshFile> files_;
     std::mutex masses_mutex_;
     /// By file, scale factors and component: what has been looked at.
     std::map<std::tuple<std::string, std::array<double, 3>, std::size_t>, MeshMass> masses_;
 };
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::paper_scenes

@@ -8,11 +8,11 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 
 /// @param root    of the file.
 /// @param unit    of lengths [m].
 /// @param bodies  already read: where they are at the start.
-Mechanism read_mechanism(const files::JsonNode& root, double unit, const std::vector<Body>& bodies);
+scene::Mechanism read_mechanism(const files::JsonNode& root, double unit, const std::vector<scene::Body>& bodies);
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/fixture_reader.hpp"
+#include "fettle/core/paper_scenes/fixture_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <numbers>
 
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/tests/core/scene/fixture_texts.hpp"
+#include "fettle/tests/core/paper_scenes/fixture_texts.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
-namespace fettle::core::scene::fixture_reader_test {
+namespace fettle::core::paper_scenes::fixture_reader_test {
 
 namespace {
 
@@ -17,11 +17,12 @@ using base::ErrorCode;
 using namespace test_support;
 constexpr double pi = std::numbers::pi;
 
-base::Result<Scene> read(const std::string& top, const std::string& problem, const std::string& body) {
-    return parse_scene("{" + top + R"("rigid_body_problem": {)" + problem + R"("rigid_bodies": [{)" + tet + body + "}]}}", "/tmp/a.json");
+base::Result<scene::Scene> read(const std::string& top, const std::string& problem, const std::string& body) {
+    return scene_files::parse_scene("{" + top + R"("rigid_body_problem": {)" + problem + R"("rigid_bodies": [{)" + tet + body + "}]}}",
+                                    "/tmp/a.json");
 }
 
-Body body_with(const std::string& keys) {
+scene::Body body_with(const std::string& keys) {
     const auto scene = read("", "", keys.empty() ? "" : ", " + keys);
     REQUIRE(scene);
     REQUIRE(scene->bodies.size() == 1);
@@ -38,10 +39,10 @@ TEST_CASE("A fixture's defaults are that format's", "[scene]") {
     CHECK(scene->velocity_tolerance == Approx(1e-2 * std::sqrt(3.0)));
     CHECK(scene->gravity == Vector3::Zero());
     CHECK(scene->warnings.empty());
-    const Body& body = scene->bodies[0];
+    const scene::Body& body = scene->bodies[0];
     CHECK(body.density == 1000);
-    CHECK(body.type == BodyType::dynamic_body);
-    CHECK(body.mesh_policy == MeshPolicy::lenient);
+    CHECK(body.type == scene::BodyType::dynamic_body);
+    CHECK(body.mesh_policy == scene::MeshPolicy::lenient);
     CHECK(body.mesh.triangles.size() == 4);
     CHECK(body.mesh.edges.size() == 6);
     CHECK(body.group == -1);
@@ -65,7 +66,7 @@ TEST_CASE("A fixture's settings arrive", "[scene]") {
 }
 
 TEST_CASE("Placement: scale or dimensions, then rotation, then position", "[scene]") {
-    const Body body = body_with(R"("scale": [1, 2, 3], "rotation": [90, 0, 90], "position": [5, 6, 7])");
+    const scene::Body body = body_with(R"("scale": [1, 2, 3], "rotation": [90, 0, 90], "position": [5, 6, 7])");
     CHECK(body.mesh.vertices.rowwise().maxCoeff() == Vector3(1, 2, 3));
     // x -> y, y -> z, z -> x
     CHECK((kinematics::world_position(body.pose, Vector3(1, 2, 3)) - Vector3(8, 7, 9)).norm() < 1e-14);
@@ -78,14 +79,14 @@ TEST_CASE("Placement: scale or dimensions, then rotation, then position", "[scen
 }
 
 TEST_CASE("Types, fixed coordinates and scripts", "[scene]") {
-    CHECK(body_with(R"("is_dof_fixed": true)").type == BodyType::static_body);
-    CHECK(body_with(R"("is_dof_fixed": [true, true, true, true, true, true])").type == BodyType::static_body);
-    CHECK(body_with(R"("type": "static", "is_dof_fixed": [false, false, true, true, true, false])").type == BodyType::static_body);
-    CHECK(body_with(R"("type": "static", "density": 0)").type == BodyType::static_body);
+    CHECK(body_with(R"("is_dof_fixed": true)").type == scene::BodyType::static_body);
+    CHECK(body_with(R"("is_dof_fixed": [true, true, true, true, true, true])").type == scene::BodyType::static_body);
+    CHECK(body_with(R"("type": "static", "is_dof_fixed": [false, false, true, true, true, false])").type == scene::BodyType::static_body);
+    CHECK(body_with(R"("type": "static", "density": 0)").type == scene::BodyType::static_body);
 
-    const Body dynamic = body_with(R"("is_dof_fixed": [true, false, false, true, true, false], "linear_velocity": [1, 2, 3],
+    const scene::Body dynamic = body_with(R"("is_dof_fixed": [true, false, false, true, true, false], "linear_velocity": [1, 2, 3],
                                        "angular_velocity": [0, 0, 90], "force": [4, 5, 6], "density": 7, "group_id": 3)");
-    CHECK(dynamic.type == BodyType::dynamic_body);
+    CHECK(dynamic.type == scene::BodyType::dynamic_body);
     for (int dof = 0; dof < 6; ++dof) CHECK(dynamic.prescribed[dof].has_value() == (dof == 0 || dof == 3 || dof == 4));
     CHECK(dynamic.linear_velocity == Vector3(1, 2, 3));
     CHECK(dynamic.angular_velocity.isApprox(Vector3(0, 0, pi / 2)));
@@ -93,26 +94,28 @@ TEST_CASE("Types, fixed coordinates and scripts", "[scene]") {
     CHECK(dynamic.density == 7);
     CHECK(dynamic.group == 3);
 
-    const Body kinematic = body_with(R"("type": "kinematic", "linear_velocity": [1, 2, 3], "angular_velocity": [180, 0, 360],
+    const scene::Body kinematic = body_with(R"("type": "kinematic", "linear_velocity": [1, 2, 3], "angular_velocity": [180, 0, 360],
                                          "is_dof_fixed": [false, true, false, true, false, false], "kinematic_max_time": 2)");
-    CHECK(kinematic.type == BodyType::kinematic_body);
+    CHECK(kinematic.type == scene::BodyType::kinematic_body);
     const std::array<double, 6> expected{1, 0, 3, 0, 0, 2 * pi};
     for (int dof = 0; dof < 6; ++dof) {
         REQUIRE(kinematic.prescribed[dof]);
-        CHECK(motion_value(*kinematic.prescribed[dof], 1) == Approx(expected[dof]));
-        CHECK(motion_value(*kinematic.prescribed[dof], 5) == Approx(2 * expected[dof]));
+        CHECK(scene::motion_value(*kinematic.prescribed[dof], 1) == Approx(expected[dof]));
+        CHECK(scene::motion_value(*kinematic.prescribed[dof], 5) == Approx(2 * expected[dof]));
     }
-    CHECK(motion_value(*body_with(R"("type": "kinematic", "linear_velocity": [1, 0, 0], "kinematic_max_time": -1)").prescribed[0], 5) == 5);
+    CHECK(scene::motion_value(*body_with(R"("type": "kinematic", "linear_velocity": [1, 0, 0], "kinematic_max_time": -1)").prescribed[0],
+                              5) == 5);
 }
 
 TEST_CASE("Groups: bodies that are not dynamic share one", "[scene]") {
     const auto text = [&](const std::string& bodies) { return R"({"rigid_body_problem": {"rigid_bodies": [)" + bodies + "]}}"; };
     const auto body = [&](const std::string& keys) { return "{" + tet + ", " + keys + "}"; };
-    const auto scene = parse_scene(text(body(R"("type": "static", "group_id": 1, "position": [5, 0, 0])") + "," +
-                                        body(R"("type": "kinematic", "position": [10, 0, 0])") + "," + body(R"("group_id": 1)") + "," +
-                                        body(R"("group_id": 2, "position": [15, 0, 0])") + "," + body(R"("enabled": false)") + "," +
-                                        body(R"("group_id": -1, "position": [20, 0, 0])")),
-                                   "/tmp/a.json");
+    const auto scene =
+        scene_files::parse_scene(text(body(R"("type": "static", "group_id": 1, "position": [5, 0, 0])") + "," +
+                                      body(R"("type": "kinematic", "position": [10, 0, 0])") + "," + body(R"("group_id": 1)") + "," +
+                                      body(R"("group_id": 2, "position": [15, 0, 0])") + "," + body(R"("enabled": false)") + "," +
+                                      body(R"("group_id": -1, "position": [20, 0, 0])")),
+                                 "/tmp/a.json");
     REQUIRE(scene);
     REQUIRE(scene->bodies.size() == 5);
     const auto model = model::build_model(*scene);
@@ -127,8 +130,8 @@ TEST_CASE("Groups: bodies that are not dynamic share one", "[scene]") {
     CHECK(scene->bodies[4].name == "body-4");
 }
 
-TEST_CASE("What a Scene cannot hold is refused by name", "[scene]") {
-    const auto code_and_message = [](const base::Result<Scene>& result, const std::string& key) {
+TEST_CASE("What a scene::Scene cannot hold is refused by name", "[scene]") {
+    const auto code_and_message = [](const base::Result<scene::Scene>& result, const std::string& key) {
         REQUIRE(result.errors().size() == 1);
         CHECK(result.errors()[0].code == ErrorCode::unsupported);
         CHECK(contains(result.errors()[0].where + result.errors()[0].message, key));
@@ -145,18 +148,18 @@ TEST_CASE("Friction of a fixture", "[scene]") {
         REQUIRE(scene);
         return *scene;
     };
-    const Friction none = friction("", "").friction;
+    const scene::Friction none = friction("", "").friction;
     CHECK(none.mu == 0);
     CHECK(none.eps_v == 1e-3);
     CHECK(none.rounds == 1);
     const std::string rough = R"("coefficient_friction": 0.5,)";
-    const Scene some = friction(R"("friction_constraints": {"iterations": 3, "static_friction_speed_bound": 1e-5},)", rough);
+    const scene::Scene some = friction(R"("friction_constraints": {"iterations": 3, "static_friction_speed_bound": 1e-5},)", rough);
     CHECK(some.friction.mu == 0.5);
     CHECK(some.friction.eps_v == 1e-5);
     CHECK(some.friction.rounds == 3);
     CHECK(model::build_model(some)->friction.mu == MatrixX::Constant(1, 1, 0.5));
     CHECK(friction(R"("friction_constraints": {"iterations": -7},)", rough).friction.rounds < 0);
-    const Scene off = friction(R"("friction_constraints": {"iterations": 0},)", rough);
+    const scene::Scene off = friction(R"("friction_constraints": {"iterations": 0},)", rough);
     CHECK(off.friction.rounds == 0);
     CHECK(model::build_model(off)->friction.mu == MatrixX::Zero(1, 1));
 }
@@ -166,16 +169,16 @@ TEST_CASE("Torque is newton metres, once; time steppers are ours", "[scene]") {
     CHECK(body_with(R"("torque": [0, 300, 0], "is_dof_fixed": true)").torque == Vector3::Zero());
     CHECK(body_with(R"("#torque": [0, 1, 0])").torque == Vector3::Zero());
     const auto integrator = [](const std::string& name) { return read("", R"("time_stepper": ")" + name + "\",", "")->integrator; };
-    CHECK(integrator("default") == Integrator::implicit_euler);
-    CHECK(integrator("implicit_euler") == Integrator::implicit_euler);
-    CHECK(integrator("implicit_newmark") == Integrator::newmark);
-    CHECK(integrator("stabilized_newmark") == Integrator::newmark);
-    CHECK(integrator("leapfrog") == Integrator::implicit_euler);
+    CHECK(integrator("default") == scene::Integrator::implicit_euler);
+    CHECK(integrator("implicit_euler") == scene::Integrator::implicit_euler);
+    CHECK(integrator("implicit_newmark") == scene::Integrator::newmark);
+    CHECK(integrator("stabilized_newmark") == scene::Integrator::newmark);
+    CHECK(integrator("leapfrog") == scene::Integrator::implicit_euler);
     CHECK(read("", R"("time_stepper": "leapfrog",)", "")->warnings.size() == 1);
 }
 
 TEST_CASE("Faults in a fixture have their place", "[scene]") {
-    const auto fails = [](const base::Result<Scene>& result, ErrorCode code, const std::string& where) {
+    const auto fails = [](const base::Result<scene::Scene>& result, ErrorCode code, const std::string& where) {
         REQUIRE(result.errors().size() == 1);
         CHECK(static_cast<int>(result.errors()[0].code) == static_cast<int>(code));
         CHECK(contains(result.errors()[0].where, where));
@@ -185,10 +188,11 @@ TEST_CASE("Faults in a fixture have their place", "[scene]") {
     fails(read("", "", R"(, "is_dof_fixed": [true, false])"), ErrorCode::wrong_type, "/is_dof_fixed");
     fails(read(R"("timestep": -1,)", "", ""), ErrorCode::out_of_range, "#/timestep");
     fails(read("", "", R"(, "position": ["a", 0, 0])"), ErrorCode::wrong_type, "/position/0");
-    fails(parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{"vertices": [[0,0,0]], "faces": [[0,0,3]]}]}})", "a.json"),
+    fails(scene_files::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{"vertices": [[0,0,0]], "faces": [[0,0,3]]}]}})", "a.json"),
           ErrorCode::out_of_range, "/faces/0/2");
-    fails(parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{}]}})", "a.json"), ErrorCode::missing_key, "/rigid_bodies/0");
-    fails(parse_scene(R"({"rigid_body_problem": {}})", "a.json"), ErrorCode::out_of_range, "/rigid_bodies");
+    fails(scene_files::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [{}]}})", "a.json"), ErrorCode::missing_key,
+          "/rigid_bodies/0");
+    fails(scene_files::parse_scene(R"({"rigid_body_problem": {}})", "a.json"), ErrorCode::out_of_range, "/rigid_bodies");
 }
 
 TEST_CASE("Unknown keys of a fixture are warned of", "[scene]") {
@@ -201,10 +205,10 @@ TEST_CASE("Unknown keys of a fixture are warned of", "[scene]") {
 
 TEST_CASE("What a fixture's density is per follows from its geometry", "[scene]") {
     const auto kind = [](const std::string& body) { return scene_with_body(body).bodies[0].mass_kind; };
-    CHECK(kind(tet) == MassKind::volume);
-    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]], "faces": [[0,1,2]], "edges": [[0,1],[1,2],[2,0]])") == MassKind::area);
-    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]], "edges": [[0,1],[1,2]])") == MassKind::length);
-    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]])") == MassKind::vertex);
+    CHECK(kind(tet) == scene::MassKind::volume);
+    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]], "faces": [[0,1,2]], "edges": [[0,1],[1,2],[2,0]])") == scene::MassKind::area);
+    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]], "edges": [[0,1],[1,2]])") == scene::MassKind::length);
+    CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]])") == scene::MassKind::vertex);
 
     const auto model_of = [](const std::string& body) {
         const auto model = model::build_model(scene_with_body(body));
@@ -238,7 +242,7 @@ TEST_CASE("Components of a fixture's mesh become bodies", "[scene]") {
         R"("vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[5,0,0],[7,0,0],[5,2,0],[5,0,2]],
            "faces": [[4,6,5],[0,2,1],[0,1,3],[0,3,2],[1,2,3],[4,5,7],[4,7,6],[5,6,7]], "linear_velocity": [1, 2, 3], "angular_velocity": [90, 0, 0])";
     CHECK(scene_with_body(two).bodies.size() == 1);
-    const Scene scene = scene_with_body(two + R"(, "split_components": true)");
+    const scene::Scene scene = scene_with_body(two + R"(, "split_components": true)");
     REQUIRE(scene.bodies.size() == 2);
     CHECK(scene.bodies[0].name == "body-0");
     CHECK(scene.bodies[1].name == "body-1");
@@ -265,7 +269,7 @@ TEST_CASE("All of the paper's scenes load and build", "[scene]") {
     CHECK(files.size() >= 46);
     for (const auto& file : files) {
         CAPTURE(file);
-        const auto scene = read_scene(file);
+        const auto scene = scene_files::read_scene(file);
         REQUIRE(scene);
         const auto model = model::build_model(*scene);
         for (const auto& error : model.errors()) {
@@ -278,7 +282,7 @@ TEST_CASE("All of the paper's scenes load and build", "[scene]") {
 TEST_CASE("The scenes that must run load with what they say", "[scene]") {
     FETTLE_NEEDS_SHARED();
     const auto load = [](const std::string& name) {
-        const auto scene = read_scene(tests::support::shared_file("scenes/fixtures/" + name + ".json"));
+        const auto scene = scene_files::read_scene(tests::support::shared_file("scenes/fixtures/" + name + ".json"));
         REQUIRE(scene);
         const auto model = model::build_model(*scene);
         REQUIRE(model);
@@ -301,21 +305,21 @@ TEST_CASE("The scenes that must run load with what they say", "[scene]") {
     CHECK(scripted.bodies[3].script.poses.size() == 3);
     CHECK(scripted.bodies[3].script.poses[2].position.isApprox(Vector3(0, 3, 0)));
     CHECK(scripted.bodies[3].script.poses[2].rotation.isApprox(Matrix3::Identity()));
-    const auto house = read_scene(tests::support::shared_file("scenes/fixtures/friction/card-house/card-house-2-levels.json"));
+    const auto house = scene_files::read_scene(tests::support::shared_file("scenes/fixtures/friction/card-house/card-house-2-levels.json"));
     REQUIRE(house->warnings.size() == 1);
     CHECK(contains(house->warnings[0], "/rigid_bodies/[1-7]: the mesh is open"));
     CHECK(load("codimensional/edges/3-link-chain").bodies[1].moments(3, 3) > 0);
     const auto pendulum = load("pendulum/pendulum");
     CHECK(pendulum.dhat == 1e-4);
-    CHECK(pendulum.bodies[0].type == BodyType::static_body);
+    CHECK(pendulum.bodies[0].type == scene::BodyType::static_body);
     const auto piston = load("mechanisms/507-movements/092-piston");
     REQUIRE(piston.bodies.size() == 4);
     CHECK(piston.bodies[0].name == "crank");
-    CHECK(piston.bodies[0].type == BodyType::kinematic_body);
-    CHECK(motion_value(*piston.bodies[0].prescribed[5], 1) == Approx(-2 * pi));
+    CHECK(piston.bodies[0].type == scene::BodyType::kinematic_body);
+    CHECK(scene::motion_value(*piston.bodies[0].prescribed[5], 1) == Approx(-2 * pi));
     CHECK(piston.bodies[1].moments(3, 3) > 0);
 }
 
 }  // namespace
 
-}  // namespace fettle::core::scene::fixture_reader_test
+}  // namespace fettle::core::paper_scenes::fixture_reader_test

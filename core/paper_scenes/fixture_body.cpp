@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/fixture_body.hpp"
+#include "fettle/core/paper_scenes/fixture_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +14,12 @@
 #include "fettle/core/geometry/mesh_transforms.hpp"
 #include "fettle/core/mesh_files/find_mesh_file.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/paper_scenes/fixture_state.hpp"
 #include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene/fixture_state.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::paper_scenes {
 namespace {
 
 using base::ErrorCode;
@@ -77,30 +77,30 @@ std::array<bool, 6> fixed_dofs(const files::JsonNode& node) {
     return fixed;
 }
 
-BodyType body_type(const files::JsonNode& node, const std::array<bool, 6>& fixed) {
+scene::BodyType body_type(const files::JsonNode& node, const std::array<bool, 6>& fixed) {
     const std::string type = node.string().value_or("dynamic");
     if (type != "static" && type != "kinematic" && type != "dynamic") node.warn("unknown type " + node.shown() + " means static");
     const bool held = std::all_of(fixed.begin(), fixed.end(), [](bool f) { return f; });
-    if (held || (type != "dynamic" && type != "kinematic")) return BodyType::static_body;
-    return type == "kinematic" ? BodyType::kinematic_body : BodyType::dynamic_body;
+    if (held || (type != "dynamic" && type != "kinematic")) return scene::BodyType::static_body;
+    return type == "kinematic" ? scene::BodyType::kinematic_body : scene::BodyType::dynamic_body;
 }
 
 MeshMass look_at_mass(const geometry::Mesh& mesh) {
-    if (mesh.triangles.empty()) return {mesh.edges.empty() ? MassKind::vertex : MassKind::length};
+    if (mesh.triangles.empty()) return {mesh.edges.empty() ? scene::MassKind::vertex : scene::MassKind::length};
     const std::vector<geometry::HalfEdge> halves = geometry::sorted_half_edges(mesh);
     const std::vector<geometry::Opening> openings = geometry::openings(mesh.vertices, halves);
-    if (!geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return {MassKind::area};
+    if (!geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return {scene::MassKind::area};
     const Matrix4 moments = geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings);
-    if (!centre_of_mass(moments)) return {MassKind::area};
-    return {MassKind::volume, !(moments(3, 3) > 0), !solids::is_closed(halves)};
+    if (!scene::centre_of_mass(moments)) return {scene::MassKind::area};
+    return {scene::MassKind::volume, !(moments(3, 3) > 0), !solids::is_closed(halves)};
 }
 
 /// A solid that is inside out is turned: which side is out is not what its file meant to say. @return whether it is
-bool decide_mass(const files::JsonNode& node, const MeshMass& mass, const geometry::Mesh& mesh, Body& body) {
+bool decide_mass(const files::JsonNode& node, const MeshMass& mass, const geometry::Mesh& mesh, scene::Body& body) {
     body.mass_kind = mass.kind;
     body.mass_kind_given = false;
-    if (body.type != BodyType::dynamic_body || mesh.triangles.empty()) return false;
-    if (mass.kind == MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
+    if (body.type != scene::BodyType::dynamic_body || mesh.triangles.empty()) return false;
+    if (mass.kind == scene::MassKind::area) node.warn("the mesh is open: it is a shell, and its density is per square metre");
     if (mass.has_gaps && !mass.inside_out) node.warn("the mesh has gaps: it is a solid with these capped");
     if (mass.inside_out) node.warn("the mesh is inside out: its triangles are turned");
     return mass.inside_out;
@@ -113,10 +113,10 @@ geometry::Mesh made(const MeshSource& source) {
     return mesh;
 }
 
-void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
+void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, scene::Body& body) {
     const double stop = node["kinematic_max_time"].unless_null().number().value_or(-1);
     for (int dof = 0; dof < 6; ++dof) {
-        MotionCurve curve;
+        scene::MotionCurve curve;
         curve.rate = dof < 3 ? body.linear_velocity[dof] : body.angular_velocity[dof - 3];
         if (fixed[dof]) curve.rate = 0;
         if (stop >= 0) curve.stop_time = stop;
@@ -127,18 +127,18 @@ void read_kinematic(const files::JsonNode& node, const std::array<bool, 6>& fixe
     body.script = read_kinematic_poses(node["kinematic_poses"].unless_null(), body, fixed_rotations, timestep, stop_time);
 }
 
-void read_motion(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, Body& body) {
+void read_motion(const files::JsonNode& node, const std::array<bool, 6>& fixed, double timestep, scene::Body& body) {
     body.linear_velocity = fixture_vector(node["linear_velocity"].unless_null()).value_or(Vector3::Zero());
-    body.angular_velocity = radians(1) * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
+    body.angular_velocity = scene::radians(1) * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
     body.force = fixture_vector(node["force"].unless_null()).value_or(Vector3::Zero());
     body.torque = fixture_vector(node["torque"].unless_null()).value_or(Vector3::Zero());
-    if (body.type == BodyType::kinematic_body) read_kinematic(node, fixed, timestep, body);
-    if (body.type != BodyType::dynamic_body) {
+    if (body.type == scene::BodyType::kinematic_body) read_kinematic(node, fixed, timestep, body);
+    if (body.type != scene::BodyType::dynamic_body) {
         body.linear_velocity = body.angular_velocity = body.force = body.torque = Vector3::Zero();
     }
-    if (body.type == BodyType::static_body) body.prescribed.fill(MotionCurve{});
-    for (int dof = 0; dof < 6 && body.type == BodyType::dynamic_body; ++dof) {
-        if (fixed[dof]) body.prescribed[dof] = MotionCurve{};
+    if (body.type == scene::BodyType::static_body) body.prescribed.fill(scene::MotionCurve{});
+    for (int dof = 0; dof < 6 && body.type == scene::BodyType::dynamic_body; ++dof) {
+        if (fixed[dof]) body.prescribed[dof] = scene::MotionCurve{};
     }
 }
 
@@ -233,9 +233,9 @@ std::shared_ptr<const geometry::Mesh> FixtureBodies::inline_mesh(const files::Js
 /// Everything but mass and motion, which a component of a split body has for itself.
 FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) const {
     Placed out;
-    Body& body = out.body;
+    scene::Body& body = out.body;
     body.where = node.where();
-    body.mesh_policy = MeshPolicy::lenient;
+    body.mesh_policy = scene::MeshPolicy::lenient;
     const files::JsonNode file = node["mesh"].unless_null();
     const auto name = file.string();
     if (file.exists() && !name) return {};
@@ -255,7 +255,7 @@ FixtureBodies::Placed FixtureBodies::placed(const files::JsonNode& node) const {
     const files::JsonNode rotation = node["rotation"].unless_null();
     if (rotation.is_number()) rotation.fail(ErrorCode::unsupported, no_2d);
     if (rotation.exists() && !rotation.is_number()) {
-        body.pose.rotation = rotation_from_degrees(fixture_vector(rotation).value_or(Vector3::Zero()));
+        body.pose.rotation = scene::rotation_from_degrees(fixture_vector(rotation).value_or(Vector3::Zero()));
     }
     body.pose.position = fixture_vector(node["position"].unless_null()).value_or(Vector3::Zero());
     body.group = std::max(-1, node["group_id"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(-1));
@@ -275,16 +275,17 @@ std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, d
     if (!node["enabled"].unless_null().boolean().value_or(true)) return {};
     Placed found = placed(node);
     if (found.mesh == nullptr) return {};
-    Body& body = found.body;
+    scene::Body& body = found.body;
     const auto fixed = fixed_dofs(node["is_dof_fixed"].unless_null());
     body.type = body_type(node["type"].unless_null(), fixed);
     const files::JsonNode density = node["density"].unless_null();
-    body.density = (body.type == BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
-    body.density_given = density.exists() || body.type == BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
+    body.density = (body.type == scene::BodyType::dynamic_body ? density.number(files::positive) : density.number()).value_or(1000);
+    body.density_given =
+        density.exists() || body.type == scene::BodyType::dynamic_body;  // for a dynamic body 1000 is the format's own default
     MeshSource source{found.mesh, found.factors};
     const bool split = node["split_components"].unless_null().boolean().value_or(false);
     std::vector<FixtureBody> bodies;
-    if (!split && !found.file.empty() && body.type != BodyType::kinematic_body) {  // whose script is about its mesh's centre
+    if (!split && !found.file.empty() && body.type != scene::BodyType::kinematic_body) {  // whose script is about its mesh's centre
         const MeshMass mass = mass_of(found, 0, [&] { return made(source); });
         source.turned = decide_mass(node, mass, *found.mesh, body);
         read_motion(node, fixed, timestep, body);
@@ -295,7 +296,7 @@ std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, d
     for (geometry::Mesh& mesh : split ? geometry::split_shells(made(source)) : std::vector<geometry::Mesh>{made(source)}) {
         const MeshMass mass = mass_of(found, part++, [&] { return mesh; });
         bodies.push_back({body, {}});
-        Body& last = bodies.back().body;
+        scene::Body& last = bodies.back().body;
         if (decide_mass(node, mass, mesh, last)) geometry::turn_triangles(mesh);
         last.mesh = std::move(mesh);
         read_motion(node, fixed, timestep, last);
@@ -303,7 +304,7 @@ std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, d
     return bodies;
 }
 
-void FixtureBodies::fill(std::vector<Body>& bodies, const std::vector<MeshSource>& sources) {
+void FixtureBodies::fill(std::vector<scene::Body>& bodies, const std::vector<MeshSource>& sources) {
     base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
         if (sources[i].mesh != nullptr) bodies[i].mesh = made(sources[i]);
     });
@@ -317,4 +318,4 @@ MeshMass FixtureBodies::mass_of(const Placed& from, std::size_t part, const std:
     return entry->second;
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::paper_scenes

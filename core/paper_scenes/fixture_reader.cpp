@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/fixture_reader.hpp"
+#include "fettle/core/paper_scenes/fixture_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "fettle/core/scene/fixture_body.hpp"
-#include "fettle/core/scene/fixture_state.hpp"
+#include "fettle/core/paper_scenes/fixture_body.hpp"
+#include "fettle/core/paper_scenes/fixture_state.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::paper_scenes {
 namespace {
 
 using base::ErrorCode;
@@ -45,9 +45,9 @@ const std::vector<std::string_view> solver_keys{
 
 class FixtureReader {
 public:
-    FixtureReader(files::JsonDocument& document, const ReadOptions& options) : document_(document), bodies_(document, options) {}
+    FixtureReader(files::JsonDocument& document, const scene::ReadOptions& options) : document_(document), bodies_(document, options) {}
 
-    base::Result<Scene> read() {
+    base::Result<scene::Scene> read() {
         const files::JsonNode root = scene_root();
         root.warn_of_other_keys(top_keys);
         scene_.path = document_.path();
@@ -110,7 +110,7 @@ private:
     void read_stepper(const files::JsonNode& node) {
         const std::string stepper = node.string().value_or("default");
         if (stepper == "implicit_newmark" || stepper == "stabilized_newmark") {
-            scene_.integrator = Integrator::newmark;
+            scene_.integrator = scene::Integrator::newmark;
         } else if (stepper != "default" && stepper != "implicit_euler") {
             node.warn("unknown `time_stepper` " + node.shown() + "; implicit_euler is used");
         }
@@ -118,7 +118,7 @@ private:
 
     void read_friction(const files::JsonNode& coefficient, const files::JsonNode& constraints) {
         constraints.warn_of_other_keys(friction_keys);
-        Friction& friction = scene_.friction;
+        scene::Friction& friction = scene_.friction;
         friction.mu = coefficient.number(files::not_negative).value_or(0);
         friction.eps_v = constraints["static_friction_speed_bound"].unless_null().number(files::positive).value_or(friction.eps_v);
         friction.rounds = std::max(-1, constraints["iterations"].unless_null().integer(std::numeric_limits<int>::min() + 1).value_or(1));
@@ -137,7 +137,7 @@ private:
         if (criterion.string().value_or("velocity") != "velocity") criterion.warn("only the `velocity` criterion is used");
         const bool absolute = node["is_velocity_conv_tol_abs"].unless_null().boolean().value_or(false);
         const double tolerance = node["velocity_conv_tol"].unless_null().number(files::positive).value_or(1e-2);
-        const double diagonal = bounding_diagonal(scene_);
+        const double diagonal = scene::bounding_diagonal(scene_);
         if (absolute || diagonal > 0) scene_.velocity_tolerance = absolute ? tolerance : tolerance * diagonal;
     }
 
@@ -146,16 +146,16 @@ private:
     void merge_groups() {
         std::set<int> fixed_ids;
         int highest = -1;
-        for (const Body& body : scene_.bodies) {
-            if (body.type != BodyType::dynamic_body) fixed_ids.insert(body.group);
+        for (const scene::Body& body : scene_.bodies) {
+            if (body.type != scene::BodyType::dynamic_body) fixed_ids.insert(body.group);
             highest = std::max(highest, body.group);
         }
         fixed_ids.erase(-1);
-        const bool joined = std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [&](const Body& body) {
-            return body.type == BodyType::dynamic_body && fixed_ids.contains(body.group);
+        const bool joined = std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [&](const scene::Body& body) {
+            return body.type == scene::BodyType::dynamic_body && fixed_ids.contains(body.group);
         });
-        for (Body& body : scene_.bodies) {
-            if (body.type != BodyType::dynamic_body || fixed_ids.contains(body.group)) body.group = joined ? highest + 1 : -1;
+        for (scene::Body& body : scene_.bodies) {
+            if (body.type != scene::BodyType::dynamic_body || fixed_ids.contains(body.group)) body.group = joined ? highest + 1 : -1;
         }
     }
 
@@ -163,10 +163,10 @@ private:
     void make_names_unique() {
         std::map<std::string, int> count, next;
         std::set<std::string> taken;
-        for (const Body& body : scene_.bodies) {
+        for (const scene::Body& body : scene_.bodies) {
             if (++count[body.name] == 1) taken.insert(body.name);
         }
-        for (Body& body : scene_.bodies) {
+        for (scene::Body& body : scene_.bodies) {
             const std::string stem = body.name;
             if (count[stem] == 1) continue;
             do body.name = stem + "-" + std::to_string(next[stem]++);
@@ -176,7 +176,7 @@ private:
 
     files::JsonDocument& document_;
     FixtureBodies bodies_;
-    Scene scene_;
+    scene::Scene scene_;
 };
 
 }  // namespace
@@ -188,8 +188,8 @@ bool is_fixture(const files::JsonNode& root) {
     return args.is_object() && args["rigid_body_problem"].exists();
 }
 
-base::Result<Scene> read_fixture(files::JsonDocument& document, const ReadOptions& options) {
+base::Result<scene::Scene> read_fixture(files::JsonDocument& document, const scene::ReadOptions& options) {
     return FixtureReader(document, options).read();
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::paper_scenes

@@ -14,7 +14,7 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/read_options.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 
 using MaterialDensities = std::map<std::string, std::optional<double>>;  ///< of all materials of a file, where stated [kg/m^3]
 
@@ -24,33 +24,33 @@ std::optional<std::string> read_material_name(const files::JsonNode& node, const
 class SceneBodies {
 public:
     /// All outlive this object. @param unit  of lengths [m].
-    SceneBodies(files::JsonDocument& document, const ReadOptions& options, double unit, const MaterialDensities& densities)
+    SceneBodies(files::JsonDocument& document, const scene::ReadOptions& options, double unit, const MaterialDensities& densities)
         : document_(document), options_(options), unit_(unit), densities_(densities) {}
 
     /// One body, or one per edge-connected component (`split_components`). Faults go to the document; values read after one are never used.
-    std::vector<Body> read(const files::JsonNode& node);
+    std::vector<scene::Body> read(const files::JsonNode& node);
 
     /// Gives numbers to the groups that have names; after all bodies have been read.
-    void number_groups(std::vector<Body>& bodies) const;
+    void number_groups(std::vector<scene::Body>& bodies) const;
 
 private:
-    void read_name(const files::JsonNode& node, Body& body);
+    void read_name(const files::JsonNode& node, scene::Body& body);
     /// File, metres of its unit, scale factors: what is the same in all is the same mesh.
     using MeshSource = std::tuple<std::string, double, std::array<double, 3>>;
 
-    MeshSource read_geometry(const files::JsonNode& node, Body& body);
-    void settle_mesh(const files::JsonNode& node, const MeshSource& source, Body& body);
-    MeshSource read_mesh_file(const files::JsonNode& node, Body& body);
-    void make_shape(const files::JsonNode& node, Body& body);
-    void read_inline(const files::JsonNode& node, Body& body);
-    void read_mass(const files::JsonNode& node, Body& body);
-    void read_inertial(const files::JsonNode& node, Body& body);
-    void read_group(const files::JsonNode& node, Body& body);
-    std::vector<Body> components(const files::JsonNode& node, Body body);
+    MeshSource read_geometry(const files::JsonNode& node, scene::Body& body);
+    void settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body);
+    MeshSource read_mesh_file(const files::JsonNode& node, scene::Body& body);
+    void make_shape(const files::JsonNode& node, scene::Body& body);
+    void read_inline(const files::JsonNode& node, scene::Body& body);
+    void read_mass(const files::JsonNode& node, scene::Body& body);
+    void read_inertial(const files::JsonNode& node, scene::Body& body);
+    void read_group(const files::JsonNode& node, scene::Body& body);
+    std::vector<scene::Body> components(const files::JsonNode& node, scene::Body body);
     void report(const base::Errors& errors, const files::JsonNode& node);
 
     files::JsonDocument& document_;
-    const ReadOptions& options_;
+    const scene::ReadOptions& options_;
     double unit_;
     const MaterialDensities& densities_;
     std::map<std::pair<std::string, double>, geometry::Mesh> files_;  ///< already read, by file and unit
@@ -59,4 +59,4 @@ private:
     std::vector<std::string> group_names_;  ///< of group -2, -3, ... until number_groups
 };
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

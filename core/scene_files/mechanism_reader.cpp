@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/mechanism_reader.hpp"
+#include "fettle/core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>
 #include <set>
@@ -9,7 +9,7 @@
 #include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/joint_kind.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 namespace {
 
 using base::ErrorCode;
@@ -24,17 +24,17 @@ struct CoordinateUnit {
     std::optional<double> read(const JsonNode& node) const {
         if (!is_angle) return node.length(length);
         const auto degrees = node.number();
-        return degrees ? std::optional(radians(*degrees)) : std::nullopt;
+        return degrees ? std::optional(scene::radians(*degrees)) : std::nullopt;
     }
 };
 
 class MechanismReader {
 public:
-    MechanismReader(double unit, const std::vector<Body>& bodies) : unit_(unit), bodies_(bodies) {
-        for (const Body& body : bodies) body_names_.push_back(body.name);
+    MechanismReader(double unit, const std::vector<scene::Body>& bodies) : unit_(unit), bodies_(bodies) {
+        for (const scene::Body& body : bodies) body_names_.push_back(body.name);
     }
 
-    Mechanism read(const JsonNode& root) {
+    scene::Mechanism read(const JsonNode& root) {
         for (const JsonNode& node : root["joints"].elements()) read_joint(node);
         for (const JsonNode& node : root["springs"].elements()) read_spring(node, true);
         for (const JsonNode& node : root["dampers"].elements()) read_spring(node, false);
@@ -71,14 +71,14 @@ private:
     }
 
     kinematics::Pose pose_of(const std::string& body) const {
-        for (const Body& b : bodies_)
+        for (const scene::Body& b : bodies_)
             if (b.name == body) return b.pose;
         return {};
     }
 
     // `a` (absent: the world) and `b`; where each end is: in its own frame, or where the other is at the start, or both at a place of the
     // world.
-    void read_ends(const JsonNode& node, bool with_axis, Attachment& a, Attachment& b) {
+    void read_ends(const JsonNode& node, bool with_axis, scene::Attachment& a, scene::Attachment& b) {
         if (node["a"].exists()) a.body = read_choice(node["a"], body_names_, "body");
         if (node["b"].exists()) b.body = read_choice(node["b"], body_names_, "body");
         if (!node["a"].exists() && !node["b"].exists())
@@ -116,8 +116,8 @@ private:
         if (with_axis) read_pair("axis", 0, direction, a.axis, b.axis);
     }
 
-    CoordinateForces read_forces(const JsonNode& node, const CoordinateUnit& unit) {
-        CoordinateForces out;
+    scene::CoordinateForces read_forces(const JsonNode& node, const CoordinateUnit& unit) {
+        scene::CoordinateForces out;
         out.stiffness = node["stiffness"].number(files::not_negative).value_or(0);
         out.rest = unit.read(node["rest"]);
         out.preload = node["preload"].number().value_or(0);
@@ -145,15 +145,15 @@ private:
             node.allow_keys({});
             return;
         }
-        Joint joint;
+        scene::Joint joint;
         joint.where = node.where();
         joint.name = read_name(node);
         std::vector<std::string_view> names;
-        for (const JointKindInfo& info : joint_kinds()) names.push_back(info.name);
+        for (const scene::JointKindInfo& info : scene::joint_kinds()) names.push_back(info.name);
         const auto kind = node.require("type").choice(names);
         if (!kind) return;
-        joint.kind = static_cast<JointKind>(std::find(names.begin(), names.end(), *kind) - names.begin());
-        if (couples_joints(joint.kind))
+        joint.kind = static_cast<scene::JointKind>(std::find(names.begin(), names.end(), *kind) - names.begin());
+        if (scene::couples_joints(joint.kind))
             read_coupling(node, joint);
         else
             read_lower_pair(node, joint);
@@ -161,29 +161,31 @@ private:
         out_.joints.push_back(std::move(joint));
     }
 
-    static const JointKindInfo& info_of(JointKind kind) { return joint_kinds()[static_cast<std::size_t>(kind)]; }
-    static bool has_coordinate(JointKind kind) { return !info_of(kind).coordinate.empty(); }
+    static const scene::JointKindInfo& info_of(scene::JointKind kind) { return scene::joint_kinds()[static_cast<std::size_t>(kind)]; }
+    static bool has_coordinate(scene::JointKind kind) { return !info_of(kind).coordinate.empty(); }
 
-    static std::vector<std::string_view> keys_of(JointKind kind) {
+    static std::vector<std::string_view> keys_of(scene::JointKind kind) {
         std::vector<std::string_view> keys{"name", "type"};
         keys.insert(keys.end(), info_of(kind).keys.begin(), info_of(kind).keys.end());
         return has_coordinate(kind) ? with_forces(keys) : keys;
     }
 
-    CoordinateUnit unit_of(JointKind kind) const { return {kind == JointKind::revolute || kind == JointKind::screw, unit_}; }
+    CoordinateUnit unit_of(scene::JointKind kind) const {
+        return {kind == scene::JointKind::revolute || kind == scene::JointKind::screw, unit_};
+    }
 
-    void read_lower_pair(const JsonNode& node, Joint& joint) {
-        const bool has_axis = joint.kind != JointKind::ball && joint.kind != JointKind::fixed;
+    void read_lower_pair(const JsonNode& node, scene::Joint& joint) {
+        const bool has_axis = joint.kind != scene::JointKind::ball && joint.kind != scene::JointKind::fixed;
         node.allow_keys(keys_of(joint.kind));
         read_ends(node, has_axis, joint.a, joint.b);
         if (!has_axis) joint.b.axis = pose_of(joint.b.body).rotation.transpose() * (pose_of(joint.a.body).rotation * joint.a.axis);
-        if (joint.kind == JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
+        if (joint.kind == scene::JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
         if (has_coordinate(joint.kind)) joint.forces = read_forces(node, unit_of(joint.kind));
         joint.collide = node["collide"].boolean().value_or(false);
     }
 
-    void read_coupling(const JsonNode& node, Joint& joint) {
-        const bool gear = joint.kind == JointKind::gear;
+    void read_coupling(const JsonNode& node, scene::Joint& joint) {
+        const bool gear = joint.kind == scene::JointKind::gear;
         node.allow_keys(keys_of(joint.kind));
         const std::vector<JsonNode> of = node.require("of").elements();
         if (of.size() == 2)
@@ -201,7 +203,7 @@ private:
     }
 
     // N_a angle_a + N_b angle_b = constant.
-    static void read_teeth(const JsonNode& node, Joint& joint) {
+    static void read_teeth(const JsonNode& node, scene::Joint& joint) {
         if (node["ratio"].exists()) node["ratio"].fail(ErrorCode::inconsistent, "either `teeth` or `ratio`, not both");
         const auto teeth = node["teeth"].numbers().value_or(std::vector<double>{});
         if (teeth.size() != 2 || teeth[0] == 0 || teeth[1] == 0)
@@ -210,20 +212,20 @@ private:
             joint.ratio = -teeth[0] / teeth[1];
     }
 
-    const Joint* find_joint(const std::string& name) const {
-        for (const Joint& joint : out_.joints)
+    const scene::Joint* find_joint(const std::string& name) const {
+        for (const scene::Joint& joint : out_.joints)
             if (joint.name == name) return &joint;
         return nullptr;
     }
 
     // Of a joint by name; a length where there is none.
     CoordinateUnit unit_at(const std::string& joint) const {
-        const Joint* found = find_joint(joint);
+        const scene::Joint* found = find_joint(joint);
         return found ? unit_of(found->kind) : CoordinateUnit{false, unit_};
     }
 
     void read_spring(const JsonNode& node, bool is_spring) {
-        Spring spring;
+        scene::Spring spring;
         spring.where = node.where();
         std::vector<std::string_view> keys{"name", "joint", "a", "b", "point", "point_a", "point_b", "damping"};
         node.allow_keys(is_spring ? with_forces(keys) : keys);
@@ -244,8 +246,8 @@ private:
         out_.springs.push_back(std::move(spring));
     }
 
-    Curve read_curve(const JsonNode& node, const auto& amount) const {
-        Curve curve;
+    scene::Curve read_curve(const JsonNode& node, const auto& amount) const {
+        scene::Curve curve;
         if (!node.is_object()) {
             curve.times = {0};
             curve.values = {amount(node).value_or(0)};
@@ -254,12 +256,12 @@ private:
         node.allow_keys({"rate", "times", "values", "stop_time", "profile"});
         static const std::vector<std::string_view> kinds{"linear", "cubic", "trapezoid", "control_points"};
         const std::string kind = node["profile"].choice(kinds).value_or("linear");
-        curve.kind = static_cast<CurveKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+        curve.kind = static_cast<scene::CurveKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
         curve.rate = amount(node["rate"]).value_or(0);
         curve.stop_time = node["stop_time"].number(files::not_negative);
         curve.times = node["times"].numbers().value_or(std::vector<double>{});
         for (const JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value).value_or(0));
-        const bool spline = curve.kind == CurveKind::control_points;
+        const bool spline = curve.kind == scene::CurveKind::control_points;
         if (spline && (curve.times.size() != 2 || curve.values.size() < 4))
             node.fail(ErrorCode::inconsistent, "`control_points` take two `times`, the first and the last, and at least 4 `values`");
         else if (!spline && curve.times.size() != curve.values.size())
@@ -274,7 +276,7 @@ private:
     void read_motor(const JsonNode& node) {
         node.allow_keys({"name", "joint", "angle", "travel", "speed", "torque", "force"});
         if (!node.is_object()) return;
-        Motor motor;
+        scene::Motor motor;
         motor.where = node.where();
         motor.name = read_name(node);
         motor.joint = read_choice(node.require("joint"), joint_names_, "joint");
@@ -294,7 +296,7 @@ private:
         if (node[motion].exists()) motor.curve = read_curve(node[motion], amount);
         if (node["speed"].exists()) motor.curve.rate = unit.read(node["speed"]).value_or(0);
         if (node[push].exists()) {
-            motor.kind = MotorKind::effort;
+            motor.kind = scene::MotorKind::effort;
             motor.curve = read_curve(node[push], effort);
         }
         out_.motors.push_back(std::move(motor));
@@ -303,7 +305,7 @@ private:
     void read_load(const JsonNode& node) {
         node.allow_keys({"name", "body", "point", "force"});
         if (!node.is_object()) return;
-        PointLoad load;
+        scene::PointLoad load;
         load.where = node.where();
         load.name = read_name(node);
         load.body = read_choice(node.require("body"), body_names_, "body");
@@ -313,16 +315,16 @@ private:
     }
 
     double unit_;
-    const std::vector<Body>& bodies_;
+    const std::vector<scene::Body>& bodies_;
     std::vector<std::string> body_names_, joint_names_;
     std::set<std::string> names_;
-    Mechanism out_;
+    scene::Mechanism out_;
 };
 
 }  // namespace
 
-Mechanism read_mechanism(const JsonNode& root, double unit, const std::vector<Body>& bodies) {
+scene::Mechanism read_mechanism(const JsonNode& root, double unit, const std::vector<scene::Body>& bodies) {
     return MechanismReader(unit, bodies).read(root);
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

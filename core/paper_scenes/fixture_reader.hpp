@@ -7,12 +7,12 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/read_options.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::paper_scenes {
 
 /// Is this the root of such a file (or of a saved simulation, which holds its scene under `args`)?
 bool is_fixture(const files::JsonNode& root);
 
 /// `document` stays the owner of faults and warnings. @return the scene, or every fault.
-base::Result<Scene> read_fixture(files::JsonDocument& document, const ReadOptions& options);
+base::Result<scene::Scene> read_fixture(files::JsonDocument& document, const scene::ReadOptions& options);
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::paper_scenes

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/scene/fixture_reader.hpp"
-#include "fettle/core/scene/mechanism_reader.hpp"
-#include "fettle/core/scene/scene_body.hpp"
+#include "fettle/core/paper_scenes/fixture_reader.hpp"
+#include "fettle/core/scene_files/mechanism_reader.hpp"
+#include "fettle/core/scene_files/scene_body.hpp"
 
-namespace fettle::core::scene {
+namespace fettle::core::scene_files {
 namespace {
 
 using base::ErrorCode;
@@ -17,9 +17,9 @@ using base::ErrorCode;
 /// Reads one file of our own format. Faults go to the document; values read after a fault are never used.
 class SceneReader {
 public:
-    SceneReader(files::JsonDocument& document, const ReadOptions& options) : document_(document), options_(options) {}
+    SceneReader(files::JsonDocument& document, const scene::ReadOptions& options) : document_(document), options_(options) {}
 
-    base::Result<Scene> read() {
+    base::Result<scene::Scene> read() {
         const files::JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_scene", "description", "units", "gravity", "timestep", "end_time", "integrator", "contact",
                          "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
@@ -48,10 +48,10 @@ public:
 private:
     void read_integrator(const files::JsonNode& node) {
         const std::string name = node.choice({"implicit_euler", "bdf2", "newmark", "quasi_static"}).value_or("implicit_euler");
-        scene_.integrator = name == "bdf2"           ? Integrator::bdf2
-                            : name == "newmark"      ? Integrator::newmark
-                            : name == "quasi_static" ? Integrator::quasi_static
-                                                     : Integrator::implicit_euler;
+        scene_.integrator = name == "bdf2"           ? scene::Integrator::bdf2
+                            : name == "newmark"      ? scene::Integrator::newmark
+                            : name == "quasi_static" ? scene::Integrator::quasi_static
+                                                     : scene::Integrator::implicit_euler;
     }
 
     void read_contact(const files::JsonNode& node) {
@@ -79,7 +79,7 @@ private:
     void read_friction(const files::JsonNode& node) {
         if (!node.exists()) return;
         node.allow_keys({"mu", "pairs", "eps_v", "rounds"});
-        Friction& friction = scene_.friction;
+        scene::Friction& friction = scene_.friction;
         friction.mu = node["mu"].number(files::not_negative).value_or(0);
         friction.eps_v = node["eps_v"].length(unit_, files::positive).value_or(friction.eps_v);
         const files::JsonNode rounds = node["rounds"];
@@ -104,22 +104,22 @@ private:
     void read_bodies(const files::JsonNode& node) {
         SceneBodies bodies(document_, options_, unit_, densities_);
         for (const files::JsonNode& entry : node.elements()) {
-            for (Body& body : bodies.read(entry)) scene_.bodies.push_back(std::move(body));
+            for (scene::Body& body : bodies.read(entry)) scene_.bodies.push_back(std::move(body));
         }
         if (node.is_array() && scene_.bodies.empty()) node.fail(ErrorCode::out_of_range, "a scene needs a body");
         bodies.number_groups(scene_.bodies);
     }
 
     files::JsonDocument& document_;
-    const ReadOptions& options_;
-    Scene scene_;
+    const scene::ReadOptions& options_;
+    scene::Scene scene_;
     double unit_ = 1;
     MaterialDensities densities_;
 };
 
-base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptions& options) {
+base::Result<scene::Scene> read_document(files::JsonDocument& document, const scene::ReadOptions& options) {
     const files::JsonNode root = document.root();
-    if (is_fixture(root)) return read_fixture(document, options);
+    if (paper_scenes::is_fixture(root)) return paper_scenes::read_fixture(document, options);
     if (!root.is_object() || !root["fettle_scene"].exists()) {
         const bool design = root.is_object() && root["fettle_design"].exists();
         return base::Error{design ? ErrorCode::inconsistent : ErrorCode::missing_key, root.where(),
@@ -132,16 +132,16 @@ base::Result<Scene> read_document(files::JsonDocument& document, const ReadOptio
 
 }  // namespace
 
-base::Result<Scene> read_scene(const std::string& path, const ReadOptions& options) {
+base::Result<scene::Scene> read_scene(const std::string& path, const scene::ReadOptions& options) {
     auto document = files::JsonDocument::read(path);
     if (!document) return document.errors();
     return read_document(*document, options);
 }
 
-base::Result<Scene> parse_scene(const std::string& text, const std::string& path, const ReadOptions& options) {
+base::Result<scene::Scene> parse_scene(const std::string& text, const std::string& path, const scene::ReadOptions& options) {
     auto document = files::JsonDocument::parse(text, path);
     if (!document) return document.errors();
     return read_document(*document, options);
 }
 
-}  // namespace fettle::core::scene
+}  // namespace fettle::core::scene_files

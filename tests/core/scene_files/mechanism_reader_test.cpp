@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Joints, springs, dampers, motors and loads of scene files: what is read, and what is refused.
-#include "fettle/core/scene/mechanism_reader.hpp"
+#include "fettle/core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 
 #include "fettle/core/scene/curve.hpp"
-#include "fettle/tests/core/scene/scene_workshop.hpp"
+#include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
-namespace fettle::core::scene::mechanism_reader_test {
+namespace fettle::core::scene_files::mechanism_reader_test {
 
 namespace {
 
@@ -49,10 +49,10 @@ TEST_CASE("a mechanism is read in SI, each end in its body's frame", "[mechanism
     const Workshop shop;
     const auto scene = shop.read(two_boxes());
     REQUIRE(scene.errors().empty());
-    const Mechanism& m = scene->mechanism;
+    const scene::Mechanism& m = scene->mechanism;
     REQUIRE(m.joints.size() == 5);
-    const Joint& hinge = m.joints[0];
-    CHECK(hinge.kind == JointKind::revolute);
+    const scene::Joint& hinge = m.joints[0];
+    CHECK(hinge.kind == scene::JointKind::revolute);
     CHECK(hinge.a.body.empty());
     CHECK(hinge.a.point.isApprox(Vector3(0.1, 0.01, 0)));
     CHECK(hinge.b.body == "arm");
@@ -61,7 +61,7 @@ TEST_CASE("a mechanism is read in SI, each end in its body's frame", "[mechanism
     CHECK(hinge.forces.rest.value() == Approx(30 * degree));
     CHECK(hinge.forces.friction == 0.02);
     CHECK(!hinge.collide);
-    const Joint& slide = m.joints[1];
+    const scene::Joint& slide = m.joints[1];
     CHECK(slide.a.point.isApprox(Vector3(0.001, 0.002, 0.003)));
     CHECK(slide.b.point.isApprox(Vector3(0.01, 0, 0)));
     CHECK(slide.a.axis.isApprox(Vector3(0, -1, 0)));  // of the world's x in the turned arm
@@ -78,10 +78,10 @@ TEST_CASE("a mechanism is read in SI, each end in its body's frame", "[mechanism
     CHECK(m.springs[1].forces.rest.value() == Approx(10 * degree));
     CHECK(m.springs[2].forces.damping == 7);
     REQUIRE(m.motors.size() == 3);
-    CHECK(m.motors[0].curve.kind == CurveKind::cubic);
-    CHECK(curve_value(m.motors[0].curve, 1) == Approx(100 * degree));
+    CHECK(m.motors[0].curve.kind == scene::CurveKind::cubic);
+    CHECK(scene::curve_value(m.motors[0].curve, 1) == Approx(100 * degree));
     CHECK(m.motors[1].curve.rate == Approx(0.02));
-    CHECK(m.motors[2].kind == MotorKind::effort);
+    CHECK(m.motors[2].kind == scene::MotorKind::effort);
     CHECK(m.motors[2].curve.values.at(0) == 0.5);
     CHECK(m.loads.at(0).force == Vector3(1, 2, 3));
     CHECK(m.loads.at(0).point.isApprox(Vector3(0.001, 0, 0)));
@@ -123,34 +123,34 @@ TEST_CASE("faults of mechanisms are told with their places", "[mechanism]") {
 }
 
 TEST_CASE("curves run through their entries, smoothly where they say so", "[mechanism]") {
-    Curve curve;
+    scene::Curve curve;
     curve.times = {1, 2, 4};
     curve.values = {3, 5, 4};
-    for (const CurveKind kind : {CurveKind::linear, CurveKind::cubic, CurveKind::trapezoid}) {
+    for (const scene::CurveKind kind : {scene::CurveKind::linear, scene::CurveKind::cubic, scene::CurveKind::trapezoid}) {
         curve.kind = kind;
         CAPTURE(static_cast<int>(kind));
-        for (std::size_t k = 0; k < 3; ++k) CHECK(curve_value(curve, curve.times[k]) == Approx(curve.values[k]).epsilon(1e-14));
-        CHECK(curve_value(curve, 0) == 3);
-        CHECK(curve_value(curve, 9) == 4);
+        for (std::size_t k = 0; k < 3; ++k) CHECK(scene::curve_value(curve, curve.times[k]) == Approx(curve.values[k]).epsilon(1e-14));
+        CHECK(scene::curve_value(curve, 0) == 3);
+        CHECK(scene::curve_value(curve, 9) == 4);
         const double h = 1e-6;
         for (const double t : {1.0, 1.4, 2.0, 2.7, 4.0}) {
-            const double before = (curve_value(curve, t) - curve_value(curve, t - h)) / h,
-                         after = (curve_value(curve, t + h) - curve_value(curve, t)) / h;
-            if (kind != CurveKind::linear) CHECK(std::abs(before - after) < 1e-4);
+            const double before = (scene::curve_value(curve, t) - scene::curve_value(curve, t - h)) / h,
+                         after = (scene::curve_value(curve, t + h) - scene::curve_value(curve, t)) / h;
+            if (kind != scene::CurveKind::linear) CHECK(std::abs(before - after) < 1e-4);
         }
     }
-    curve.kind = CurveKind::trapezoid;
-    CHECK(curve_value(curve, 1.5) == Approx(4));
-    CHECK((curve_value(curve, 1.51) - curve_value(curve, 1.49)) / 0.02 == Approx(3));  // 1.5 times the mean speed
+    curve.kind = scene::CurveKind::trapezoid;
+    CHECK(scene::curve_value(curve, 1.5) == Approx(4));
+    CHECK((scene::curve_value(curve, 1.51) - scene::curve_value(curve, 1.49)) / 0.02 == Approx(3));  // 1.5 times the mean speed
     // A cubic B-spline's weights at the middle of 5 control points: knots 0 0 0 0 1 2 2 2 2.
-    curve.kind = CurveKind::control_points;
+    curve.kind = scene::CurveKind::control_points;
     curve.times = {0, 2};
     curve.values = {0, 1, 4, 2, 7};
-    CHECK(curve_value(curve, 0) == Approx(0).margin(1e-15));
-    CHECK(curve_value(curve, 2) == Approx(7));
-    CHECK(curve_value(curve, 1) == Approx(0.25 * 1 + 0.5 * 4 + 0.25 * 2));
+    CHECK(scene::curve_value(curve, 0) == Approx(0).margin(1e-15));
+    CHECK(scene::curve_value(curve, 2) == Approx(7));
+    CHECK(scene::curve_value(curve, 1) == Approx(0.25 * 1 + 0.5 * 4 + 0.25 * 2));
     for (const double t : {0.0, 0.3, 1.0, 1.9, 2.0}) {
-        const std::vector<double> weights = curve_weights(curve, t);
+        const std::vector<double> weights = scene::curve_weights(curve, t);
         double sum = 0;
         for (const double w : weights) {
             CHECK(w >= 0);
@@ -161,8 +161,8 @@ TEST_CASE("curves run through their entries, smoothly where they say so", "[mech
     curve = {};
     curve.rate = 2;
     curve.stop_time = 3;
-    CHECK(curve_value(curve, 1.5) == 3);
-    CHECK(curve_value(curve, 7) == 6);
+    CHECK(scene::curve_value(curve, 1.5) == 3);
+    CHECK(scene::curve_value(curve, 7) == 6);
 }
 
-}  // namespace fettle::core::scene::mechanism_reader_test
+}  // namespace fettle::core::scene_files::mechanism_reader_test
