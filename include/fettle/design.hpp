@@ -20,7 +20,7 @@
 #include "fettle/design/quantities/stroke.hpp"
 // Values and gradients of it; optimised; gradients compared with differences.
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 // What `fettle clearance` asks: which pairs count, groups, findings.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/roughness.hpp"
+#include "fettle/design/gradient_audit/roughness.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/tests/design/gradient_audit/density_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/design/studies/density_design.hpp"
 
-namespace fettle::design::studies::roughness_test {
+namespace fettle::design::gradient_audit::roughness_test {
 
 namespace {
 
@@ -210,4 +210,4 @@ TEST_CASE("roughness: what does not depend on the simulation is smooth at roundi
     CHECK(mass);
 }
 
-}  // namespace fettle::design::studies::roughness_test
+}  // namespace fettle::design::gradient_audit::roughness_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/design/studies/design_line.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 namespace {
 
 using core::base::infinity;
@@ -403,4 +403,4 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
     return report;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

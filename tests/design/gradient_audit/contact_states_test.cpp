@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/contact_states.hpp"
+#include "fettle/design/gradient_audit/contact_states.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "fettle/tests/support/test_models.hpp"
 
-namespace fettle::design::studies::contact_states_test {
+namespace fettle::design::gradient_audit::contact_states_test {
 
 namespace {
 
@@ -116,4 +116,4 @@ TEST_CASE("neighbouring features have a vertex in common", "[contact]") {
     CHECK_FALSE(adjoin(other, edge));
 }
 
-}  // namespace fettle::design::studies::contact_states_test
+}  // namespace fettle::design::gradient_audit::contact_states_test

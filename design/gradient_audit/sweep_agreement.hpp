@@ -7,7 +7,7 @@
 
 #include "fettle/design/problem/design_problem.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 struct SweepAgreement {
     /// Largest |backwards - forwards| of all quantities and directions, relative to the larger of the two, and to no less than a hundredth
@@ -22,4 +22,4 @@ struct SweepAgreement {
 /// @param at  Evaluated with gradients.
 SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const problem::DesignEvaluation& at);
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

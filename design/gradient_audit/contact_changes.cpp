@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/contact_changes.hpp"
+#include "fettle/design/gradient_audit/contact_changes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "fettle/core/base/contract.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 namespace {
 
 struct EventWords {
@@ -145,4 +145,4 @@ std::string sentence_of(const ContactChange& change) {
     return text;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

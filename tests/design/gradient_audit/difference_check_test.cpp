@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "fettle/tests/design/gradient_audit/density_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/design/studies/density_design.hpp"
 
-namespace fettle::design::studies::difference_check_test {
+namespace fettle::design::gradient_audit::difference_check_test {
 
 namespace {
 
@@ -186,4 +186,4 @@ TEST_CASE("check: cut to the parameters that the objective hangs on most") {
     CHECK(check_cost(3, options) < check_cost(3));
 }
 
-}  // namespace fettle::design::studies::difference_check_test
+}  // namespace fettle::design::gradient_audit::difference_check_test

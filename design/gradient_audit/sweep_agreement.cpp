@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/sweep_agreement.hpp"
+#include "fettle/design/gradient_audit/sweep_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
-#include "fettle/design/studies/design_line.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 namespace {
 
 using adjoint::ModelTangent;
@@ -154,4 +154,4 @@ SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const probl
     return out;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/contact_states.hpp"
+#include "fettle/design/gradient_audit/contact_states.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "fettle/core/contact/closest_feature.hpp"
 #include "fettle/core/contact/contact_set.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 namespace {
 
 using core::contact::ContactPair;
@@ -214,4 +214,4 @@ std::vector<std::vector<ContactState>> contact_states(const Model& model, const 
     return out;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

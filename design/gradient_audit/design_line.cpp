@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/design_line.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 VectorX quantities_of(const problem::DesignEvaluation& evaluation) {
     VectorX q(static_cast<Eigen::Index>(evaluation.constraints.size()) + 1);
@@ -77,4 +77,4 @@ std::vector<LinePoint> DesignLine::evaluate(const std::vector<double>& ts, const
     return points;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

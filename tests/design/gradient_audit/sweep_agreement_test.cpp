@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/sweep_agreement.hpp"
+#include "fettle/design/gradient_audit/sweep_agreement.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "fettle/tests/design/small_problem.hpp"
 
-namespace fettle::design::studies::sweep_agreement_test {
+namespace fettle::design::gradient_audit::sweep_agreement_test {
 
 using namespace fettle::tests::design_support;
 
@@ -31,4 +31,4 @@ TEST_CASE("backwards and forwards agree on a design's own simulation", "[gradien
     }
 }
 
-}  // namespace fettle::design::studies::sweep_agreement_test
+}  // namespace fettle::design::gradient_audit::sweep_agreement_test

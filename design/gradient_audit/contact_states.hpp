@@ -8,7 +8,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 /// Vertices of a body, ascending: one, the two of an edge, or those of a whole plane face.
 struct ContactFeature {
@@ -36,4 +36,4 @@ std::vector<std::vector<ContactState>> contact_states(const core::model::Model& 
 /// Before another, by bodies and features: 0 for the same contact.
 int compare_contacts(const ContactState& x, const ContactState& y);
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

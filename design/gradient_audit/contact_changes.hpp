@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/contact_states.hpp"
+#include "fettle/design/gradient_audit/contact_states.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 enum class ContactEvent {
     touch,         ///< features that were out of each other's reach (dhat + dmin) are in it
@@ -78,4 +78,4 @@ private:
 /// "at t = 0.35 s 'pin' and 'slot' begin to touch, a vertex of 'pin' on a face of 'slot', near (1, 2, 3) mm".
 std::string sentence_of(const ContactChange& change);
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

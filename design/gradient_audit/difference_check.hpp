@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
+#include "fettle/design/gradient_audit/contact_changes.hpp"
+#include "fettle/design/gradient_audit/roughness.hpp"
+#include "fettle/design/gradient_audit/sweep_agreement.hpp"
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/contact_changes.hpp"
-#include "fettle/design/studies/roughness.hpp"
-#include "fettle/design/studies/sweep_agreement.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 /// The best derivative estimate from central differences D(s) of shrinking step size, by Richardson extrapolation
 ///   T(i, 0) = D(s_i),  T(i, j) = T(i, j-1) + (T(i, j-1) - T(i-1, j-1)) / (r^(2j) - 1)    with r = s_i-1 / s_i
@@ -93,4 +93,4 @@ int check_cost(int parameters, const CheckOptions& options = {});
 CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX& p, const problem::DesignEvaluation& at,
                             const CheckOptions& options = {});
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

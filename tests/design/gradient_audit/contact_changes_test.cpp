@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Contacts made to change at moves of a parameter that are known beforehand.
-#include "fettle/design/studies/contact_changes.hpp"
+#include "fettle/design/gradient_audit/contact_changes.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 
-namespace fettle::design::studies::contact_changes_test {
+namespace fettle::design::gradient_audit::contact_changes_test {
 
 namespace {
 
@@ -152,4 +152,4 @@ TEST_CASE("contact changes: of two sets of contacts, each change is one", "[cont
     CHECK(contact_differences(after, before).size() == 2);
 }
 
-}  // namespace fettle::design::studies::contact_changes_test
+}  // namespace fettle::design::gradient_audit::contact_changes_test

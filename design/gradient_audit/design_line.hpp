@@ -10,7 +10,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 /// What a study looks at, in this order everywhere: the objective, then each constraint's value. SI.
 VectorX quantities_of(const problem::DesignEvaluation& evaluation);
@@ -51,4 +51,4 @@ private:
     double least_ = 0, most_ = 0;
 };
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

@@ -3,7 +3,7 @@
 /// A gradient is exact where it is taken; where parts rattle in their play it may hold for microns only, and then neither an optimiser's
 /// step nor a difference is what it predicts.
 ///
-/// Along p(t) = p + t * direction * ranges (studies/design_line.hpp) every quantity q has
+/// Along p(t) = p + t * direction * ranges (gradient_audit/design_line.hpp) every quantity q has
 /// - its noise at moves of `spacing` (optimisers/noise.hpp): the scatter that moves of that size see, whatever makes it;
 /// - its rounding, the same at `fine_spacing`: what remains when the design hardly moves (differences take their steps from it);
 /// - the length over which its gradient holds: |q(t) - q(0) - t q'(0)| <= max(share |t q'(0)|, tolerance, 4 rounding), q' by the adjoint.
@@ -17,7 +17,7 @@
 #include "fettle/design/optimisers/noise.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 struct RoughnessOptions {
     VectorX direction = {};                                    ///< in shares of the parameters' ranges; empty: downhill_direction
@@ -72,4 +72,4 @@ VectorX quantity_tolerances(const description::Design& design, const problem::De
 /// What would make the rough quantities of the report smoother, a sentence each; empty if none is rough.
 std::vector<std::string> roughness_remedies(const description::Design& design, const RoughnessReport& report);
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit

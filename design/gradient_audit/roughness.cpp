@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/roughness.hpp"
+#include "fettle/design/gradient_audit/roughness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
-#include "fettle/design/studies/design_line.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::gradient_audit {
 
 namespace {
 
@@ -311,4 +311,4 @@ std::vector<std::string> roughness_remedies(const description::Design& design, c
     return remedies;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::gradient_audit
