@@ -6,6 +6,9 @@
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/description/quantity.hpp"
 #include "fettle/design/description/shape.hpp"
+// Parts that are generated: the shapes that are there, by name, and any Shape at its dimensions.
+#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/shape_generator.hpp"
 // Read from its file; scenes with parts that are generated.
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
