@@ -12,7 +12,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 REFERENCE = HERE / "files.md"
-SCHEMAS = (("Scene", "core/scene/scene.schema.json"), ("Design", "design/reading/design.schema.json"))
+SCHEMAS = (("Scene", "core/scene_files/scene.schema.json"), ("Design", "design/reading/design.schema.json"))
 HEAD = """# Files: scene and design
 
 <!-- Made by docs/generate_files_reference.py of the two schemas: change those, then run it. -->
@@ -20,7 +20,7 @@ HEAD = """# Files: scene and design
 Every key of the two files that people write, by the schemas that an editor can check them with
 ({links}).
 What they mean together: [concepts.md](concepts.md); whole files: [examples/](../examples); how scenes are read, and the source paper's format:
-[core/scene/README.md](../core/scene/README.md). All other files: [interface.md](interface.md#files).
+[core/scene_files/README.md](../core/scene_files/README.md). All other files: [interface.md](interface.md#files).
 
 A key in **bold** is required; `outer.inner` is a key of an object inside. A length is a number in the file's `units`, or a text with a unit
 of its own: `"0.3mm"`; so is every number that has a dimension (`"2 N/mm"`, `"30deg"`). A text that begins with `=` is a formula, of the

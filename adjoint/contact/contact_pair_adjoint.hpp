@@ -18,7 +18,7 @@ namespace fettle::adjoint::contact {
 
 /// Is the mollifier below 1, so that the potential depends on eps?
 inline bool is_mollified(const core::contact::ContactPair& pair) {
-    return pair.type == core::contact::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
+    return pair.type == core::geometry::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
 }
 
 /// df_i/deps (world) [N s^2/m^4 with the weight h^2]. Contract: is_mollified(pair).

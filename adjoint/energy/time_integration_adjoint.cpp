@@ -4,10 +4,10 @@
 #include <array>
 
 #include "fettle/adjoint/energy/damping_adjoint.hpp"
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {
@@ -93,7 +93,7 @@ private:
 
     const Body& body_;
     Matrix3 R_;
-    SymmetricFactor factor_;
+    core::linear::SymmetricFactor factor_;
 };
 
 // Everything that newmark_rates comes by.

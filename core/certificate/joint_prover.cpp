@@ -7,10 +7,10 @@
 #include <numeric>
 #include <optional>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -420,7 +420,7 @@ private:
         if (!over || !middle) return false;
         const auto residual = residual_over(segment, part, *over);
         if (!residual) return false;
-        DenseLu lu;
+        linear::DenseLu lu;
         lu.factorise(middles(*middle));
         const MatrixX A = lu.inverse();
         if (!A.allFinite()) return false;

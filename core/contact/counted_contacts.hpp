@@ -47,7 +47,7 @@ struct NearPairs {
 
 /// A pair that was near and whose weight is in a contact's, `count` times.
 struct WeightPart {
-    PairType type = PairType::point_triangle;
+    geometry::PairType type = geometry::PairType::point_triangle;
     bool of_second = false;       ///< point_triangle: the vertex is on the second body
     std::array<int, 4> vertex{};  ///< as ContactPair::vertex; point_triangle: only the first
     int count = 1;                ///< 1 or -1

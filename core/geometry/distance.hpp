@@ -5,7 +5,7 @@
 /// Accuracy: with L the largest distance of two of the four vertices, 1e-40 <= L <= 1e40, and u = 2^-53,
 ///   |sqrt(distance_squared) - true distance| <= 64 u L,
 /// whatever the pair: parallel, collinear, coplanar, slivers, of no length or area. The worst of the tests' campaigns is 4 u L. The bound
-/// is relative to L, not to the distance: what is computed is no proven bound of anything (contact/separating_plane.hpp has those).
+/// is relative to L, not to the distance: what is computed is no proven bound of anything (ccd/separating_plane.hpp has those).
 ///
 /// Why, with a and b the two directions of the pair's plane, theta their angle and h the distance of their lines (or of point and plane):
 ///  - Differences of vertices are off by u each, which moves the vertices by 3 u L in all. Convex weights of either sign sum to 1 within u,

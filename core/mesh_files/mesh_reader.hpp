@@ -18,7 +18,7 @@
 /// else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells. Of a 3MF all that its build places is read,
 /// except support.
 ///
-/// Validity as a solid is geometry/mesh_validity.hpp; which part of a scene the mesh is for, scene_reader.hpp.
+/// Validity as a solid is solids/mesh_validity.hpp; which part of a scene the mesh is for, scene/scene.hpp.
 #pragma once
 
 #include <functional>

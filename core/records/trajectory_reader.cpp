@@ -24,7 +24,7 @@ using files::JsonNode;
 using kinematics::ChartPoint;
 using kinematics::Pose;
 
-// Rounding of exp and a product (contact/chord_deviation.hpp, rotated_rounding): what the end of a step's chart and the next pose, which is
+// Rounding of exp and a product (ccd/chord_deviation.hpp, rotated_rounding): what the end of a step's chart and the next pose, which is
 // made orthonormal again, may differ by. Every certified bound is charged more than twice that.
 double allowed_turn(const Vector3& theta) { return unit_roundoff * (80 + 10 * theta.norm()); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Plain description of a scene, SI units, meshes resolved: what a file said, before anything is computed from it.
-/// Readers: scene_reader.hpp (*.scene.json), fixture_reader.hpp (the source paper's files). Next stage: model/build_model.hpp.
+/// Readers: scene_files/scene_reader.hpp (*.scene.json), paper_scenes/fixture_reader.hpp (the source paper's files). Next stage:
+/// model/build_model.hpp.
 #pragma once
 
 #include <array>
@@ -96,7 +97,7 @@ struct MeshProgram {
     bool operator==(const MeshProgram&) const = default;
 };
 
-/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see ReadOptions in scene_reader.hpp.
+/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see read_options.hpp.
 struct ShapeSpec {
     std::string generator;                     ///< its name; empty: a program makes the part
     std::map<std::string, double> dimensions;  ///< lengths [m]

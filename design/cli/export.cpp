@@ -10,7 +10,7 @@
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
@@ -151,7 +151,7 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
         return console.input_errors(errors);
     const Result<core::scene::Scene> scene =
-        core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
+        core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!scene) return console.input_errors(scene.errors());
     core::model::BuildOptions build;
     build.check_start = false;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -48,7 +48,8 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
     std::error_code code;
     if (subject.source != clearance::SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
     if (file_kind(subject.scene_path) != FileKind::scene) return;
-    const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
+    const auto scene =
+        core::scene_files::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (scene) subject.model.gravity = scene->gravity;
 }
 

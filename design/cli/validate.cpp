@@ -5,12 +5,12 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/body_facts.hpp"
@@ -49,10 +49,10 @@ Verdict validate_mesh_file(const std::string& path, bool strict) {
         return verdict;
     }
     if (strict) {
-        verdict.errors = core::geometry::validate_mesh(*mesh, {});
+        verdict.errors = core::solids::validate_mesh(*mesh, {});
     } else {
-        verdict.warnings = core::geometry::repair_mesh(*mesh);
-        core::geometry::MeshFindings found = core::geometry::judge_mesh(*mesh, true);
+        verdict.warnings = core::solids::repair_mesh(*mesh);
+        core::solids::MeshFindings found = core::solids::judge_mesh(*mesh, true);
         verdict.errors = std::move(found.errors);
         verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
     }

@@ -14,7 +14,7 @@
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
@@ -51,7 +51,7 @@ public:
         file_.length_unit = *find_unit(*unit);
         std::optional<JsonDocument> scene = open_scene_file(root.require("scene"));
         if (!scene) return all_errors();
-        DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene::variables_of(*scene));
+        DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         formulas.add_parameters(root["parameters"], design_.parameters);
         formulas.read_variables(root["variables"]);
@@ -116,7 +116,7 @@ private:
         core::scene::ReadOptions options = scene_read_options(options_.mesh_dirs, options_.programs, parts_);
         options.inputs = formulas.inputs_of_scene();
         for (const auto& [pointer, value] : set.members()) options.replacements.push_back({pointer, value});
-        Result<core::scene::Scene> scene = core::scene::read_scene(document, options);
+        Result<core::scene::Scene> scene = core::scene_files::read_scene(document, options);
         if (!scene) {
             scene_errors_ = scene.errors();
             return false;

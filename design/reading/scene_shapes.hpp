@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/description/shape.hpp"
 
 namespace fettle::design::reading {

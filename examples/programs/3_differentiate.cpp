@@ -3,8 +3,8 @@
 // brick's length and the motor's speed, through the whole simulation, beside differences of whole simulations.
 #include <cstdio>
 
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 
 namespace core = fettle::core;
 using namespace fettle::design::description;
@@ -53,7 +53,7 @@ int main() {
     for (const auto& error : problem.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
     if (!problem) return 3;
     const auto at = problem->evaluate(values_of(problem->design().parameters));
-    const auto check = fettle::design::studies::check_gradients(*problem, values_of(problem->design().parameters), at);
+    const auto check = fettle::design::gradient_audit::check_gradients(*problem, values_of(problem->design().parameters), at);
     std::printf("mean height %.6f mm\n", at.objective);
     for (const auto& row : check.rows)
         std::printf("d/d %s: %.9g, by differences %.9g\n", row.parameter.c_str(), row.adjoint, row.difference);

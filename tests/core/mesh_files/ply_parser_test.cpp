@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
 
@@ -54,7 +54,7 @@ struct Read {
 void check_tetrahedron(const Result<Mesh>& mesh) {
     REQUIRE(mesh);
     CHECK(mesh->vertices.cols() == 4);
-    CHECK(geometry::validate_mesh(*mesh, {}).empty());
+    CHECK(solids::validate_mesh(*mesh, {}).empty());
     CHECK(geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3) == Approx(0.125 / 6).epsilon(1e-14));
 }
 

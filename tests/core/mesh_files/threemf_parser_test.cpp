@@ -6,10 +6,10 @@
 #include <random>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 #include "fettle/core/mesh_files/xml_reader.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
 
@@ -96,7 +96,7 @@ TEST_CASE("3MF: zip64 entries are read, in double precision, with names") {
     REQUIRE(mesh);
     CHECK(mesh->vertices(0, 1) == 0.1234567890123456);
     CHECK(mesh->shell_names == std::vector<std::string>{"wheel & axle"});
-    CHECK(geometry::validate_mesh(*mesh, {}).empty());
+    CHECK(solids::validate_mesh(*mesh, {}).empty());
 }
 
 TEST_CASE("3MF: a mirrored item stays a solid, support is left out, other parts are followed") {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 
 namespace fettle::core::scene::place_test {
 
@@ -37,7 +37,7 @@ const char* text = R"({
 })";
 
 Scene shop() {
-    auto scene = parse_scene(text, "a.scene.json");
+    auto scene = scene_files::parse_scene(text, "a.scene.json");
     if (!scene) UNSCOPED_INFO(scene.errors()[0].where << ": " << scene.errors()[0].message);
     REQUIRE(scene);
     scene->bodies[0].shape = ShapeSpec{"box", {{"size_x", 0.02}, {"size_y", 0.03}}, {}};

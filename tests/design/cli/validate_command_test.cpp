@@ -145,7 +145,7 @@ TEST_CASE("a body without density has no mass to sum") {
 }
 
 TEST_CASE("the README of scenes shows keys that are read") {
-    const std::string text = contents("core/scene/README.md");
+    const std::string text = contents("core/scene_files/README.md");
     const std::size_t begin = text.find("```json\n") + 8, end = text.find("```", begin);
     REQUIRE(end != std::string::npos);
     const Folder folder;

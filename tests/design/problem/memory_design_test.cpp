@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/quantities/clearance.hpp"
@@ -11,7 +12,6 @@
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
@@ -184,10 +184,10 @@ TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differe
     int contacts = 0;
     for (const auto& step : at.simulation.report.steps) contacts += step.contacts;
     CHECK(contacts > 0);
-    const studies::CheckReport report = studies::check_gradients(*problem, p, at);
+    const gradient_audit::CheckReport report = gradient_audit::check_gradients(*problem, p, at);
     CHECK(report.failures.empty());
     REQUIRE(report.rows.size() == 2 * 4);
-    for (const studies::CheckRow& row : report.rows) {
+    for (const gradient_audit::CheckRow& row : report.rows) {
         INFO(row.quantity << " " << row.parameter << ": " << row.adjoint << " against " << row.difference << " +- "
                           << row.difference_error);
         CHECK(row.relative_error < 1e-6);

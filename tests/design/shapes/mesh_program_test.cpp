@@ -171,7 +171,7 @@ TEST_CASE("parts that are alike are made once") {
     };
     const std::string path = shop.folder.write(
         "a.scene.json", "{ \"fettle_scene\": 1, \"units\": \"mm\", \"bodies\": [" + body("one", "0") + ", " + body("two", "50") + "] }");
-    const auto scene = core::scene::read_scene(path, reading::scene_read_options({}, reading::Programs::allowed));
+    const auto scene = core::scene_files::read_scene(path, reading::scene_read_options({}, reading::Programs::allowed));
     REQUIRE(scene);
     CHECK(scene->bodies[1].mesh.vertices == scene->bodies[0].mesh.vertices);
     CHECK(shop.runs("12.5") == 1);
