@@ -21,7 +21,7 @@ constexpr double slack = 1 + 1e-12;  // of sums of a few products
 constexpr int pairs_a_query = 32;    // pairs of bodies that a thread takes at a time
 
 // Bound of how far points of two bodies move relative to one another along their segments.
-double relative_motion(const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
+double most_relative_motion(const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
     return slack * ((a.position_step - b.position_step).norm() + a.rotation_vector_step.norm() * radius_a +
                     b.rotation_vector_step.norm() * radius_b);
 }
@@ -31,7 +31,7 @@ double turn(const Matrix3& r1, const Matrix3& r2) { return (r1 - r2).norm() * st
 
 // The same between two pairs of poses: distances of points do not change when both bodies move alike, so the least of what is seen from
 // the world and from each body holds.
-double relative_motion(const Pose& a1, const Pose& b1, const Pose& a2, const Pose& b2, double radius_a, double radius_b) {
+double most_relative_motion(const Pose& a1, const Pose& b1, const Pose& a2, const Pose& b2, double radius_a, double radius_b) {
     const Vector3 offset1 = b1.position - a1.position, offset2 = b2.position - a2.position;
     double least = (offset2 - offset1).norm() + turn(a1.rotation, a2.rotation) * radius_a + turn(b1.rotation, b2.rotation) * radius_b;
     const Matrix3 relative1 = a1.rotation.transpose() * b1.rotation, relative2 = a2.rotation.transpose() * b2.rotation;
@@ -290,7 +290,7 @@ double motion_since(const model::Model& model, const BodyPairCandidates& pair, c
     if (pair.fresh) return 0;
     const Pose &a = poses[pair.a], &b = poses[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
-    return relative_motion(pair.at[0], pair.at[1], a, b, radius_a, radius_b) + rounding_of(a, b, radius_a, radius_b) +
+    return most_relative_motion(pair.at[0], pair.at[1], a, b, radius_a, radius_b) + rounding_of(a, b, radius_a, radius_b) +
            rounding_of(pair.at[0], pair.at[1], radius_a, radius_b);
 }
 
@@ -304,7 +304,7 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
     const PathSegment &a = segments[pair.a], &b = segments[pair.b];
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
     const double since_at =
-        relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + relative_motion(a, b, radius_a, radius_b);
+        most_relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + most_relative_motion(a, b, radius_a, radius_b);
     return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding_of(start_a, start_b, radius_a, radius_b) +
            rounding_of(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
 }

@@ -80,8 +80,9 @@ std::vector<scene::Body> SceneBodies::read(const files::JsonNode& node) {
     read_name(node.require("name"), body);
     const MeshSource source = read_geometry(node, body);
     settle_mesh(node, source, body);
-    body.pose = read_pose(node, unit_, {});
-    body.orientation = read_orientation(node).value_or(body.orientation);
+    const WrittenPose written = read_pose(node, unit_, {});
+    body.pose = written.pose;
+    body.orientation = written.orientation;
     body.reference_point = node["reference_point"].length3(unit_);
     const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
     body.type = type == "static"      ? scene::BodyType::static_body

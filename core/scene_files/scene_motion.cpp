@@ -89,7 +89,7 @@ void read_script(const files::JsonNode& node, double unit, scene::Body& body) {
         if (time && !(*time > time_before)) {
             entry["time"].fail(ErrorCode::out_of_range, entry["time"].shown() + " is not after the pose before it; the first is after 0");
         }
-        const kinematics::Pose pose = read_pose(entry, unit, before);
+        const kinematics::Pose pose = read_pose(entry, unit, before).pose;
         if (turns_by_half(before, pose)) {
             entry.fail(ErrorCode::out_of_range,
                        "turns by half a turn from the pose before it, which can be done in two ways; put a pose between them");
@@ -103,25 +103,18 @@ void read_script(const files::JsonNode& node, double unit, scene::Body& body) {
 
 }  // namespace
 
-kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise) {
-    kinematics::Pose pose = otherwise;
-    pose.position = node["position"].length3(unit).value_or(pose.position);
+WrittenPose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise) {
+    WrittenPose out{otherwise, {}};
+    out.pose.position = node["position"].length3(unit).value_or(otherwise.position);
     const files::JsonNode angles = node["rotation"], vector = node["rotation_vector"];
     if (angles.exists() && vector.exists()) node.fail(ErrorCode::inconsistent, "either `rotation` or `rotation_vector`, not both");
-    if (const auto found = read_orientation(node)) {
-        const std::vector<files::JsonNode> numbers = vector.exists() ? std::vector<files::JsonNode>() : angles.elements();
-        const bool in_degrees =
-            !numbers.empty() && std::all_of(numbers.begin(), numbers.end(), [](const auto& n) { return n.is_number(); });
-        pose.rotation = in_degrees ? scene::rotation_from_degrees(*angles.vector3()) : scene::rotation_of(*found);
-    }
-    return pose;
-}
-
-std::optional<scene::Orientation> read_orientation(const files::JsonNode& node) {
-    const files::JsonNode vector = node["rotation_vector"];
-    const auto numbers = (vector.exists() ? vector : node["rotation"]).quantity3(base::Dimension::angle, scene::radians(1));
-    if (!numbers) return std::nullopt;
-    return scene::Orientation{vector.exists() ? scene::Orientation::Kind::vector : scene::Orientation::Kind::angles, *numbers};
+    const auto numbers = (vector.exists() ? vector : angles).quantity3(base::Dimension::angle, scene::radians(1));
+    if (!numbers) return out;
+    out.orientation = {vector.exists() ? scene::Orientation::Kind::vector : scene::Orientation::Kind::angles, *numbers};
+    const std::vector<files::JsonNode> written = vector.exists() ? std::vector<files::JsonNode>() : angles.elements();
+    const bool in_degrees = !written.empty() && std::all_of(written.begin(), written.end(), [](const auto& n) { return n.is_number(); });
+    out.pose.rotation = in_degrees ? scene::rotation_from_degrees(*angles.vector3()) : scene::rotation_of(out.orientation);
+    return out;
 }
 
 void read_motion(const files::JsonNode& node, double unit, scene::Body& body) {

@@ -8,10 +8,14 @@
 
 namespace fettle::core::scene_files {
 
+/// A pose, and its rotation as it was written.
+struct WrittenPose {
+    kinematics::Pose pose;
+    scene::Orientation orientation;
+};
+
 /// `position`, `rotation` or `rotation_vector`, where absent those of `otherwise`. @param unit  of lengths [m].
-kinematics::Pose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise);
-/// The rotation alone, as written; none: absent, or wrong.
-std::optional<scene::Orientation> read_orientation(const files::JsonNode& node);
+WrittenPose read_pose(const files::JsonNode& node, double unit, const kinematics::Pose& otherwise);
 
 /// Velocities, loads, `fixed`, `prescribed` and `script` of a body whose type and pose are known.
 void read_motion(const files::JsonNode& node, double unit, scene::Body& body);

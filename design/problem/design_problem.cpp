@@ -67,7 +67,9 @@ std::string name_of(const description::Constraint& constraint) { return "constra
 }  // namespace
 
 Result<DesignProblem> DesignProblem::create(Design design) {
-    Result<Model> model = core::model::build_model(design.scene);
+    core::model::BuildOptions options;
+    options.check_start = false;  // parts that intersect at the parameters' values are a trial that cannot begin: other trials may
+    Result<Model> model = core::model::build_model(design.scene, options);
     if (!model) return model.errors();
     const Errors errors = check_design(design, *model);
     if (!errors.empty()) return errors;

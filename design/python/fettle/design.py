@@ -241,35 +241,39 @@ class _Arithmetic:
 
     __slots__ = ()
 
+    def _as_formula(self) -> "_fettle.Formula":
+        parameter: Any = self
+        return _fettle.formula(parameter)
+
     def __add__(self, other: Operand) -> "_fettle.Formula":
-        return _fettle.formula(self) + other
+        return self._as_formula() + other
 
     def __radd__(self, other: Operand) -> "_fettle.Formula":
-        return other + _fettle.formula(self)  # type: ignore[operator]
+        return _fettle.formula(other) + self._as_formula()
 
     def __sub__(self, other: Operand) -> "_fettle.Formula":
-        return _fettle.formula(self) - other
+        return self._as_formula() - other
 
     def __rsub__(self, other: Operand) -> "_fettle.Formula":
-        return other - _fettle.formula(self)  # type: ignore[operator]
+        return _fettle.formula(other) - self._as_formula()
 
     def __mul__(self, other: Operand) -> "_fettle.Formula":
-        return _fettle.formula(self) * other
+        return self._as_formula() * other
 
     def __rmul__(self, other: Operand) -> "_fettle.Formula":
-        return other * _fettle.formula(self)  # type: ignore[operator]
+        return _fettle.formula(other) * self._as_formula()
 
     def __truediv__(self, other: Operand) -> "_fettle.Formula":
-        return _fettle.formula(self) / other
+        return self._as_formula() / other
 
     def __rtruediv__(self, other: Operand) -> "_fettle.Formula":
-        return other / _fettle.formula(self)  # type: ignore[operator]
+        return _fettle.formula(other) / self._as_formula()
 
     def __pow__(self, other: Operand) -> "_fettle.Formula":
-        return _fettle.formula(self) ** other
+        return self._as_formula() ** other
 
     def __neg__(self) -> "_fettle.Formula":
-        return -_fettle.formula(self)
+        return -self._as_formula()
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -352,13 +356,14 @@ class Design(Record):
             design.set("/bodies/pin/shape/dimensions/radius", "bore - gap")
         """
         if isinstance(value, (list, tuple, np.ndarray)):
-            for k, component in enumerate(value):
-                self.set(f"{place}/{k}", component)
+            for k, entry in enumerate(value):
+                self.set(f"{place}/{k}", entry)
             return
-        if isinstance(value, str):
-            formula = _fettle.Formula(value, {parameter.name: parameter.unit or "1" for parameter in self.parameters})
+        component: Any = value
+        if isinstance(component, str):
+            formula = _fettle.Formula(component, {parameter.name: parameter.unit or "1" for parameter in self.parameters})
         else:
-            formula = _fettle.formula(value)
+            formula = _fettle.formula(component)
         self.numbers = [number for number in self.numbers if number.place != place] + [BoundNumber(place, formula)]
 
     def _prepared(self) -> "Design":

@@ -12,6 +12,7 @@ from typing import Any, Dict, List, Literal, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _fettle
 from ._record import Number, Record, faults_of, number, short
 from .errors import Error, Fault
 

@@ -58,7 +58,7 @@ TEST_CASE("validate: what is usable, and every fault with its place") {
     CHECK(faulty.json()["errors"][0]["where"].get<std::string>().find("#/parameters/0/lower") != std::string::npos);
 
     CHECK(run("validate /nowhere/x.scene.json").code == 3);
-    const DesignFolder touching(small_design, replaced(small_scene, "[3, 1, 5.12]", "[3, 1, 4]"));
+    const DesignFolder touching(small_design, replaced(small_scene, "\"position\": [0, 0, -5]", "\"position\": [0, 0, -4]"));
     const Answer intersecting = run("validate " + touching.design() + " --json");
     CHECK(intersecting.code == 3);
     CHECK(intersecting.json()["errors"][0]["code"] == "bodies_intersect");

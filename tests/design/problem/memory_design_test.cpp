@@ -97,7 +97,7 @@ Parameter parameter(const std::string& name, double value, double lower, double 
     return {name, value, lower, upper, *find_unit(unit)};
 }
 
-std::string dimension(const std::string& name) { return "/bodies/part/shape/dimensions/" + name; }
+std::string dimension(const std::string& name, const std::string& body = "part") { return "/bodies/" + body + "/shape/dimensions/" + name; }
 
 // A frustum falls 0.02 mm onto a plate that a motor tilts.
 Design tilted_plate() {
@@ -276,12 +276,17 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
     wall.pose.position = Vector3(40e-3, 0, 0);
     REQUIRE(add_part(made, wall, box(5e-3, 60e-3, 60e-3)));
     made.scene.gravity = read.scene.gravity;
-    made.parameters = {parameter("height", 10e-3, 6e-3, 14e-3, {dimension(1, "size_z"), {"/bodies/cube/position/2", 0.5, 1.2e-4}}),
-                       parameter("width", 20e-3, 15e-3, 30e-3, {dimension(1, "size_x")}),
-                       parameter("place", 3e-3, -5e-3, 20e-3, {{"/bodies/1/position/0"}}),
-                       parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"),
-                       parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")),
-                                 {{"/bodies/0/prescribed/ry/rate"}}, "deg/s")};
+    made.parameters = {
+        parameter("height", 10e-3, 6e-3, 14e-3), parameter("width", 20e-3, 15e-3, 30e-3), parameter("place", 3e-3, -5e-3, 20e-3),
+        parameter("density", 1000, 500, 2000, "kg/m^3"),
+        parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")), "deg/s")};
+    for (const auto& [place, formula] : {std::pair(dimension("size_z", "cube"), "height"),
+                                         {dimension("size_x", "cube"), "width"},
+                                         {"/bodies/cube/position/2", "height / 2 + 0.12 mm"},
+                                         {"/bodies/cube/position/0", "place"},
+                                         {"/bodies/cube/density", "density"},
+                                         {"/bodies/table/prescribed/ry/rate", "speed"}})
+        REQUIRE(set_number(made, place, formula).empty());
     const double mm = 1e-3;
     using Points = std::vector<Vector3>;
     made.objective = {
@@ -392,7 +397,7 @@ TEST_CASE("what is wrong with a design made in memory is told, all of it, by nam
     };
     CHECK(errors.size() == 12);
     CHECK(told("constraint `height`") == 2);
-    for (const char* where : {"shape of body `part`", "parameter `foot`", "parameter `top`", "parameter `speed`", "objective `height`",
+    for (const char* where : {"shape of body `part`", "dimensions/fot", "parameter `top`", "prescribed/pz/rate", "objective `height`",
                               "objective `mass`", "relation `height`", "relation `short`", "relation `infinite`", "relation `order`"}) {
         INFO(where);
         CHECK(told(where) == 1);

@@ -78,6 +78,7 @@ TEST_CASE("a parameter that moves all witnesses alike needs no rows") {
     const DesignFolder folder(bore_design("0", "0", least_play), bore_scene);
     description::Design design = file_of(folder).design;
     design.parameters.erase(design.parameters.begin(), design.parameters.begin() + 2);
+    std::erase_if(design.numbers, [](const auto& number) { return number.formula.inputs != std::vector<std::string>{"radius"}; });
     const auto problem = DesignProblem::create(design);
     REQUIRE(problem);
     const DesignEvaluation at = problem->evaluate(values_of(design.parameters));

@@ -57,7 +57,9 @@ py::dict defaults() {
     add_default<fettle::design::description::Constraint>(all);
     add_default<fettle::design::description::Design>(all);
     add_default<fettle::design::description::Measurement>(all);
-    add_default<fettle::design::description::Move>(all);
+    add_default<fettle::core::scene::BoundNumber>(all);
+    add_default<fettle::core::scene::Orientation>(all);
+    add_default<fettle::core::scene::Variable>(all);
     add_default<fettle::design::description::ObjectiveTerm>(all);
     add_default<fettle::design::description::OptimiserSettings>(all);
     add_default<fettle::design::description::Parameter>(all);
