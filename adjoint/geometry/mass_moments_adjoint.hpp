@@ -4,7 +4,7 @@
 /// <M_bar, tangent(X_dot)> = <adjoint(M_bar), X_dot> with <A, B> = sum_ij A_ij B_ij.
 ///
 /// Accuracy: terms of size |X|^5 cancel for a part far from the origin, in the moments and here. Shift the vertices to the body's
-/// reference point c first (docs/method.md section 2; the derivative in X - c is the derivative in X, as c is fixed).
+/// reference point c first (docs/method/bodies.md#mass; the derivative in X - c is the derivative in X, as c is fixed).
 #pragma once
 
 #include <vector>

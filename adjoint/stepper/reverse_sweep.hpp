@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. docs/method.md section 10.
+/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. docs/method/adjoint.md.
 /// Contract: the trajectory was simulated from this model with for_gradient = true. The result is as exact as the steps' residuals are
 /// small.
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Certified clearance: proven bounds of the least distance of pairs of bodies, over the continuous curved path.
 ///   lower <= min over the time range of dist(A(t), B(t)) <= upper,   rounding error charged to `lower`.
-/// A theorem about the meshes as stored and the path as stored (docs/method.md section 8), not about samples.
+/// A theorem about the meshes as stored and the path as stored (docs/method/clearance.md), not about samples.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,7 @@
 /// Certified clearance over all positions of the joints: for pairs of bodies,
 ///   lower <= min over every combination of the coordinates in their ranges of dist(A(u), B(u)) <= upper,
 /// rounding charged to `lower`. A theorem about the meshes as stored and the joints as the linkage has them, not about samples.
-/// docs/method.md section 8.
+/// docs/method/clearance.md#ranges-of-joints.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Rows: equations sum_i factor_i m_i = curve(t) over measures (measure/measure.hpp). Joints, motors and gears are lists of them.
-/// docs/method.md section 9.
+/// docs/method/joints.md#rows.
 #pragma once
 
 #include <vector>

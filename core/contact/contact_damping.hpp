@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Damping of contacts along their gaps: what a pair loses by being pressed together or let go. docs/method.md section 4.
+/// Damping of contacts along their gaps: what a pair loses by being pressed together or let go. docs/method/contact.md#damping-in-contact.
 /// A pair's closeness is its barrier potential without stiffness and area, a number: 0 from the activation distance on, unbounded at dmin,
 ///   phi = m b(g) / g_hat^2,   g = d^2 - dmin^2,   C2 at the activation distance (barrier.hpp), so that damping sets in gently.
 /// The pair's barrier potential is kappa w g_hat^2 / (4 activation^2) phi [J]; T times that, the damping time T [s], makes the coefficient

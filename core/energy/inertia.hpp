@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Inertia: of one body, and as a term of the incremental potential. docs/method.md section 3.
+/// Inertia: of one body, and as a term of the incremental potential. docs/method/energy.md.
 ///   E_d(P) = 1/2 tr((P - P_hat) M (P - P_hat)^T),   Gauss-Newton Hessian: mass_matrix.hpp
 /// Gravity is in P_hat (time_integration.hpp). Reports kinetic energy and momenta.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Time integration as choices of P_hat and of the potentials' weight. docs/method.md section 3.
+/// Time integration as choices of P_hat and of the potentials' weight. docs/method/energy.md#integrators.
 /// A step minimises 1/2 tr((P - P_hat) M (P - P_hat)^T) + weight (potentials); contact slides at V = (P - P_slip) / slip_time, which is the
 /// end velocity too but for Newmark's.
 ///   implicit Euler  P_hat = P0 + h V0 + h^2 a                weight h^2        P_slip = P0                slip_time = h

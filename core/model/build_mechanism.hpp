@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Joints, springs, motors and loads of a scene -> measures, rows and terms of a model whose bodies are known; and the start: bodies are
-/// put where their joints are met (constraint/assembly.hpp), and their velocities are made to agree. docs/method.md section 9.
+/// put where their joints are met (constraint/assembly.hpp), and their velocities are made to agree.
+/// docs/method/joints.md#assembly-the-start.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How firmly a quasi-static step holds what nothing else does. docs/method.md section 3.
+/// How firmly a quasi-static step holds what nothing else does. docs/method/energy.md#quasi-static-steps.
 #pragma once
 
 #include "fettle/core/model/model.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Levenberg's shift of the Hessian, for solves whose inertia is too small to make it definite (quasi-statics): how much of the inertia is
 /// added for the next iteration. It begins at a given value, rises where steps had to be cut, and falls as they do what they promise, so
-/// that the way is that of a heavily damped motion, and the last steps are Newton's. docs/method.md section 6.
+/// that the way is that of a heavily damped motion, and the last steps are Newton's. docs/method/solver.md#when-a-solve-has-converged.
 #pragma once
 
 namespace fettle::core::solver {

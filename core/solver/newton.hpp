@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Projected Newton for one time step, with curved CCD in its line search: every accepted point, and the path to it, is free of
-/// intersections. docs/method.md section 6.
+/// intersections. docs/method/solver.md.
 ///
 /// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution, or to 1e-9 of the scene's size where
 /// contact leaves no more (they stall, or what remains is all the gap there is). Each iteration moves them by what remains, and the free

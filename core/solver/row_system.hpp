@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Rows (joints, motors) in Newton's method (newton.hpp): their linearisation where an iteration stands, the step under them, and the way
-/// back onto the rows from where a step has led. docs/method.md section 9.
+/// back onto the rows from where a step has led. docs/method/joints.md#the-step-under-rows.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Do energy and momentum balance over a simulation? What they changed by against what forces did: what is left is the error of the time
-/// integration and of the solver together. docs/method.md section 3.
+/// integration and of the solver together. docs/method/energy.md#integrators.
 #pragma once
 
 #include <string>

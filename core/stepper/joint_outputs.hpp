@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What joints and motors carried in a step, and how well they hold along its path. docs/method.md section 9.
+/// What joints and motors carried in a step, and how well they hold along its path. docs/method/joints.md.
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const s
                                      const VectorX& multipliers, const std::vector<double>& measure_forces);
 
 /// Bound on how far a joint's two points part (or leave the line or plane that they are to keep to) between the nodes of a step's path: the
-/// deviations B1 of both points from their chords (docs/method.md section 7), the largest over the path's segments and the joints that
+/// deviations B1 of both points from their chords (docs/method/collision.md), the largest over the path's segments and the joints that
 /// hold a point [m].
 double path_gap_bound(const model::Model& model, const std::vector<kinematics::Pose>& poses_t0, const TrajectoryStep& path);
 
