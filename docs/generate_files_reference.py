@@ -122,7 +122,7 @@ class Reference:
         self.table(schema)
 
     def choices(self, schema):
-        """Keys of which one is wanted."""
+        """Keys of which one is expected."""
         return [key for branch in self.branches(schema) if "properties" not in branch for key in branch.get("required", [])]
 
     def more_keys(self, schema):

@@ -281,7 +281,7 @@ private:
         if (options_.should_stop && options_.should_stop())
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         const std::optional<Direction> direction = find_direction();
-        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
+        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or not numbers");
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);

@@ -140,7 +140,7 @@ std::string why_none_is_judged(const Subject& subject, const PairSelection& sele
 
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
     std::string message;
-    if (stopped) message = "interrupted: what was not looked at is undecided";
+    if (stopped) message = "interrupted: pairs that were not examined are undecided";
     if (!subject.incomplete.empty())
         message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
     if (selection.pairs.empty())

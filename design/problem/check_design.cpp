@@ -106,7 +106,7 @@ private:
         };
         if (!finite)
             add(ErrorCode::out_of_range, place(parameter),
-                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are wanted");
+                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are expected");
         else if (!(parameter.lower <= parameter.value && parameter.value <= parameter.upper))
             add(ErrorCode::out_of_range, place(parameter),
                 "its value " + told(parameter.value) + " does not lie within its bounds, " + told(parameter.lower) + " to " +

@@ -119,7 +119,7 @@ public:
     Result<Expression> run() {
         try {
             const Powers dimension = sum();
-            if (!at_end()) stop("an operator is wanted" + before_rest());
+            if (!at_end()) stop("an operator is expected" + before_rest());
             if (dimension) expression_.dimension = *dimension;
         } catch (const Stop&) {
         }
@@ -155,7 +155,7 @@ private:
         return true;
     }
     void want(char c) {
-        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is wanted" + before_rest());
+        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is expected" + before_rest());
     }
     void emit(Operation operation) { expression_.code.push_back({operation, 0, 0}); }
 
@@ -234,7 +234,7 @@ private:
     }
 
     Powers primary() {
-        if (at_end()) stop("a number, a parameter or `(` is wanted, but the formula ends");
+        if (at_end()) stop("a number, a parameter or `(` is expected, but the formula ends");
         const char c = text_[at_];
         if (take('(')) {
             const Powers dimension = sum();
@@ -244,13 +244,13 @@ private:
         if (is_digit(c) || c == '.') return number();
         if (c == '\'') return quoted_name();
         if (starts_word(c)) return word();
-        stop("a number, a parameter or `(` is wanted" + before_rest());
+        stop("a number, a parameter or `(` is expected" + before_rest());
     }
 
     Powers number() {
         double value = 0;
         const auto [end, code] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (code != std::errc() || !core::base::is_usable_number(value)) stop("this is no number that can be used" + before_rest());
+        if (code != std::errc() || !core::base::is_usable_number(value)) stop("this number cannot be used" + before_rest());
         at_ = static_cast<size_t>(end - text_.data());
         const Unit* unit = nullptr;
         if (!at_end() && starts_word(text_[at_])) {

@@ -107,7 +107,7 @@ private:
         if (!materials.exists()) return read_at("/friction/mu", node_["mu"]);
         std::vector<std::string> names;
         for (const JsonNode& name : materials.elements()) names.push_back(name.string().value_or(""));
-        if (names.size() != 2) return fail(node_, "two materials are wanted");
+        if (names.size() != 2) return fail(node_, "two materials are expected");
         const int pair = context_.scene.friction.pair_of(names[0], names[1]);
         if (pair < 0) return fail(node_, "material `" + names[0] + "`, `" + names[1] + "` are no pair in the scene's `friction`");
         return read_at("/friction/pairs/" + std::to_string(pair) + "/mu", node_["mu"]);

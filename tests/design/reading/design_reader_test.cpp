@@ -86,12 +86,12 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 5, \"upper\": 4", ErrorCode::inconsistent, "#/constraints/3/lower", "above"},
         // a quantity has a dimension: 30 mm is no mass, and a squared distance is no length
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 1.5, \"upper\": \"30mm\"", ErrorCode::wrong_type, "#/constraints/3/upper",
-         "a mass is wanted"},
+         "a mass is expected"},
         {"\"lower\": 0, \"upper\": 30", "\"lower\": 0, \"upper\": \"30 g\"", ErrorCode::wrong_type, "#/constraints/2/upper",
-         "a length is wanted"},
+         "a length is expected"},
         {"\"type\": \"mass\", \"bodies\": [\"cube\"], \"lower\": 1.5, \"upper\": 4",
          "\"type\": \"marker_path\", \"body\": \"cube\", \"point\": [0, 0, 0], \"points\": [[0, 0, 0]], \"upper\": \"4mm\"",
-         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is wanted"},
+         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is expected"},
         {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
         {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
         {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "#/scene", "smal.scene.json"},
@@ -131,7 +131,7 @@ TEST_CASE("a scene in a design's place is called one; what is no object is said 
     INFO(all(word.errors()));
     REQUIRE_FALSE(word);
     CHECK(word.errors().size() == 1);
-    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is wanted, found \"ipopt\""}));
+    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is expected, found \"ipopt\""}));
 }
 
 TEST_CASE("all faults are told at once") {
