@@ -54,7 +54,7 @@ public:
         MatrixX y, mu;       ///< one column per right-hand side
         bool is_one = true;  ///< false: it does not solve the system, which is singular up to rounding; see unsolved()
     };
-    /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows of no matter.
+    /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows irrelevant.
     Solution solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free.

@@ -10,7 +10,7 @@
 ///   as assembled                         one, the start pose (step -1); k = 1, and nothing moves
 ///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 4, the coordinates that move one
 ///   body
-///                                        against the other (linked_pair), in their ranges. The trajectory's steps count for nothing
+///                                        against the other (linked_pair), in their ranges. The trajectory's steps have no effect
 /// With `joints` a certificate over a path claims, too, how far the bodies are from that path where the joints are met at all times: bounds
 /// of their distances are those of the path, wider by joint_charge.
 ///
@@ -100,7 +100,7 @@ struct BodyPieces {
     std::vector<int> cuts;
 };
 
-/// A file of the bodies' meshes, for a printer or another program, that the certificate speaks of too.
+/// A file of the bodies' meshes, for a printer or another program, that the certificate is about too.
 struct ExportedFile {
     std::string file;     ///< relative to the certificate's folder, or absolute
     std::string hash;     ///< files::hash_of its bytes

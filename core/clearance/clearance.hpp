@@ -35,7 +35,7 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
 struct StepRange {
     int first = 0, last = 0;
 };
-/// The same over some of the steps alone; `options.motion` is of no matter. Contract: 0 <= first < last <= the trajectory's steps.
+/// The same over some of the steps alone; `options.motion` is irrelevant. Contract: 0 <= first < last <= the trajectory's steps.
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, StepRange steps, double reach,
                             ClearanceOptions options);
 

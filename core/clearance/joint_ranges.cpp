@@ -105,7 +105,7 @@ private:
         }
     }
 
-    // Trees from the world, then from the first body of what hangs on nothing.
+    // Trees from the world, then from the first body of each part that is not attached to the world.
     void hang_bodies() {
         std::vector<bool> reached(model_.bodies.size(), false);
         std::vector<bool> used(joints_.size(), false);

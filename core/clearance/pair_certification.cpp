@@ -21,7 +21,7 @@ double most_slack(const PairMotion& pair) {
 }
 
 // Is the distance something that arithmetic can tell? Else a search would halve for ever: numbers so large that rounding moves bodies by
-// more than a thousandth of what is to be told apart, or a million radians in one segment.
+// more than a thousandth of what is to be distinguished, or a million radians in one segment.
 bool is_measurable(const PairMotion& pair) {
     return std::all_of(pair.segments.begin(), pair.segments.end(), [&](const PairSegment& segment) {
         const double apart = (segment.a->poses[0].position - segment.b->poses[0].position).norm();

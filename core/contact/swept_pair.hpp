@@ -4,7 +4,7 @@
 /// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
 /// (docs/method/collision.md#broad-phase, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that
 /// move straight is concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move
-/// together stay apart. Nothing is told apart where a pose or a step is not finite.
+/// together stay apart. Boxes are never proven apart where a pose or a step is not finite.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The one hash of the project: FNV-1a with 64 bits, over bytes. It tells whether files and meshes are still the same; it does not
+/// The one hash of the project: FNV-1a with 64 bits, over bytes. It shows whether files and meshes are still the same; it does not
 /// withstand someone who wants two to collide.
 #pragma once
 

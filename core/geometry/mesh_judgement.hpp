@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Can a real mesh be used, and what is odd about it? Where mesh_validity.hpp asks for a perfect solid, this takes what does no harm to a
-/// rigid body, which never collides with itself, and tells it: number, place, and a bound of what it does to the mass.
+/// rigid body, which never collides with itself, and reports it: number, place, and a bound of its effect on the mass.
 #pragma once
 
 #include <string>

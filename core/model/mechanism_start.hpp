@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The start of a model with joints: dependent rows told and set apart, bodies assembled, velocities made to agree.
+/// The start of a model with joints: dependent rows are reported and left out, bodies assembled, velocities made to agree.
 /// docs/method/joints.md#assembly-the-start.
 #pragma once
 

@@ -4,8 +4,8 @@
 ///
 /// The path between two poses of a body is straight in the chart of docs/method/kinematics.md#charts: the body's reference point
 /// (model/model.hpp: its centre of mass, unless the scene names another) moves straight, and R(s) = exp(s [theta]) R_t with theta the
-/// rotation vector of R_{t+1} R_t^T: a turn at constant rate about one direction. Certificates speak of that path. What turns about an axis
-/// elsewhere, such as a crank, cuts the corner: by |dq|/2 tan(|theta|/4), which falls with the square of the number of poses
+/// rotation vector of R_{t+1} R_t^T: a turn at constant rate about one direction. Certificates are about that path. What turns about an
+/// axis elsewhere, such as a crank, cuts the corner: by |dq|/2 tan(|theta|/4), which falls with the square of the number of poses
 /// (PosesFile::largest_cut). A file that is too coarse should be written with more poses; a turn of more than 170 degrees between two of
 /// them, which could have gone either way, is refused.
 ///

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What of a scene decides how its simulation goes on, part by part: a run is taken up by the scene that it was a run of, and what differs
-/// is told by name. Meshes: geometry_hash.hpp.
+/// The parts of a scene that decide how its simulation goes on. A run can be continued only with the scene that it is a run of; the parts
+/// that differ are named. Meshes: geometry_hash.hpp.
 #pragma once
 
 #include <string>

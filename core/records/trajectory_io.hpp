@@ -7,7 +7,7 @@
 /// angles in radians. The first line:
 ///   fettle_trajectory  2, the version of this format (version 1 was one object over many lines; it is refused)
 ///   scene              path of the scene as it was given, "" if there was none
-///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names, meshes and mass_per (geometry_hash.hpp): tells whether a scene has
+///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names, meshes and mass_per (geometry_hash.hpp): shows whether a scene has
 ///                      the meshes that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep

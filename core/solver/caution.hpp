@@ -25,7 +25,7 @@ public:
         double gain_share = 0;  ///< change of the value over the slope; of a quadratic and a whole Newton step 1/2
         bool arrived = true;    ///< nothing that is prescribed remains
     };
-    /// Cut below a quarter: the curvature over the fraction, at least fourfold. Whole: 1/100 where the value fell as foretold or by more,
+    /// Cut below a quarter: the curvature over the fraction, at least fourfold. Whole: 1/100 where the value fell as predicted or by more,
     /// 1/10 or 1/2 where less so; below negligible_shift 0. Until what is prescribed has arrived, the initial one: what is pushed must not
     /// be heavy.
     void adapt(const Outcome& outcome);

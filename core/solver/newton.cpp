@@ -137,8 +137,8 @@ private:
         ++result_.friction_rounds;
     }
 
-    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not hang on that way. With
-    // caution the first are of no matter.
+    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not depend on that way. With
+    // caution the first are irrelevant.
     void lag_friction_of_round() {
         const bool begins_on_the_way = result_.friction_rounds == 0 && !options_.start.empty() && !(options_.caution > 0);
         if (!begins_on_the_way) return lag_friction();

@@ -62,7 +62,7 @@ bool judged_by_default(const core::model::Model& model, int a, int b);
 /// "A:B" of each.
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
 
-/// "A:B" of the pairs of bodies that none of the selection's pairs speaks of.
+/// "A:B" of the pairs of bodies that none of the selection's pairs is about.
 std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
 
 }  // namespace fettle::design::clearance

@@ -81,7 +81,7 @@ Finding finding_of(const Subject& subject, const ReportedPair& pair, bool stoppe
     if (least.status == PairStatus::clear) return Finding::clear;
     if (least.lower > 0 && core::certificate::are_apart(least.solids) && (near || least.status == PairStatus::contact))
         return pair.spec.required_by.empty() && !pushes ? Finding::clear : Finding::contact;
-    if (near || (stopped && !least.complete)) return Finding::undecided;  // told apart from a clash neither way
+    if (near || (stopped && !least.complete)) return Finding::undecided;  // distinguished from a clash neither way
     return least.status == PairStatus::violated ? Finding::below : Finding::undecided;
 }
 

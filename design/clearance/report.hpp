@@ -40,7 +40,7 @@ struct ClearanceReport {
     std::vector<ReportedPair> pairs;  ///< worst first
     std::vector<std::string> ignored;
     std::vector<std::string> left_out;   ///< not judged; over a path no clash was found either, and nothing else is told
-    std::vector<std::string> uncovered;  ///< pairs of bodies that no row speaks of
+    std::vector<std::string> uncovered;  ///< pairs of bodies that no row is about
     std::vector<std::string> notes;      ///< the subject's, and what of the question counted for nothing
     std::string message;                 ///< why nothing was judged, or not to the end; empty: it was
     std::optional<Baseline> baseline;

@@ -59,7 +59,7 @@ Result<AskedLengths> read_lengths(const ClearanceArguments& options) {
     return lengths;
 }
 
-// The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
+// The certificate, and beside it the trajectory that it is about, unless that is a file already.
 Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
         return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
@@ -175,8 +175,7 @@ std::vector<std::string> process_names() {
 }
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
-    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place")
-        .required();
+    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option("--process", options.pairs.process, "Required clearance by process and size of the parts (below)").one_of(process_names());
@@ -189,7 +188,8 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
                               "several times)")
                        .one_value_each();
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
-    app.option("--tolerance", options.tolerance, "How far the two bounds may be apart (default: the lesser of 0.001mm and 0.1% of the minimum)");
+    app.option("--tolerance", options.tolerance,
+               "How far the two bounds may be apart (default: the lesser of 0.001mm and 0.1% of the minimum)");
     Option motion =
         app.flag("--motion", options.subject.motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
     Option kinematic = app.flag("--kinematic", options.subject.kinematic,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The folder that `fettle clearance --out` writes: the answer, the meshes and path that it speaks of, the report.
+/// The folder that `fettle clearance --out` writes: the answer, the meshes and path that it is about, the report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

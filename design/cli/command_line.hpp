@@ -61,7 +61,7 @@ struct GivenValue {
     bool by_place = false;
 };
 
-/// The options of the program, or of one of its commands. A copy speaks of the same.
+/// The options of the program, or of one of its commands. A copy refers to the same.
 class CommandLine {
 public:
     explicit CommandLine(CLI::App* app) : app_(app) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
 /// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
-/// NO_COLOR is set or stdout is no terminal. Names and paths in what is told may come from anybody: on a terminal and in the log they are
+/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: on a terminal and in the log they are
 /// shown without control characters (core/base/text.hpp).
 #pragma once
 

@@ -96,7 +96,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     return plan;
 }
 
-/// Files of the bodies' meshes, which a certificate can speak of.
+/// Files of the bodies' meshes, which a certificate can name.
 bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
 
 /// Of files that hold meshes alone the parts can be arranged.

@@ -173,11 +173,11 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     app.also_called("optimize");
     auto options = std::make_shared<OptimiseArguments>();
     app.option("DESIGN", options->path, "Design to start from").required();
-    app.option("--optimiser,--optimizer", options->optimiser,
-               "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: the design's)")
+    app.option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: the design's)")
         .one_of(optimisers::optimiser_names());
     app.option("--out", options->out, "Folder for the result (default: the design's `output`)");
-    app.option("--starts", options->starts, "How many starts: the file's values, then random ones; the best result is kept").between(1, 1000);
+    app.option("--starts", options->starts, "How many starts: the file's values, then random ones; the best result is kept")
+        .between(1, 1000);
     app.option("--seed", options->seed,
                "With --starts: seed of the random starts (default 1); else: begin at the random start of this seed")
         .between(0, most_lists * 1000.0);

@@ -36,7 +36,7 @@ std::string by_models_text(const Design& design, const OptimiseOutcome& outcome,
     return "with the play of the fits taken up (" + outcome.play_taken_up_by + ": parts stay in the middle of their fits):\n" + text;
 }
 
-// A tuned mechanism whose requirements hang on how its parts lie in their fits.
+// A tuned mechanism whose requirements depend on how its parts lie in their fits.
 std::string play_advice(const OptimiseOutcome& outcome) {
     if (outcome.in_doubt.empty()) return {};
     return "a real mechanism may do either, depending on where its parts lie in their fits. What to do: put into the scene what decides\n"

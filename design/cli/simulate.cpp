@@ -157,7 +157,7 @@ Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core
         console.narrate("warning: a longer run was there, which is kept as " + kept);
         files.keep_as(file, kept);
     }
-    answers::replace_motion(files, options.out);  // what is there speaks of another motion
+    answers::replace_motion(files, options.out);  // what is there is about another motion
     Errors errors = core::records::add_trajectory(files, file, simulation.trajectory, model, run.loaded.scene_path, &simulation.checkpoint);
     if (errors.empty()) errors = run.writing->tables.add_to(files);
     if (errors.empty()) errors = answers::add_animation(files, options.out, model, simulation.trajectory);

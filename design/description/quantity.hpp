@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A number that a simulated design has: what an objective sums and what a constraint bounds. Value and derivative are two functions, so
-/// that their times can be told apart; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
+/// that their times can be distinguished; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
 /// twice. Those of the program: ../quantities. Add one: derive from Quantity, and hand it to the design (design.hpp).
 #pragma once
 

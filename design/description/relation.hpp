@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A condition between parameters alone, known without a simulation: lower <= r(p) <= upper. A ratio, a sum, Grashof's condition. Of a
-/// design file: reading/relation_reader.hpp. Made by a program:
+/// A condition between parameters alone, known without a simulation: lower <= r(p) <= upper. A ratio, a sum, Grashof's condition. Read from
+/// a design file by reading/relation_reader.hpp. Made by a program:
 ///
 ///     design.relations.push_back({.name = "slenderness", .bounds = {.upper = 0.35}, .at = [](const VectorX& p) {
 ///         return RelationValue{p[0] / p[1], Vector2(1 / p[1], -p[0] / (p[1] * p[1]))};

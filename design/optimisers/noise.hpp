@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How rough a computed function is, told from a few of its values at equal spacing along a line, and the difference steps that follow.
-/// Pure numerics: what the values are of, and along which line, is the caller's (studies/roughness.hpp).
+/// How rough a computed function is, estimated from a few of its values at equal spacing along a line, and the difference steps that
+/// follow. Pure numerics: what the values are of, and along which line, is the caller's (studies/roughness.hpp).
 ///
 /// A function of a simulation is f(t) = smooth(t) + noise(t): rounding, solver tolerances, contacts that come and go. Differences of order
 /// k make smooth values smaller, by spacing^k, and noise of standard deviation eps larger, by sqrt((2k)!) / k!:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What a design's clearances have beside the witness that is differentiated: their other branches (description/quantity.hpp), as rows
-/// that optimisers take, or as ties that are told.
+/// that optimisers take, or as ties that are reported.
 #pragma once
 
 #include <vector>

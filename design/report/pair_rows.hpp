@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The pairs of bodies that a report tells of, and their certified distance along the motion. Lengths in mm.
+/// The pairs of bodies that a report shows, and their certified distance along the motion. Lengths in mm.
 #pragma once
 
 #include <functional>

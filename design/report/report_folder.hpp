@@ -5,8 +5,8 @@
 ///   trajectory.json    bodies and motion
 ///   design.final.json, history.jsonl      of an optimisation
 ///   steps.csv, contacts.csv, drives.csv, joints.csv     forces and energies
-/// Others that are there are offered beside the page. Of an optimisation the motion of the design before (trajectory.start.json) and these
-/// tables are computed, and kept there, where they are missing: two simulations.
+/// The page links to other files that are there. For an optimisation the motion of the design before (trajectory.start.json) and these
+/// tables are computed where they are missing, in two simulations, and kept there.
 #pragma once
 
 #include <functional>
