@@ -82,7 +82,7 @@ enum class Solids {
 };
 const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed", "not verified"
 
-/// Does this leave no way for one to lie inside the other? What is told as clear of each other needs that.
+/// Does this leave no way for one to lie inside the other? Bodies are reported as clear of each other only then.
 inline bool are_apart(Solids solids) { return solids == Solids::disjoint || solids == Solids::not_closed; }
 
 struct PairCertificate {
@@ -144,7 +144,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 [[nodiscard]] base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const Certificate& certificate);
 base::Result<Certificate> read_certificate(const std::filesystem::path& path);
 
-/// Is this file a certificate, as far as its keys tell? False for anything that cannot be read.
+/// Is this file a certificate, as far as its keys show? False for anything that cannot be read.
 bool is_certificate_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::certificate

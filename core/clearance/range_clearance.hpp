@@ -13,7 +13,7 @@
 namespace fettle::core::clearance {
 
 /// Bounds for each pair asked for, in their order; judged as over a path, by the same function. The witness attains `upper`, in the world,
-/// with what moves both bodies at its start; its step is -1. PairRequest::far has no effect, and nothing is told of overlap, touch,
+/// with what moves both bodies at its start; its step is -1. PairRequest::far has no effect, and nothing is reported about overlap, touch,
 /// times, nodes and margins: these are of a path.
 std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                           const ClearanceOptions& options);

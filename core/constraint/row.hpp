@@ -30,7 +30,8 @@ struct Row {
 /// What a row's parts are to come to.
 double target_at(const Row& row, double time);
 
-/// Angles of measures with their turns, per measure; of other measures 0. What was before tells the turns: less than half a turn a step.
+/// Angles of measures with their turns, per measure; 0 for other measures. Turns are counted from the value before: less than half a turn a
+/// step.
 /// @param before  empty: angles in (-pi, pi].
 std::vector<double> angles_at(const measure::MeasureSet& set, const std::vector<kinematics::Pose>& poses,
                               const std::vector<double>& before);

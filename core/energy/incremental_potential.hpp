@@ -33,7 +33,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
                                    const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts,
                                    contact::HessianKind kind);
 
-/// What all terms have to tell of a solved step.
+/// What all terms report about a solved step.
 TermReport term_report(const SolvedStep& step);
 
 }  // namespace fettle::core::energy

@@ -58,8 +58,8 @@ public:
     void fail(base::ErrorCode code, std::string message) const;
     void warn(const std::string& message) const;
 
-    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, told once for all calls that follow
-    /// one another.
+    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, reported once for all calls that
+    /// follow one another.
     JsonNode operator[](std::string_view key) const;
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;

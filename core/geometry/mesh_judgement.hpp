@@ -20,7 +20,7 @@ struct MeshFindings {
 /// turned over, no positive volume. Warnings: triangles without area, edges of more than two triangles, loose edges and points, openings
 /// (capped for the mass), triangles that intersect, solids within solids.
 /// @param as_solid  Its mass is that of the volume that it encloses. Else (static bodies, shells, wires) nothing is said of mass; solids
-///                  within solids are told all the same, of a mesh that is closed: they decide what is inside.
+///                  within solids are reported all the same, if the mesh is closed: they decide what is inside.
 /// Contract: connectivity built, unless indices are out of range.
 MeshFindings judge_mesh(const Mesh& mesh, bool as_solid);
 

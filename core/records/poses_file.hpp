@@ -55,7 +55,7 @@ base::Result<PosesFile> read_poses(const std::filesystem::path& path, const mode
 [[nodiscard]] base::Errors write_poses(const std::filesystem::path& path, const stepper::Trajectory& trajectory, const model::Model& model,
                                        const std::string& unit);
 
-/// Is this a JSON file of poses, as far as its keys tell?
+/// Is this a JSON file of poses, as far as its keys show?
 bool is_poses_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::records

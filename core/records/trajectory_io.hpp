@@ -57,7 +57,7 @@ namespace fettle::core::records {
                                           const stepper::Trajectory& trajectory, const model::Model& model,
                                           const std::string& scene_path = {}, const stepper::Checkpoint* checkpoint = nullptr);
 
-/// Is this file a trajectory, as far as its keys tell? False for anything that cannot be read.
+/// Is this file a trajectory, as far as its keys show? False for anything that cannot be read.
 bool is_trajectory_file(const std::filesystem::path& path);
 
 /// Checked: version, shapes of all lists, numbers finite and at most 1e30, indices, rotations orthonormal to 1e-14, that the path is one

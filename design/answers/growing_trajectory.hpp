@@ -31,7 +31,7 @@ public:
     GrowingTrajectory& operator=(const GrowingTrajectory&) = delete;
 
     /// Writes what the simulation has and the file has not. Contract: always of the same simulation, which stays where it is.
-    /// @return why it cannot be written, told once: nothing is written from then on; empty: it is
+    /// @return why it cannot be written, reported once: nothing is written from then on; empty: it is
     std::string write(const core::stepper::Simulation& so_far);
 
     /// Once the whole run is in a file of its own: takes the running file away.

@@ -21,7 +21,7 @@ struct Before {
 /// What has become of a pair.
 struct Change {
     std::optional<Before> before;  ///< as the earlier report has it
-    std::string word;              ///< "new", "existing", "resolved"; empty: nothing to tell
+    std::string word;              ///< "new", "existing", "resolved"; empty: no change
 };
 
 class Baseline {

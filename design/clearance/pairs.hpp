@@ -46,7 +46,7 @@ struct PairSpec {
 struct PairSelection {
     std::vector<PairSpec> pairs;
     std::vector<std::string> ignored;  ///< "A:B"
-    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: a clash of theirs is told, nothing else
+    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: only their clashes are reported
 };
 
 /// Without any minimum only distances are wanted, and no pair has one.

@@ -31,7 +31,7 @@ struct ConsoleOptions {
     bool json = false;
     bool quiet = false;
     std::string log;            ///< file that gets narration and progress too, line by line; empty: none
-    bool holds_answer = false;  ///< until give_answer(): files are written before, and the answer tells if they cannot be
+    bool holds_answer = false;  ///< until give_answer(): files are written before, and the answer says if they cannot be
 };
 
 class Console {
@@ -54,7 +54,7 @@ public:
     /// Text alone, as that of --help.
     void print(const std::string& text);
 
-    /// Files that the answer should have left and did not: told on stderr and in the answer, which is given all the same.
+    /// Files that the command should have written and did not: named on stderr and in the answer, which is given all the same.
     void unwritten(const Errors& errors);
 
     /// What the program ends with: `verdict`, or exit_bad_input where the answer, the log or a file could not be written. A fault of ours
@@ -99,7 +99,7 @@ private:
     std::shared_ptr<std::FILE> log_;
     Clock::time_point begun_ = Clock::now();
     Errors unwritten_;
-    std::string doing_;        ///< what was told last
+    std::string doing_;        ///< what was reported last
     std::string progress_of_;  ///< what the bar is about
     Clock::time_point progress_begun_, line_written_;
     int first_done_ = 0;

@@ -12,7 +12,7 @@
 namespace fettle::design::cli {
 
 struct NamedFile {
-    std::string option;  ///< "--junit"; of what is told by its place "FILE"; of what a file names that file (read_files.hpp)
+    std::string option;  ///< "--junit"; for a positional argument "FILE"; of what a file names that file (read_files.hpp)
     std::string file;
     bool is_written = false;
 };

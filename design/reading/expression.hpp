@@ -36,8 +36,8 @@ struct Expression {
     DimensionPowers dimension;
 };
 
-/// Errors, all that can be told, each with the place in the text: syntax (parse), names and functions that do not exist, with the nearest
-/// one (out_of_range), dimensions that do not go together (wrong_type). `where` is copied into each.
+/// Errors, as many as can be found, each with the place in the text: syntax (parse), names and functions that do not exist, with the
+/// nearest one (out_of_range), dimensions that do not go together (wrong_type). `where` is copied into each.
 Result<Expression> parse_expression(std::string_view text, const std::vector<description::Parameter>& parameters,
                                     const std::string& where = {});
 

@@ -23,7 +23,7 @@ using Shapes = std::vector<std::shared_ptr<const description::Shape>>;
 
 /// @param parameter  Its name and unit: a scale is a pure number if parameter and what it moves are of one dimension, else the amount (in
 ///                   the file's unit, degrees, SI) per unit of a pure number.
-/// @return nothing where a fault was told, which goes to the node's document.
+/// @return nothing where there is a fault, which goes to the node's document.
 std::vector<description::Move> read_moves(const core::files::JsonNode& node, const ReadContext& context, const Shapes& shapes,
                                           const description::Parameter& parameter);
 

@@ -10,7 +10,7 @@
 
 namespace fettle::design::report {
 
-/// So many rows at most are told of, and of so many the curve over time.
+/// At most so many rows are shown, and so many of them with their curve over time.
 inline constexpr std::size_t most_pairs = 200, most_margins = 8;
 
 /// Steps [first, last) of the motion that bounds are of; none: as assembled.

@@ -23,7 +23,7 @@ namespace fettle::design::shapes {
 using MeshMaker = std::function<Result<core::geometry::Mesh>(const std::vector<double>& values)>;
 
 struct RebuiltOptions {
-    double unit = 1;                      ///< that the maker writes coordinates in [m]: their rounding is told by their digits
+    double unit = 1;                      ///< that the maker writes coordinates in [m]: their rounding is estimated from their digits
     std::optional<double> rounding = {};  ///< of coordinates [m]; default: coordinate_rounding
     std::size_t kept = 256;               ///< meshes, of the last dimensions asked for
 };
