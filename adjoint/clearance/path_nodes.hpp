@@ -24,7 +24,7 @@ namespace fettle::adjoint::clearance {
 /// d(end's), the start's rotation vector being 0.
 using NodeShare = Vector6;
 
-/// Of bodies a and b at node k of step t; nothing if it is not known. Contract: 0 <= k < nodes of the step.
+/// How bodies a and b move at node k of step t; nothing if it is not known. Contract: 0 <= k < nodes of the step.
 std::optional<std::array<NodeShare, 2>> node_shares(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                                     int k, int a, int b);
 

@@ -60,11 +60,11 @@ public:
     /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free.
     VectorX multipliers(const LinearisedStep& step);
 
-    /// Of the whole step, where a solution is none.
+    /// The error about the whole step, where there is no solution.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
-    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that the simulation's rounds have not settled, or
-    /// `most_repeats` solves leave more than `repeated` of what they had at first.
+    /// The error about a quasi-static step, where friction's normal forces depend so much on themselves that the simulation's rounds have
+    /// not settled, or `most_repeats` solves leave more than `repeated` of what they had at first.
     static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;

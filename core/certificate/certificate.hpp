@@ -50,7 +50,7 @@
 
 namespace fettle::core::certificate {
 
-/// Of one box: see the top of the file.
+/// The proof over one box: see the top of the file.
 struct BoxProof {
     std::string splits;
     std::vector<Vector3> normals;  ///< about as long as 1

@@ -68,7 +68,7 @@ struct PairStart {
 /// Is `path` of use for the two?
 inline bool ask_for_path(const SolidMesh& a, const SolidMesh& b) { return a.closure.has_value() || b.closure.has_value(); }
 
-/// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
+/// The finding about the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
 /// `not_closed` or `unverified` where one is not closed; `unproven` if lower is 0 or within rounding, or if it is no more than the charge
 /// (and of the path itself neither is inside the other).
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower);

@@ -21,7 +21,7 @@ ProvenClearances certify_clearance_with_proof(const model::Model& model, const s
                                               const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 struct NearClearances {
-    /// Of pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
+    /// Pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
     /// pairs, then of time. A pair can have several parts.
     std::vector<PairClearance> windows;
     bool everything = false;  ///< of every pair that may collide the whole path was searched

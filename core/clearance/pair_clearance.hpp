@@ -30,7 +30,7 @@ const char* to_string(PairStatus status);
 /// What is known of the two solids, for people: "disjoint solids".
 const char* words(Solids solids);
 
-/// Of solids that are not certificate::are_apart, though their surfaces are: why not, and what helps.
+/// Why solids are not certificate::are_apart, though their surfaces are, and what helps.
 const char* why_not_apart(Solids solids);
 
 /// Which two primitives are closest, when, and where. Edge against edge or vertex against triangle; of codimensional parts also vertex

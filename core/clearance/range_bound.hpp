@@ -84,7 +84,7 @@ public:
 
     /// Along one vector. Elements by their corners, of boxes these are null. Contract: |n| <= 1.
     RangeBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b) const;
-    /// Of two elements, along one vector per corner.
+    /// The bound of two elements, along one vector per corner.
     RangeBound along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b) const;
 
 private:

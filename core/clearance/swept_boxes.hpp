@@ -19,7 +19,7 @@
 
 namespace fettle::core::clearance {
 
-/// Of a mesh, in its body's frame.
+/// The box of a mesh, in its body's frame.
 struct BodyBox {
     Vector3 center = Vector3::Zero(), half = Vector3::Zero();
     double size = 0;    ///< from the center to a corner
@@ -34,7 +34,7 @@ struct BodyRange {
     int first = 0, last = 0;
 };
 
-/// Of the bodies of the range.
+/// The swept boxes of the bodies of the range.
 /// @param boxes  of all bodies
 /// @param out    of the first of the range and those after it
 void sweep(const BodyRange& range, const std::vector<BodyBox>& boxes, geometry::Box* out);

@@ -57,7 +57,7 @@ struct DampedContacts {
 double contact_damping_potential(const DampedContacts& damped);
 
 /// Adds first and second derivatives (Gauss-Newton part of the Hessian), as add_barrier_derivatives does.
-/// @param kind  projected: positive semi-definite pair by pair. Of a pair that closes, by its parts, that of phi as the barrier's; of one
+/// @param kind  projected: positive semi-definite pair by pair. For a pair that closes, by its parts, that of phi as the barrier's; for one
 ///              that opens phi's part is negative, and the eigenvalues of the whole are cut off at 0.
 void add_contact_damping_derivatives(const DampedContacts& damped, const std::vector<kinematics::Pose>& poses, HessianKind kind,
                                      std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);

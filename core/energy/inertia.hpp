@@ -18,7 +18,7 @@ void add_inertia_gradient(const kinematics::Pose& pose, const Matrix34& pose_hat
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m^2/s] of a body with Pdot = velocity.
 Vector6 momenta(const kinematics::Pose& pose, const Matrix34& velocity, const Matrix4& moments);
 
-/// Of the bodies that are solved for.
+/// Inertia of the bodies that are solved for.
 extern const BodyTerm inertia_term;
 
 }  // namespace fettle::core::energy

@@ -33,7 +33,7 @@ private:
 /// 16 hexadecimal digits.
 std::string hexadecimal(std::uint64_t hash);
 
-/// Of a text, as 16 hexadecimal digits.
+/// The hash of a text, as 16 hexadecimal digits.
 std::string hash_of(std::string_view text);
 
 }  // namespace fettle::core::files

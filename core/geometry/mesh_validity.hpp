@@ -25,7 +25,7 @@ Errors validate_mesh(const Mesh& mesh, const MeshRequirements& requirements, int
 bool is_closed(const Mesh& mesh);
 bool is_closed(const std::vector<HalfEdge>& halves);  ///< the same of triangles whose indices are in range
 
-/// Of the numbers alone, before anything else has a meaning: coordinates that are not finite, indices out of range.
+/// Faults of the numbers alone, before anything else has a meaning: coordinates that are not finite, indices out of range.
 Errors faults_of_numbers(const Mesh& mesh, int max_per_kind = 5);
 
 }  // namespace fettle::core::geometry

@@ -6,7 +6,7 @@
 
 namespace fettle::core::model {
 
-/// Of a body [N]: m |gravity| + |force| + |torque| / r, r its radius, at least dhat. 0 for a body that is prescribed altogether.
+/// The load on a body [N]: m |gravity| + |force| + |torque| / r, r its radius, at least dhat. 0 for a body that is prescribed altogether.
 double load_magnitude(const Model& model, const Body& body);
 
 /// The loads that a body's proximal force is compared with [N]: its own, of a body without any the largest of the scene. 0: the scene has

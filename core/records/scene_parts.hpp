@@ -15,7 +15,7 @@ struct ScenePart {
     std::string hash;  ///< FNV-1a over the bits of its numbers, hexadecimal
 };
 
-/// Of a model, in a fixed order.
+/// The parts of a model, in a fixed order.
 std::vector<ScenePart> scene_parts(const model::Model& model);
 
 }  // namespace fettle::core::records

@@ -6,7 +6,7 @@
 
 namespace fettle::core::solver {
 
-/// Of the inertia, which is in the Hessian whole: what a step with it misses is no more than this share of it.
+/// In units of the inertia, which is in the Hessian whole: a step with this shift misses no more than this share of its length.
 inline constexpr double negligible_shift = 1e-2;
 
 class Caution {

@@ -33,7 +33,7 @@ public:
     void solve_for_step(const linear::LinearSystem& system, const kinematics::BlockHessian& hessian, const VectorX& r, double drive,
                         std::vector<Vector6>& step);
 
-    /// Of the last solve; carried from step to step, where they make the first Hessian's curvature.
+    /// The multipliers of the last solve; carried from step to step, where they make the first Hessian's curvature.
     const VectorX& multipliers() const { return multipliers_; }
     void forget_multipliers() { multipliers_.resize(0); }
 

@@ -49,7 +49,7 @@ private:
     Balance sum_;
 };
 
-/// Of the bodies that are solved for: (weight + force) times the scene's size, and torques [J].
+/// The largest work on the bodies that are solved for: (weight + force) times the scene's size, and torques [J].
 double largest_work(const model::Model& model);
 
 /// A warning for the user, with a remedy; empty: none. Energy that comes from nowhere is reported from 1% of the scale on, angular

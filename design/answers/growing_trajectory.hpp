@@ -16,7 +16,7 @@ namespace fettle::design::answers {
 /// In the folder of a run that is not whole.
 inline constexpr const char* running_file = "trajectory.running.json";
 
-/// Of a folder: the running file where there is one, else trajectory.json; any other path as it is.
+/// For a folder the running file where there is one, else trajectory.json; any other path as it is.
 std::string run_to_continue(const std::string& path);
 
 class GrowingTrajectory {

@@ -26,10 +26,10 @@ struct Change {
 
 class Baseline {
 public:
-    /// Of a file that `fettle clearance --json` wrote. Errors: the file is no report.
+    /// Reads a file that `fettle clearance --json` wrote. Errors: the file is no report.
     static Result<Baseline> read(const std::string& path);
 
-    /// Of a pair, named in either order, that is judged now; counts it.
+    /// The change of a pair, named in either order, that is judged now; counts it.
     Change compare(const std::string& a, const std::string& b, core::clearance::PairStatus now);
 
     /// Once all pairs have been compared.

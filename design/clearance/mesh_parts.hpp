@@ -15,7 +15,7 @@ namespace fettle::design::clearance {
 /// The trajectory of a run's folder, a killed run's too; nothing where the path is none.
 std::optional<std::string> trajectory_in(const std::string& path);
 
-/// Meshes by their extension, or a folder that has no trajectory. Of a list the first decides.
+/// Meshes by their extension, or a folder that has no trajectory. In a list the first decides.
 bool are_meshes(const std::vector<std::string>& paths);
 
 struct MeshParts {

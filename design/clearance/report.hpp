@@ -59,9 +59,9 @@ struct Question {
     std::function<bool()> should_stop = [] { return false; };
 };
 
-/// Judges the pairs. Of more than 100 pairs of bodies over a path, those that nobody named and that stay twice their minimum apart are
-/// proven to, and not measured. Once a stop is asked for, what the rest would have shown is not known: nothing is reported as violated but
-/// what was certified before. Errors: of the pairs' options (select_pairs).
+/// Judges the pairs. If there are more than 100 pairs of bodies over a path, those that nobody named and that stay twice their minimum
+/// apart are proven to, and not measured. Once a stop is asked for, what the rest would have shown is not known: nothing is reported as
+/// violated but what was certified before. Errors: of the pairs' options (select_pairs).
 Result<ClearanceReport> judge_clearances(const Subject& subject, const Question& question);
 
 /// Marks findings as new, existing or resolved.

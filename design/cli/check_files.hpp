@@ -29,7 +29,7 @@ struct Check {
     std::string file;     ///< that it is about; empty: none
 };
 
-/// Of a pair of bodies; "contact" is not judged.
+/// The outcome for a pair of bodies; "contact" is not judged.
 CheckOutcome to_check(core::clearance::PairStatus status);
 int exit_code(core::clearance::PairStatus status);
 

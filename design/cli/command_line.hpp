@@ -84,7 +84,7 @@ public:
     /// What --help ends with.
     void closing_words(const std::string& text);
     const std::string& name() const;
-    /// Of this command and those below it, in the order in which they were added.
+    /// Facts about this command and those below it, in the order in which they were added.
     CommandFacts facts() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;

@@ -68,7 +68,7 @@ public:
     int internal_error(const std::string& message);
     /// The same where there is not enough memory, with what was being done. @return exit_bad_input
     int out_of_memory();
-    /// Of work that was asked to stop before it had an answer. @return exit code
+    /// Reports that work was asked to stop before it had an answer. @return exit code
     int stopped();
 
     /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves. `file` is kept if it is one.

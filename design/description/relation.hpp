@@ -24,8 +24,8 @@ struct Relation {
     std::string name;
     Bounds bounds = {};    ///< lower == upper: an equation. The margin keeps an optimiser's end, which is not exact, on the right side
     double tolerance = 0;  ///< how far beyond its bounds it still counts as met; of an equation above 0, since parameters are rounded
-    /// Of all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads at once.
-    /// Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
+    /// The value at all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads
+    /// at once. Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
     std::string formula = {};  ///< what `at` was read from (reading/expression.hpp); empty: made by a program
 };

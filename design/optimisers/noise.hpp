@@ -27,7 +27,7 @@ struct NoiseLevel {
     /// Standard deviation, in the unit of the values. detected: level_k of the least such k. spacing_too_large: the least level of at least
     /// three differences, which noise does not exceed by much. spacing_too_small: level_1, of the jumps that were met; 0 if all are equal.
     double noise = 0;
-    /// Of the parabola and the cubic nearest to the values (least squares), per unit of the line's parameter.
+    /// Derivatives of the parabola and the cubic nearest to the values (least squares), per unit of the line's parameter.
     double second_derivative = 0, third_derivative = 0;
     /// Standard deviation that the noise gives them: one that does not exceed its own says nothing.
     double second_derivative_error = 0, third_derivative_error = 0;

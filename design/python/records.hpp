@@ -76,7 +76,7 @@ pybind11::object paths_as_text(pybind11::object given);
 /// Throws the errors on, their place given from this record: "body `cube`/type", "parameter `height`/moves/scale".
 [[noreturn]] void refuse_member(const Errors& errors, pybind11::handle record, const char* record_name, const char* member);
 
-/// Of numbers, vectors and matrices, and of lists, tables and optional ones of them; false for all else.
+/// True for numbers, vectors and matrices, and for lists, tables and optional ones of them; false for all else.
 template <class T>
 bool has_nan(const T& x) {
     if constexpr (std::is_floating_point_v<T>) {

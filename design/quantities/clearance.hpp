@@ -31,8 +31,8 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// Of the features that come as near at the witness's instant, and of the nearest instants in each of `branch_windows` equal parts of
-    /// the range's time, the most distinct ones (adjoint/clearance/distinct_witnesses.hpp), and before them the witness.
+    /// The witness, then the most distinct (adjoint/clearance/distinct_witnesses.hpp) of the features that come as near at its instant, and
+    /// of the nearest instants in each of `branch_windows` equal parts of the range's time.
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
     bool is_at_rest() const override { return !range_.motion; }

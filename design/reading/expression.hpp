@@ -41,7 +41,7 @@ struct Expression {
 Result<Expression> parse_expression(std::string_view text, const std::vector<description::Parameter>& parameters,
                                     const std::string& where = {});
 
-/// Value and gradient at p (SI), exact up to rounding, by forward differentiation. Of min, max and abs the side that is taken is
+/// Value and gradient at p (SI), exact up to rounding, by forward differentiation. The side that min, max and abs take is
 /// differentiated, and the first one where they are equal. Not finite where the formula or its derivative is not.
 description::RelationValue evaluate(const Expression& expression, const VectorX& p);
 

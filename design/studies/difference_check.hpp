@@ -64,8 +64,8 @@ struct LineRow {
     std::string quantity;
     double adjoint = 0, difference = 0, difference_error = 0, relative_error = 0;  ///< as CheckRow's
     bool resolved = true;
-    /// Of ln |q(t) - q(0) - t q'(0)| over ln t, of the side where it is farther from 2, over the least steps (four or five) at which that
-    /// stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
+    /// Slope of ln |q(t) - q(0) - t q'(0)| over ln t, on the side where it is farther from 2, over the least steps (four or five) at which
+    /// that stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
     double slope = 0;
 };
 
