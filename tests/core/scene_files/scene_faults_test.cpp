@@ -193,7 +193,7 @@ TEST_CASE("Each wrong input gives its message and its place", "[scene]") {
         {with("/contact", {{"dhatt", 1}}), ErrorCode::unknown_key, "#/contact/dhatt", "`dhat`"},
         {with("/bodies/0/density", -1240), ErrorCode::out_of_range, "#/bodies/0/density", "greater than 0"},
         {with("/bodies/0/density", "NaN"), ErrorCode::not_finite, "#/bodies/0/density", "not finite"},
-        {with("/bodies/0/density", "heavy"), ErrorCode::wrong_type, "#/bodies/0/density", "a number is wanted"},
+        {with("/bodies/0/density", "heavy"), ErrorCode::wrong_type, "#/bodies/0/density", "a number is expected"},
         {with("/bodies/0/position", {0, 1}), ErrorCode::wrong_type, "#/bodies/0/position", "three"},
         {with("/bodies/0/position", {0, 1, "3 miles"}), ErrorCode::out_of_range, "#/bodies/0/position/2", "miles"},
         {with("/bodies/0/scale", 0), ErrorCode::out_of_range, "#/bodies/0/scale", "greater than 0"},
