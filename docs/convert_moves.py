@@ -4,7 +4,7 @@
 
     docs/convert_moves.py FILE.design.json ...
 
-A file is rewritten in place; what cannot be converted is told and left. Layout is kept but for the lists of moves.
+A file is rewritten in place; what cannot be converted is reported and left. Layout is kept but for the lists of moves.
 """
 import json
 import pathlib

@@ -58,7 +58,7 @@ class Balance {
 public:
     Balance(const Body& body, const Matrix3& R) : body_(body), R_(R), factor_(free_part(body, R)) {}
 
-    // @param loads  <N M, unit motions> and what acts besides.  @param held  prescribed accelerations, others of no matter
+    // @param loads  <N M, unit motions> and what acts besides.  @param held  prescribed accelerations, others irrelevant
     Vector6 accelerations(const Vector3& omega, const Vector6& loads, const Vector6& held) const {
         Vector6 known = held;
         mask(known, false);

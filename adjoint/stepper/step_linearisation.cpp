@@ -141,7 +141,7 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
     const double time = trajectory.time_start + t * trajectory.timestep;
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
              "the step at t = " + std::to_string(time) +
-                 " s has no derivative: friction jams, its normal forces hang on themselves and do not settle"}};
+                 " s has no derivative: friction jams, its normal forces depend on themselves and do not settle"}};
 }
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {

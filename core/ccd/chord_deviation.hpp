@@ -2,7 +2,7 @@
 /// How far the arc of a turning arm leaves its chord: the parts of chord_deviation (curved_ccd.hpp) that need no translation.
 /// The arm's end is x(s) = R(theta + s w) Y, s in [0, 1], and bounds are of |x(s) - ((1 - s) x(0) + s x(1))|.
 ///
-/// Bounds, for exact arithmetic (docs/method.md section 7):
+/// Bounds, for exact arithmetic (docs/method/collision.md#curved-paths):
 ///   B0 = |w|^2 |Y| / 8,   because |x''| <= |w|^2 |Y|;
 ///   B1 = |w| (|w x Y| + |theta x w| |Y| / 3) / 8: x'' = 2 int e^{aM} w x (e^{bM} (w x e^{cM} Y)) over a + b + c = 1, M = [theta + s w],
 ///        and |w x e^{cM} Y| = |e^{-cM} w x Y| <= |w x Y| + c |theta x w| |Y|, with c of mean 1/3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Continuous collision detection of primitives of two rigid bodies on curved paths: the curve of each vertex is replaced by its
-/// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. docs/method.md section 7.
+/// chord, the deviation is charged to the minimum separation, and linear_ccd.hpp decides. docs/method/collision.md#curved-paths.
 ///
 /// From time s, proven to be clear so far, take the rest of the segment if its deviation is at most 3/4 of the gap (lower bound of the
 /// distance less dmin), else a piece whose deviation is at most 1/8 of it. The linear query with dmin + deviation + rounding either clears

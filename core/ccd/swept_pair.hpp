@@ -2,9 +2,9 @@
 /// Two bodies along their path segments, and which parts of their hierarchies come close there.
 ///
 /// Boxes and primitives are separated along a fixed direction n at both ends of the segments. Each vertex stays within its chord deviation
-/// (docs/method.md section 7, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that move straight
-/// is concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move together stay
-/// apart. Nothing is told apart where a pose or a step is not finite.
+/// (docs/method/collision.md#broad-phase, B0 = |w|^2 |X| / 8) of a straight line, and the separation min_a n.a - max_b n.b of points that
+/// move straight is concave in time; so the lesser of both ends, less the deviations, bounds it over the whole segment: bodies that move
+/// together stay apart. Boxes are never proven apart where a pose or a step is not finite.
 #pragma once
 
 #include <array>

@@ -268,7 +268,7 @@ private:
         for (std::size_t i = 0; i < used_.size(); ++i) {
             const Measure& m = joints_.set.measures[i];
             if (used_[i] && m.kind == MeasureKind::angle && !(speed(m.a) + speed(m.b) < largest_turn))
-                return "bodies turn too far between two nodes to tell which way";
+                return "bodies turn so far between two nodes that the direction is ambiguous";
         }
         return {};
     }

@@ -28,7 +28,7 @@ struct ContactAreas {
     std::vector<EqualAreas> equal;
 };
 
-/// Of the contacts that find_contacts finds. Contract: the model is area-weighted.
+/// The areas of the contacts that find_contacts finds. Contract: the model is area-weighted.
 ContactAreas contact_areas(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
 }  // namespace fettle::core::contact

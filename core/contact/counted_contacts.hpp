@@ -81,7 +81,7 @@ public:
     std::vector<Absent> absent;
 };
 
-/// What count_contacts tells beside the contacts, each if it is asked for.
+/// What count_contacts returns beside the contacts, each on request.
 struct CountingNotes {
     WeightParts *forward_parts = nullptr,
                 *backward_parts = nullptr;  ///< both or none: what weights are made of, appended contact by contact

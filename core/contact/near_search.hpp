@@ -11,7 +11,7 @@
 
 namespace fettle::core::contact {
 
-/// Vertices of bodies in space. Of small meshes all are placed beforehand: contacts ask for each several times.
+/// Vertices of bodies in space. Those of small meshes are all placed beforehand: contacts ask for each several times.
 class WorldVertices {
 public:
     WorldVertices(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses);

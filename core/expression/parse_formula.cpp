@@ -57,7 +57,7 @@ constexpr std::array functions{Function{"min", Operation::minimum, Kind::keeps, 
                                Function{"exp", Operation::exponential, Kind::of_number, 1, 1},
                                Function{"log", Operation::logarithm, Kind::of_number, 1, 1}};
 
-// What part of a text stands for.
+// The meaning of a part of a text.
 struct Term {
     int node = 0;
     std::optional<DimensionPowers> dimension;  // none: of something that is wrong already
@@ -73,7 +73,7 @@ public:
         try {
             take('=');
             const Term term = sum();
-            if (!at_end()) stop("an operator is wanted" + before_rest());
+            if (!at_end()) stop("an operator is expected" + before_rest());
             if (errors_.empty()) return formula_of(term);
         } catch (const Stop&) {
         }
@@ -95,7 +95,7 @@ private:
         if (at_end()) return ", but the formula ends";
         const bool comparison = text_[at_] == '<' || text_[at_] == '>' || text_[at_] == '=';
         return " before " + in_quotes(text_.substr(at_, 20)) +
-               (comparison ? "; comparisons stand in `if(a < b, x, y)`; what a relation is compared with, in `lower` and `upper`" : "");
+               (comparison ? "; write comparisons as `if(a < b, x, y)`, and bounds of a relation in `lower` and `upper`" : "");
     }
 
     bool at_end() {
@@ -108,14 +108,14 @@ private:
         return true;
     }
     void want(char c) {
-        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is wanted" + before_rest());
+        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is expected" + before_rest());
     }
 
-    // Of what no input changes the value is known while it is read.
+    // A value that no input changes is known while it is read.
     bool is_constant(int node) const { return nodes_[static_cast<std::size_t>(node)].operation == Operation::constant; }
     double number_at(int node) const { return nodes_[static_cast<std::size_t>(node)].number; }
     int constant(double value) { return add({Operation::constant, {0, 0, 0}, value}); }
-    // What has been computed already is not computed again: variables that use one another would grow without end.
+    // Nothing is computed twice: variables that use one another would grow without end.
     int add(const Node& node) {
         const auto key = std::tuple(node.operation, node.operands, std::bit_cast<std::uint64_t>(node.number));
         const auto [known, is_new] = known_nodes_.emplace(key, static_cast<int>(nodes_.size()));
@@ -147,7 +147,7 @@ private:
         }
     }
 
-    // A number without a unit takes the unit of what it stands beside.
+    // A number without a unit takes the unit of the quantity beside it.
     std::optional<DimensionPowers> one_dimension(Term& a, Term& b, std::size_t at, const std::string& done) {
         if (!a.dimension || !b.dimension || same(*a.dimension, *b.dimension)) return a.dimension ? a.dimension : b.dimension;
         if (takes_unit(a, *b.dimension) || takes_unit(b, *a.dimension)) return a.dimension;
@@ -158,12 +158,12 @@ private:
         return std::nullopt;
     }
 
-    bool takes_unit(Term& term, const DimensionPowers& wanted) {
+    bool takes_unit(Term& term, const DimensionPowers& expected) {
         if (!term.dimension->is_number() || !is_constant(term.node)) return false;
-        const auto dimension = named_dimension(wanted);
+        const auto dimension = named_dimension(expected);
         const double unit = !dimension ? 0 : scope_.plain_unit ? scope_.plain_unit(*dimension) : 1;
         if (!(unit > 0)) return false;
-        term = {constant(number_at(term.node) * unit), wanted};
+        term = {constant(number_at(term.node) * unit), expected};
         return true;
     }
 
@@ -212,7 +212,7 @@ private:
     }
 
     Term primary() {
-        if (at_end()) stop("a number, a " + scope_.what + " or `(` is wanted, but the formula ends");
+        if (at_end()) stop("a number, a " + scope_.what + " or `(` is expected, but the formula ends");
         const char c = text_[at_];
         if (take('(')) {
             const Term term = sum();
@@ -222,13 +222,13 @@ private:
         if (is_digit(c) || c == '.') return number();
         if (c == '\'') return quoted_name();
         if (starts_word(c)) return word();
-        stop("a number, a " + scope_.what + " or `(` is wanted" + before_rest());
+        stop("a number, a " + scope_.what + " or `(` is expected" + before_rest());
     }
 
     Term number() {
         double value = 0;
         const auto [end, code] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (code != std::errc() || !base::is_usable_number(value)) stop("this is no number that can be used" + before_rest());
+        if (code != std::errc() || !base::is_usable_number(value)) stop("this number cannot be used" + before_rest());
         at_ = static_cast<std::size_t>(end - text_.data());
         const base::Unit* unit = nullptr;
         if (!at_end() && starts_word(text_[at_])) {
@@ -276,8 +276,8 @@ private:
         for (const Scope::Name& other : scope_.names) known.emplace_back(other.name);
         fail(ErrorCode::out_of_range, at,
              "there is no " + scope_.what + " " + in_quotes(name) +
-                 (known.empty() ? std::string("; there is none at all") : "; " + files::did_you_mean(name, known, '`')));
-        return {constant(1), std::nullopt};  // stands in until the faults are told
+                 (known.empty() ? std::string("; there are none here") : "; " + files::did_you_mean(name, known, '`')));
+        return {constant(1), std::nullopt};  // stands in until the faults are reported
     }
 
     int input(const std::string& name) {
@@ -335,7 +335,8 @@ private:
         want(')');
         if (term.dimension && !term.dimension->is_number())
             fail(ErrorCode::wrong_type, at, "`floor` is of a number, not of " + described(*term.dimension));
-        if (!is_constant(term.node)) fail(ErrorCode::wrong_type, at, "`floor` jumps, so it is of what no " + scope_.what + " changes");
+        if (!is_constant(term.node))
+            fail(ErrorCode::wrong_type, at, "`floor` jumps, so its value must be one that no " + scope_.what + " changes");
         return {constant(std::floor(is_constant(term.node) ? number_at(term.node) : 0)), DimensionPowers{}};
     }
 
@@ -486,7 +487,7 @@ base::Result<Formula> parse_formula_of(std::string_view text, const Scope& scope
     const std::string remedy =
         formula->dimension.is_number() && unit != nullptr ? "; multiply it by a unit, such as `1 " + std::string(unit->name) + "`" : "";
     return base::Error{ErrorCode::wrong_type, where,
-                       "this is " + described(formula->dimension) + ", " + described(powers_of(dimension)) + " is wanted" + remedy};
+                       "this is " + described(formula->dimension) + ", " + described(powers_of(dimension)) + " is expected" + remedy};
 }
 
 std::vector<std::string> names_in(std::string_view text) {

@@ -113,7 +113,7 @@ std::vector<T> values(const Nodes& nodes, std::span<const T> inputs) {
 }
 
 /// d(node)/d(input), inputs x nodes, exact up to rounding: one sweep forwards.
-/// @param at  values(nodes, inputs) where the derivative is wanted.
+/// @param at  values(nodes, inputs) where the derivative is taken.
 MatrixX gradients(const Nodes& nodes, std::span<const double> at, int input_count);
 
 /// sum_k weights[k] d(node k)/d(input), one sweep backwards. @param weights  One per node.

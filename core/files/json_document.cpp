@@ -119,7 +119,7 @@ bool spells_not_finite(std::string word) {
 }
 
 Error not_finite_error(const std::string& where, const std::string& found) {
-    return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is wanted"};
+    return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is expected"};
 }
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
@@ -136,7 +136,7 @@ std::string plain_words(const std::string& text, std::size_t offset, const std::
     if (is_literal && here == '\'') return "text is in double quotes, not in single ones";
     if (is_literal && (here == '/' || here == '#')) return "JSON has no comments";
     if (has(said, "expected end of input")) return "more text follows behind the end";
-    if (is_literal && has(said, "object key")) return "a key is wanted, which is text in double quotes";
+    if (is_literal && has(said, "object key")) return "a key is expected, which is text in double quotes";
     if (word == "True" || word == "False" || word == "None" || word == "Null") return "JSON writes true, false and null, not " + word;
     if (word.size() > 1 && word[0] == '0' && std::isdigit(static_cast<unsigned char>(word[1]))) return "a number begins with a 0 too many";
     if (has(said, "parsing object separator - unexpected")) return "a colon is missing behind a key";
@@ -293,7 +293,7 @@ JsonNode JsonNode::child(const void* value, std::string_view key) const {
 void JsonNode::fail_as_no_object() const {
     const base::Errors& errors = context_->errors;
     if (!errors.empty() && errors.back().code == ErrorCode::wrong_type && errors.back().where == where()) return;
-    fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "an object is expected, found " + shown());
 }
 
 JsonNode JsonNode::operator[](std::string_view key) const {
@@ -320,7 +320,7 @@ std::vector<JsonNode> JsonNode::elements() const {
     std::vector<JsonNode> out;
     if (!exists()) return out;
     if (!is_array()) {
-        fail(ErrorCode::wrong_type, "a list is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list is expected, found " + shown());
         return out;
     }
     const json& array = value_of(value_);
@@ -415,7 +415,7 @@ bool JsonNode::is_formula() const { return is_string() && value_of(value_).get_r
 std::optional<double> JsonNode::formula(base::Dimension dimension, double si_per_number, const NumberRange& range) const {
     const std::string& text = value_of(value_).get_ref<const std::string&>();
     if (!context_->formulas) {
-        fail(ErrorCode::wrong_type, "a number is wanted; formulas such as " + shown() + " are not read here");
+        fail(ErrorCode::wrong_type, "a number is expected; formulas such as " + shown() + " are not read here");
         return std::nullopt;
     }
     const auto value = context_->formulas(*this, text, dimension, si_per_number);
@@ -430,7 +430,7 @@ std::optional<double> JsonNode::number(const NumberRange& range) const {
         if (is_string() && spells_not_finite(value_of(value_).get<std::string>())) {
             context_->errors.push_back(not_finite_error(where(), shown()));
         } else {
-            fail(ErrorCode::wrong_type, "a number is wanted, found " + shown());
+            fail(ErrorCode::wrong_type, "a number is expected, found " + shown());
         }
         return std::nullopt;
     }
@@ -443,7 +443,7 @@ std::optional<int> JsonNode::integer(int low, int high) const {
     const auto found = number();
     if (!found) return std::nullopt;
     if (*found != std::floor(*found)) {
-        fail(ErrorCode::wrong_type, "a whole number is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a whole number is expected, found " + shown());
         return std::nullopt;
     }
     if (!check_range(*found, {static_cast<double>(low), static_cast<double>(high)}, "")) return std::nullopt;
@@ -453,14 +453,14 @@ std::optional<int> JsonNode::integer(int low, int high) const {
 std::optional<bool> JsonNode::boolean() const {
     if (!exists()) return std::nullopt;
     if (is_bool()) return value_of(value_).get<bool>();
-    fail(ErrorCode::wrong_type, "true or false is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "true or false is expected, found " + shown());
     return std::nullopt;
 }
 
 std::optional<std::string> JsonNode::string() const {
     if (!exists()) return std::nullopt;
     if (is_string()) return value_of(value_).get<std::string>();
-    fail(ErrorCode::wrong_type, "a string is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "a string is expected, found " + shown());
     return std::nullopt;
 }
 
@@ -498,7 +498,7 @@ template <class Read>
 std::optional<Vector3> JsonNode::three(const Read& read, std::string_view what) const {
     if (!exists()) return std::nullopt;
     if (!is_array() || value_of(value_).size() != 3) {
-        fail(ErrorCode::wrong_type, "a list of three " + std::string(what) + " is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list of three " + std::string(what) + " is expected, found " + shown());
         return std::nullopt;
     }
     Vector3 out;
@@ -528,7 +528,7 @@ std::optional<Vector3> JsonNode::quantity3(base::Dimension dimension, double si_
 std::optional<std::vector<double>> JsonNode::numbers() const {
     if (!exists()) return std::nullopt;
     if (!is_array()) {
-        fail(ErrorCode::wrong_type, "a list of numbers is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list of numbers is expected, found " + shown());
         return std::nullopt;
     }
     std::vector<double> out;
@@ -561,7 +561,7 @@ base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const st
     JsonDocument document;
     document.context_->path = name;
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-        return Error{ErrorCode::parse, name, "is empty; JSON is wanted, which begins with {"};
+        return Error{ErrorCode::parse, name, "is empty; JSON is expected, which begins with {"};
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
         return Error{ErrorCode::parse, at(name, place_of(text, nul)), "not valid JSON: here stands a NUL; is the file damaged?"};
     TreeBuilder builder(text, name, document.context_->tree);
@@ -578,7 +578,7 @@ std::string JsonDocument::replace(std::string_view pointer, const JsonNode& valu
     json* at = &context_->tree;
     std::string resolved;
     std::string_view rest = pointer;
-    if (!rest.starts_with('/')) return "a place is wanted, such as /bodies/pin/density";
+    if (!rest.starts_with('/')) return "a place is expected, such as /bodies/pin/density";
     while (!rest.empty()) {
         rest.remove_prefix(1);
         const std::string_view coded = rest.substr(0, rest.find('/'));

@@ -67,8 +67,8 @@ public:
     void fail(base::ErrorCode code, std::string message) const;
     void warn(const std::string& message) const;
 
-    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, told once for all calls that follow
-    /// one another.
+    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, reported once for all calls that
+    /// follow one another.
     JsonNode operator[](std::string_view key) const;
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;
@@ -137,7 +137,7 @@ public:
     /// What reads numbers that are formulas; without one they are faults.
     void read_formulas(FormulaReader reader);
     /// Puts a copy of `value`, of any document, at a place of this one, before it is read. Elements of lists may be named by their `name`
-    /// in place of their number: "/bodies/pin/density". Faults there are told with the place that `value` has in its own document.
+    /// in place of their number: "/bodies/pin/density". Faults there are reported with the place that `value` has in its own document.
     /// @return what is wrong with the pointer: no such element, nothing that could have such a member. Empty: done.
     std::string replace(std::string_view pointer, const JsonNode& value);
     JsonNode root();

@@ -16,7 +16,7 @@ struct SymmetricEigen {
     Eigen::Matrix<double, n, n> vectors;
 };
 
-/// Reads the lower triangle alone. n is 3, 6, 9, 12 or Eigen::Dynamic. Of what is not finite nothing is promised.
+/// Reads the lower triangle alone. n is 3, 6, 9, 12 or Eigen::Dynamic. Nothing is promised for values that are not finite.
 template <int n>
 SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix);
 /// The values alone: cheaper.

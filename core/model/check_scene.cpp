@@ -310,7 +310,7 @@ void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
     check.warnings.push_back(
         (scene.path.empty() ? "scene" : scene.path + "#") + "/gravity: gravity is " +
         base::format_quantity(scene.gravity.norm(), "m/s^2", 4) +
-        ", which is hardly meant; is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths (9.81 on the Earth)");
+        ", which is hardly meant; is it in mm/s^2? m/s^2 are expected, whatever the unit of lengths (9.81 on the Earth)");
 }
 
 /// Contact across a good part of a body. Of the default nothing is said: it goes with the size of what moves.

@@ -71,7 +71,7 @@ std::array<bool, 6> fixed_dofs(const files::JsonNode& node) {
     if (entries.size() == 3) {
         node.fail(ErrorCode::unsupported, no_2d);
     } else if (node.exists() && node.is_array() && entries.size() != 6) {
-        node.fail(ErrorCode::wrong_type, "a list of six (px py pz rx ry rz) is wanted, found " + node.shown());
+        node.fail(ErrorCode::wrong_type, "a list of six (px py pz rx ry rz) is expected, found " + node.shown());
     }
     for (std::size_t i = 0; i < std::min<std::size_t>(6, entries.size()); ++i) fixed[i] = entries[i].boolean().value_or(false);
     return fixed;
@@ -149,7 +149,7 @@ std::optional<Vector3> fixture_vector(const files::JsonNode& node) {
     if (!found) return std::nullopt;
     if (found->size() < 3) {
         node.fail(found->size() == 2 ? ErrorCode::unsupported : ErrorCode::wrong_type,
-                  found->size() == 2 ? no_2d : "a list of three numbers is wanted, found " + node.shown());
+                  found->size() == 2 ? no_2d : "a list of three numbers is expected, found " + node.shown());
         return std::nullopt;
     }
     return Vector3((*found)[0], (*found)[1], (*found)[2]);

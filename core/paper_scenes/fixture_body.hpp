@@ -54,7 +54,7 @@ private:
     struct MeshFile {
         geometry::Mesh mesh;
         base::Errors errors;                ///< it has none
-        std::vector<std::string> warnings;  ///< of the mesh, told where it is named first
+        std::vector<std::string> warnings;  ///< of the mesh, reported where it is named first
         std::string where;                  ///< that place
     };
     struct Placed {

@@ -142,7 +142,7 @@ private:
     }
 
     /// All bodies that are not dynamic are one group, which a dynamic body joins when it carries the explicit id of one of them. Where none
-    /// does they need no number: contact never acts between them anyway, and a start check may speak of them.
+    /// does they need no number: contact never acts between them anyway, and a start check may mention them.
     void merge_groups() {
         std::set<int> fixed_ids;
         int highest = -1;

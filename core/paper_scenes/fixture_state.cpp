@@ -107,7 +107,7 @@ scene::PoseScript read_kinematic_poses(const files::JsonNode& node, const scene:
     for (const files::JsonNode& entry : entries) {
         entry.warn_of_other_keys({"position", "rotation"});
         if (!entry.is_object())
-            entry.fail(ErrorCode::wrong_type, "an object with `position` and `rotation` is wanted, found " + entry.shown());
+            entry.fail(ErrorCode::wrong_type, "an object with `position` and `rotation` is expected, found " + entry.shown());
         if (!entry.is_object()) continue;
         const SavedPose pose = saved_pose(entry);
         const Matrix3 rotation = kinematics::orthonormalised(pose.rotation * unturned);

@@ -121,7 +121,7 @@ private:
         step.fractions = fractions.numbers().value_or(std::vector<double>{});
         const auto& f = step.fractions;
         if (f.size() != step.nodes.size() || f.size() < 2 || f.front() != 0 || f.back() != 1 || !std::is_sorted(f.begin(), f.end()))
-            fractions.fail(ErrorCode::inconsistent, "one fraction per node is wanted, from 0 to 1, none below the one before");
+            fractions.fail(ErrorCode::inconsistent, "one fraction per node is expected, from 0 to 1, none below the one before");
         return step;
     }
 

@@ -195,7 +195,7 @@ const char* has_no_coordinate(const Item& item) {
 }
 const char* has_no_spring(const Item& item) {
     if (const char* reason = has_no_coordinate(item)) return reason;
-    return item.forces().stiffness > 0 ? nullptr : "has no spring: a `stiffness` greater than 0 is wanted in the scene";
+    return item.forces().stiffness > 0 ? nullptr : "has no spring: a `stiffness` greater than 0 is expected in the scene";
 }
 const char* has_no_rest(const Item& item) {
     if (const char* reason = has_no_spring(item)) return reason;
@@ -220,7 +220,7 @@ const char* has_no_limits(const Item& item) {
 template <JointKind kind>
 const char* is_none(const Item& item) {
     if (item.joint().kind == kind) return nullptr;
-    return kind == JointKind::screw ? "is no screw" : kind == JointKind::gear ? "is no gear" : "is no rack";
+    return kind == JointKind::screw ? "is not a screw" : kind == JointKind::gear ? "is not a gear" : "is not a rack";
 }
 
 std::vector<Row> make_table() {
@@ -335,7 +335,7 @@ public:
     Search(const Scene& scene, std::string_view pointer) : scene_(scene), pointer_(pointer) {}
 
     base::Result<Place> run() const {
-        if (!pointer_.starts_with('/')) return fail("a place in a scene is wanted, such as /bodies/0/position/2");
+        if (!pointer_.starts_with('/')) return fail("a place in a scene is expected, such as /bodies/0/position/2");
         std::string_view path = pointer_.substr(1);
         for (const ListName& of : list_names) {
             if (!path.starts_with(of.path) || !path.substr(of.path.size()).starts_with('/')) continue;

@@ -31,7 +31,7 @@ struct Place {
 /// name: "/bodies/pin/density". (A file's dampers stand after its springs in Mechanism::springs, which /springs counts through; a damper is
 /// a spring without stiffness and limits.) A motor's curve is `angle`, `travel`, `torque` or `force`, as in its file, or just `curve`.
 /// Errors, `where` the pointer: a row that is not there, with the nearest; nothing of that name or number; what the scene has no such
-/// number for ("`hinge` is no screw").
+/// number for ("`hinge` is not a screw").
 base::Result<Place> find_place(const Scene& scene, std::string_view pointer);
 /// As the scene's file has it, with numbers.
 std::string pointer_to(const Scene& scene, const Place& place);

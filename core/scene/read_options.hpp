@@ -17,8 +17,8 @@ namespace fettle::core::scene {
 /// Makes the mesh of a `shape` body [m]. Errors: their `where` is replaced by the body's place in the file.
 using ShapeGenerator = std::function<base::Result<geometry::Mesh>(const ShapeSpec&)>;
 
-/// A name that formulas of the file may use as if it were one of its variables: a design's parameter. Takes the place of the variable of
-/// its name.
+/// A name that formulas of the file may use as if it were one of its variables: a design's parameter. It replaces the variable of its
+/// name.
 struct FormulaInput {
     std::string name;
     expression::DimensionPowers dimension;
@@ -26,7 +26,7 @@ struct FormulaInput {
     std::optional<expression::Formula> meaning = {};  ///< over other inputs; none: an input itself, with this value
 };
 
-/// What takes the place of something in the file (files/json_document.hpp, replace).
+/// A value that replaces something in the file (files/json_document.hpp, replace).
 struct Replacement {
     std::string pointer;
     files::JsonNode value;

@@ -70,8 +70,8 @@ struct Friction {
     int pair_of(const std::string& material_a, const std::string& material_b) const;
 };
 
-/// How a step follows from those before it (docs/method.md section 3). Dynamics: first order and dissipative; second order; second order
-/// and energy keeping. Quasi-static: each step is an equilibrium, without velocities.
+/// How a step follows from those before it (docs/method/energy.md#integrators). Dynamics: first order and dissipative; second order; second
+/// order and energy keeping. Quasi-static: each step is an equilibrium, without velocities.
 enum class Integrator { implicit_euler, bdf2, newmark, quasi_static };
 
 /// Resistance to a body's motion in proportion to its mass: force - linear m v at its centre of mass, torque - angular I omega about it.
@@ -157,9 +157,9 @@ struct Scene {
     std::optional<double> end_time;     ///< [s]
     std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of moving_diagonal
     double dmin = 0;                    ///< minimum separation [m]
-    std::optional<double> kappa;        ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method.md 4)
-    bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
-    double contact_damping_time = 0;    ///< of contacts against kappa [s] (docs/method.md section 4); 0: none
+    std::optional<double> kappa;  ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method/contact.md)
+    bool area_weighted = false;   ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
+    double contact_damping_time = 0;  ///< of contacts against kappa [s] (docs/method/contact.md); 0: none
     Friction friction;
     Mechanism mechanism;  ///< joints, springs, motors, loads at points
     Integrator integrator = Integrator::implicit_euler;

@@ -147,7 +147,7 @@ private:
         if (node["a"].exists()) a.body = read_choice(node["a"], body_names_, "body");
         if (node["b"].exists()) b.body = read_choice(node["b"], body_names_, "body");
         if (!node["a"].exists() && !node["b"].exists())
-            node.fail(ErrorCode::missing_key, "`a` and `b` are wanted, bodies; or one of them, for the world");
+            node.fail(ErrorCode::missing_key, "`a` and `b` are expected, bodies; or one of them, for the world");
         if (a.body == b.body && !a.body.empty()) node["b"].fail(ErrorCode::inconsistent, "`a` and `b` are the same body");
         const kinematics::Pose pose_a = pose_of(a.body), pose_b = pose_of(b.body);
         const auto place = [&](const JsonNode& from) { return from.length3(unit_); };
@@ -170,8 +170,8 @@ private:
                           "either `" + key + "`, in the world at the start, or `" + key + "_a` and `" + key + "_b`, in the bodies' frames");
             if (!both && !own_a && !own_b) {
                 if (!node[key].exists() && !node[key + "_a"].exists() && !node[key + "_b"].exists())
-                    node.fail(ErrorCode::missing_key, "`" + key + "` is wanted, in the world at the start; or `" + key + "_a` and `" + key +
-                                                          "_b`, in the bodies' frames");
+                    node.fail(ErrorCode::missing_key, "`" + key + "` is expected, in the world at the start; or `" + key + "_a` and `" +
+                                                          key + "_b`, in the bodies' frames");
                 return;
             }
             const Vector3 world = both ? *both : own_a ? to_world(pose_a, *own_a, w) : to_world(pose_b, *own_b, w);
@@ -199,13 +199,14 @@ private:
         for (const char* key : {"rest", "preload"})
             if (node[key].exists() && !(out.stiffness > 0))
                 node[key].fail(ErrorCode::inconsistent,
-                               std::string("`") + key + "` is of a spring: a `stiffness` greater than 0 is wanted");
+                               std::string("`") + key + "` needs a spring: a `stiffness` greater than 0 is expected");
         if (out.rest && node["preload"].exists())
             node["preload"].fail(ErrorCode::inconsistent, "either `rest` or `preload`: one follows from the other");
         const JsonNode limits = node["limits"];
         if (!limits.exists()) return out;
         const std::vector<JsonNode> ends = limits.elements();
-        if (limits.is_array() && ends.size() != 2) limits.fail(ErrorCode::wrong_type, "two numbers are wanted, the least and the greatest");
+        if (limits.is_array() && ends.size() != 2)
+            limits.fail(ErrorCode::wrong_type, "two numbers are expected, the least and the greatest");
         if (ends.size() != 2) return out;
         const auto low = unit.read(ends[0]), high = unit.read(ends[1]);
         if (low && high && !(*low < *high)) limits.fail(ErrorCode::out_of_range, "the first limit must be less than the second");
@@ -264,7 +265,7 @@ private:
         if (of.size() == 2)
             for (std::size_t k = 0; k < 2; ++k) joint.of[k] = read_choice(of[k], joint_names_, "joint before this one");
         else if (node["of"].is_array())
-            node["of"].fail(ErrorCode::wrong_type, "the names of two joints are wanted");
+            node["of"].fail(ErrorCode::wrong_type, "the names of two joints are expected");
         if (!gear) {
             joint.ratio = node.require("radius").length(unit_).value_or(1);
         } else if (node["teeth"].exists()) {
@@ -280,7 +281,7 @@ private:
         if (node["ratio"].exists()) node["ratio"].fail(ErrorCode::inconsistent, "either `teeth` or `ratio`, not both");
         const auto teeth = node["teeth"].numbers().value_or(std::vector<double>{});
         if (teeth.size() != 2 || teeth[0] == 0 || teeth[1] == 0)
-            node["teeth"].fail(ErrorCode::out_of_range, "two numbers of teeth are wanted, not 0; negative of a gear with teeth inside");
+            node["teeth"].fail(ErrorCode::out_of_range, "two numbers of teeth are expected, not 0; negative for a gear with teeth inside");
         else
             joint.ratio = -teeth[0] / teeth[1];
     }
@@ -341,7 +342,7 @@ private:
             node.fail(ErrorCode::inconsistent, "`control_points` take two `times`, the first and the last, and at least 4 `values`");
         else if (!spline && curve.times.size() != curve.values.size())
             node.fail(ErrorCode::inconsistent, std::to_string(curve.times.size()) + " `times` for " + std::to_string(curve.values.size()) +
-                                                   " `values`; one value for each time is wanted");
+                                                   " `values`; one value for each time is expected");
         for (std::size_t i = 1; i < curve.times.size(); ++i)
             if (!(curve.times[i] > curve.times[i - 1]))
                 node["times"].elements()[i].fail(ErrorCode::out_of_range, "times must increase from entry to entry");
@@ -367,7 +368,7 @@ private:
         const bool fits = node[motion].exists() || node["speed"].exists() || node[push].exists();
         if (given != 1 || !fits) {
             node.fail(ErrorCode::inconsistent,
-                      std::string("one of `") + motion + "`, `speed` and `" + push + "` is wanted for `" + motor.joint + "`");
+                      std::string("one of `") + motion + "`, `speed` and `" + push + "` is expected for `" + motor.joint + "`");
             return;
         }
         if (node[motion].exists()) motor.curve = read_curve(node[motion], amount, rate);

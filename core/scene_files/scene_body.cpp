@@ -54,7 +54,7 @@ scene::MeshProgram read_program(const files::JsonNode& node, const std::string& 
     const files::JsonNode command = node["program"];
     for (const files::JsonNode& word : command.elements()) program.command.push_back(word.string().value_or(""));
     if (command.is_array() && (program.command.empty() || program.command.front().empty()))
-        command.fail(ErrorCode::out_of_range, "a program's command is wanted: its name, then its arguments");
+        command.fail(ErrorCode::out_of_range, "a program's command is expected: its name, then its arguments");
     program.directory = std::filesystem::path(scene).parent_path().string();
     program.format = node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or(program.format);
     program.unit = unit;

@@ -73,9 +73,9 @@ void SceneFormulas::set_length_unit(double unit) { scope_.plain_unit = expressio
 void SceneFormulas::read_variables(const JsonNode& node) {
     std::map<std::string, std::string> texts;
     for (const auto& [name, value] : node.members()) {
-        if (name.starts_with('#') || taken_.count(name) != 0) continue;  // an input takes the place of the variable of its name
+        if (name.starts_with('#') || taken_.count(name) != 0) continue;  // an input replaces the variable of its name
         if (!expression::is_possible_name(name)) {
-            value.fail(ErrorCode::out_of_range, "a variable's name is not empty and has no single quote in it");
+            value.fail(ErrorCode::out_of_range, "a variable's name must not be empty or contain a single quote");
         } else if (value.is_string()) {
             texts[name] = *value.string();
         } else if (value.number()) {
@@ -84,7 +84,7 @@ void SceneFormulas::read_variables(const JsonNode& node) {
     }
     const base::Errors errors = expression::define_variables(texts, scope_, [&](const std::string& name, Formula formula) {
         const double value = value_of(formula).value;
-        if (!base::is_usable_number(value)) node[name].fail(ErrorCode::not_finite, "this is no finite number");
+        if (!base::is_usable_number(value)) node[name].fail(ErrorCode::not_finite, "this is not a finite number");
         expression::Scope::Name out{name, formula.dimension};
         if (formula.is_constant()) {
             input_names_.push_back(name);
@@ -155,7 +155,7 @@ void SceneFormulas::finish(scene::Scene& scene) {
         if (found.number.is_constant() || found.is_used) continue;
         const std::string fault = add(pointer, found.number);
         if (!fault.empty())
-            found.node.fail(ErrorCode::unsupported, "no design can move this number, so that no variable can stand in it: " + fault);
+            found.node.fail(ErrorCode::unsupported, "no design can move this number, so its formula cannot use variables: " + fault);
     }
     for (const auto& [pointer, number] : bound_) {
         const std::string fault = add(pointer, number);

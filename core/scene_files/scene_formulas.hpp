@@ -2,9 +2,9 @@
 /// The formulas of a scene's file: its `variables`, and the numbers that follow from them.
 ///     "variables": { "bore": "5mm", "gap": "0.2mm", "pin": "= bore - gap", "teeth ratio": 1.5 }
 ///     "position": ["= crank + rod * cos(phi)", 0, 0]
-/// A variable that names no other can be moved by a design, by the parameter of its name; so can be all that follows. While the file is
-/// read its numbers are those at the variables' values, and what they are made of is recorded (core/expression/tape.hpp): what the reader
-/// computes of them (a joint's point in its bodies' frames) is a formula of the variables too. Part of scene_reader.hpp.
+/// A variable that names no other can be moved by a design, by the parameter of its name; so can all numbers that follow from it. While the
+/// file is read its numbers are those at the variables' values, and how they are computed is recorded (core/expression/tape.hpp): what the
+/// reader computes from them (a joint's point in its bodies' frames) is a formula of the variables too. Part of scene_reader.hpp.
 #pragma once
 
 #include <array>
@@ -33,17 +33,17 @@ public:
     SceneFormulas& operator=(const SceneFormulas&) = delete;
     ~SceneFormulas();
 
-    /// What numbers without a unit count in formulas: lengths and speeds `unit` [m], angles degrees, others SI.
+    /// The units of numbers without one in formulas: lengths and speeds `unit` [m], angles degrees, others SI.
     void set_length_unit(double unit);
     /// `variables`, in any order. Faults: a name that is not possible or is an input's, a circle.
     void read_variables(const files::JsonNode& node);
 
-    /// The number that was read at a node as `value`: with what it follows from, if a formula stands there.
+    /// The number that was read at a node as `value`; if it is a formula there, with the variables that it follows from.
     expression::Number number(const files::JsonNode& node, double value) const;
     Number3 vector(const files::JsonNode& node, const Vector3& value) const;
 
-    /// A number that the reader has computed: `pointer` says where it is (place.hpp), as what is computed from nodes that `use` names,
-    /// which stand for nothing else then. Does nothing if no formula is in it.
+    /// Takes a number that the reader has computed: `pointer` says where it is (place.hpp). The nodes that it was computed from are named
+    /// by `use`, and serve nothing else then. Does nothing if no formula is in it.
     void bind(const std::string& pointer, const expression::Number& number);
     void use(const files::JsonNode& node);
 

@@ -31,7 +31,7 @@ scene::MotionCurve read_curve(const files::JsonNode& node, double unit, bool is_
     for (const files::JsonNode& value : node["values"].elements()) curve.values.push_back(amount(value));
     if (curve.times.size() != curve.values.size()) {
         node.fail(ErrorCode::inconsistent, std::to_string(curve.times.size()) + " `times` for " + std::to_string(curve.values.size()) +
-                                               " `values`; one value for each time is wanted");
+                                               " `values`; one value for each time is expected");
         return scene::MotionCurve{};
     }
     for (std::size_t i = 1; i < curve.times.size(); ++i) {

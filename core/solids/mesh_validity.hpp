@@ -25,7 +25,7 @@ Errors validate_mesh(const geometry::Mesh& mesh, const MeshRequirements& require
 bool is_closed(const geometry::Mesh& mesh);
 bool is_closed(const std::vector<geometry::HalfEdge>& halves);  ///< the same of triangles whose indices are in range
 
-/// Of the numbers alone, before anything else has a meaning: coordinates that are not finite, indices out of range.
+/// Faults of the numbers alone, before anything else has a meaning: coordinates that are not finite, indices out of range.
 Errors faults_of_numbers(const geometry::Mesh& mesh, int max_per_kind = 5);
 
 }  // namespace fettle::core::solids

@@ -12,7 +12,8 @@
 namespace fettle::core::solids {
 
 /// |signed volume - volume of the union| <= the result [m^3], up to rounding. nullopt: it could not be bounded.
-///   - Triangles of no pair, joined over shared edges, are patches: no other surface crosses them, so one place tells what their sides are.
+///   - Triangles of no pair, joined over shared edges, are patches: no other surface crosses them, so one place decides what their sides
+///   are.
 ///     Where that is not outside (0) and inside (1), the patch is as doubtful as the triangles of pairs. A place that is wound otherwise
 ///     lies in the boxes of doubtful triangles, joined where they overlap, and at most as often as such a box has triangles: the sum of box
 ///     volume times count.

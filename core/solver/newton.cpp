@@ -31,7 +31,7 @@ constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
 constexpr int patient_shifts = 8;              // of the exact Hessian, where nothing is driven
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
-constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
+constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method/joints.md#prescribed-coordinates)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
@@ -137,8 +137,8 @@ private:
         ++result_.friction_rounds;
     }
 
-    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not hang on that way. With
-    // caution the first are of no matter.
+    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not depend on that way. With
+    // caution the first are irrelevant.
     void lag_friction_of_round() {
         const bool begins_on_the_way = result_.friction_rounds == 0 && !options_.start.empty() && !(options_.caution > 0);
         if (!begins_on_the_way) return lag_friction();
@@ -281,7 +281,7 @@ private:
         if (options_.should_stop && options_.should_stop())
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         const std::optional<Direction> direction = find_direction();
-        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
+        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or not numbers");
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);

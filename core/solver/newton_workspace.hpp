@@ -52,7 +52,8 @@ struct NewtonWorkspace {
         if (rows) rows->forget_multipliers();
     }
 
-    /// Of the Hessian, or of the saddle-point system that the rows make of it. @return false: it is not positive definite (on the rows)
+    /// Factorises the Hessian, or the saddle-point system that the rows make of it. @return false: it is not positive definite (on the
+    /// rows)
     bool factorise(const kinematics::BlockHessian& hessian) {
         return rows ? system.factorise(hessian, rows->jacobian()) : system.factorise(hessian);
     }

@@ -57,7 +57,7 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
         } else if (!fs::exists(path, code)) {
             errors.push_back({ErrorCode::file_not_found, path, "no such file"});
         } else {
-            errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
+            errors.push_back({ErrorCode::inconsistent, path, "is not a mesh; several files are judged together only if all are meshes"});
         }
     }
     for (std::size_t i = 0; i < files.size(); ++i) {

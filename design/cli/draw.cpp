@@ -41,7 +41,7 @@ Result<std::pair<int, int>> picture_size(const std::string& text) {
     char end = 0;
     const bool read = std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &end) == 2;
     if (!read || std::min(width, height) < 16 || std::max(width, height) > 16384)
-        return Error{ErrorCode::out_of_range, "--size", "\"" + text + "\" is no size of a picture: 1200x900, each from 16 to 16384"};
+        return Error{ErrorCode::out_of_range, "--size", "\"" + text + "\" is not a size of a picture: 1200x900, each from 16 to 16384"};
     return std::pair{width, height};
 }
 
@@ -200,15 +200,15 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
 }  // namespace
 
 Command add_draw(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("draw", "A picture (png, svg), the nearest points of two bodies marked");
+    CommandLine app = program.command("draw", "Draws a picture (png, svg) with the nearest points of two bodies marked");
     auto options = std::make_shared<DrawArguments>();
     add_shown_options(app, options->shown);
     app.option("--out", options->out, "Picture to write: .png or .svg").required();
     app.option("--view", options->view,
                "iso (default), front, back, left, right, top, bottom, or azimuth,elevation in degrees: where the viewer stands, from the "
                "front to the right and up");
-    Option time = app.option("--time", options->time, "Of a motion: the instant in seconds (default: its start)");
-    app.flag("--worst", options->worst, "Of a motion: the instant at which two bodies are nearest").excludes(time);
+    Option time = app.option("--time", options->time, "For a motion: the instant in seconds (default: its start)");
+    app.flag("--worst", options->worst, "For a motion: the instant at which two bodies are nearest").excludes(time);
     app.option("--size", options->size, "Pixels (default 1200x900)");
     app.option("--title", options->title, "Written on top (default: the file's name, and the time)");
     app.flag("--plain", options->plain, "Mark nothing");

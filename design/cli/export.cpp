@@ -64,7 +64,8 @@ Result<std::vector<std::string>> wanted_formats(const std::string& text) {
         wanted.push_back(text.substr(at, comma - at));
         at = comma + 1;
         if (std::find(known.begin(), known.end(), wanted.back()) != known.end()) continue;
-        return Error{ErrorCode::out_of_range, "--format", "`" + wanted.back() + "` is no format; there are glb, 3mf, stl, obj, vtu, csv"};
+        return Error{ErrorCode::out_of_range, "--format",
+                     "`" + wanted.back() + "` is not a format; known are glb, 3mf, stl, obj, vtu, csv"};
     }
     return wanted;
 }
@@ -79,7 +80,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     plan.one_file = std::find(known.begin(), known.end(), name) != known.end() && !fs::is_directory(to);
     if (!plan.one_file && !extension.empty() && !fs::exists(to))
         return Error{ErrorCode::unsupported, "--to",
-                     "`" + extension + "` is no format; there are .glb .3mf .stl .obj .vtu .pvd .csv .urdf (a folder's name ends in /)"};
+                     "`" + extension + "` is not a format; known are .glb .3mf .stl .obj .vtu .pvd .csv .urdf (a folder's name ends in /)"};
     if (!plan.one_file) {
         const auto formats = wanted_formats(options.formats);
         if (!formats) return formats.errors();
@@ -95,7 +96,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     return plan;
 }
 
-/// Files of the bodies' meshes, which a certificate can speak of.
+/// Files of the bodies' meshes, which a certificate can name.
 bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
 
 /// Of files that hold meshes alone the parts can be arranged.
@@ -104,7 +105,7 @@ Errors arrange_errors(const ExportArguments& options) {
     const Result<Plan> plan = plan_of(options, "");
     if (!plan) return plan.errors();
     if (std::any_of(plan->formats.begin(), plan->formats.end(), has_meshes_alone)) return {};
-    return {{ErrorCode::inconsistent, "--arrange", "is of 3mf, stl and obj: other formats have the parts where they are"}};
+    return {{ErrorCode::inconsistent, "--arrange", "is for 3mf, stl and obj: other formats have the parts where they are"}};
 }
 
 /// The time series: poses at the ends of the steps, and of a run's folder its tables.
@@ -182,7 +183,7 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
 int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
     if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
     if (options.in_place && !options.separate())
-        return console.input_errors({{ErrorCode::inconsistent, "--in-place", "is of --arrange separate: a file for each part"}});
+        return console.input_errors({{ErrorCode::inconsistent, "--in-place", "needs --arrange separate: a file for each part"}});
     if (const Errors errors = arrange_errors(options); !errors.empty()) return console.input_errors(errors);
     Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
@@ -241,20 +242,20 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
 }  // namespace
 
 Command add_export(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("export", "Parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf");
+    CommandLine app = program.command("export", "Writes parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf");
     auto options = std::make_shared<ExportArguments>();
     add_shown_options(app, options->shown);
-    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: of a scene), or folder")
+    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: for a scene), or folder")
         .required();
-    app.option("--format", options->formats, "Into a folder: which, with commas (default: glb,3mf,stl,obj,vtu,csv)");
+    app.option("--format", options->formats, "For a folder: which formats, with commas (default: glb,3mf,stl,obj,vtu,csv)");
     app.option("--arrange", options->arrange,
                "3mf, stl, obj: assembled (default), plate (side by side for printing), separate or parts (a file each, in its own frame)")
         .one_of({"assembled", "plate", "parts", "separate"});
     app.flag("--in-place", options->in_place, "With --arrange separate: each part where it stands in the assembly");
     app.option("--every", options->every, "vtu: a frame for every so many steps (default 1)").at_least(1);
     app.closing_words(
-        "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. Of a certificate, it then names the files of\n"
-        "meshes, and fettle validate says \"stale\" when one has changed.\n"
+        "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. An exported certificate then names\n"
+        "these files, and fettle validate says \"stale\" when one has changed.\n"
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
         "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
         "          fettle export SCENE --to parts --format stl --arrange separate --in-place   for a check by fettle clearance parts "

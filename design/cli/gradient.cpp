@@ -295,7 +295,7 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
         for (const int side : {0, 1}) {
             const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
             if (looked >= reach) continue;
-            text += "  not looked at: " + name + (side == 0 ? " falling" : " growing");
+            text += "  not examined: " + name + (side == 0 ? " falling" : " growing");
             text += looked > 0 ? formatted(" by more than %.3g %%\n", 100 * looked) : "\n";
         }
     }
@@ -427,15 +427,15 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
 }  // namespace
 
 Command add_gradient(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("gradient", "Objective, constraints and their gradients");
+    CommandLine app = program.command("gradient", "Computes objective, constraints and their gradients");
     auto options = std::make_shared<GradientArguments>();
     app.option("DESIGN", options->path, "Design, taken at its values").required();
-    const Option check = app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
+    const Option check = app.flag("--check", options->check, "Compare all gradients with central differences of whole simulations");
     app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2")
         .above(0)
         .needs(check);
     app.option("--check-parameters", options->check_parameters,
-               "Check that many alone, those that the objective hangs on most in shares of their ranges (default: all)")
+               "Check only this many parameters, those that the objective depends on most in shares of their ranges (default: all)")
         .at_least(1)
         .needs(check);
     app.closing_words(

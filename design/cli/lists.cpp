@@ -151,7 +151,7 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
                  int (*run)(const std::string&, Console&)) {
     CommandLine app = program.command(command, description);
     auto name = std::make_shared<std::string>();
-    app.option("NAME", *name, "One of them, with all that there is to say (default: all)");
+    app.option("NAME", *name, "One of them, in full (default: all)");
     app.closing_words("Example:  fettle " + command + " " + example);
     return {app, [name, run](Console& console) { return run(*name, console); }};
 }
@@ -159,7 +159,7 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
 }  // namespace
 
 Command add_shapes(CommandLine& program) {
-    CommandLine app = program.command("shapes", "Generators of parts: dimensions, defaults, relations, a drawing");
+    CommandLine app = program.command("shapes", "Lists generators of parts: dimensions, defaults, relations, a drawing");
     auto options = std::make_shared<ShapesArguments>();
     app.option("NAME", options->name, "One of them, with all its dimensions (default: all)");
     app.option("--draw", options->draw, "Draw it at its defaults: .png or .svg");
@@ -168,15 +168,15 @@ Command add_shapes(CommandLine& program) {
 }
 
 Command add_quantities(CommandLine& program) {
-    return add_list(program, "quantities", "What an objective can sum and a constraint bound", "stroke", run_quantities);
+    return add_list(program, "quantities", "Lists what an objective can sum and a constraint can bound", "stroke", run_quantities);
 }
 
 Command add_joints(CommandLine& program) {
-    return add_list(program, "joints", "Kinds of joint that a scene can have", "revolute", run_joints);
+    return add_list(program, "joints", "Lists the kinds of joint that a scene can have", "revolute", run_joints);
 }
 
 Command add_optimisers(CommandLine& program) {
-    return add_list(program, "optimisers", "Optimisers that a design can name", "ipopt", run_optimisers);
+    return add_list(program, "optimisers", "Lists the optimisers that a design can name", "ipopt", run_optimisers);
 }
 
 }  // namespace fettle::design::cli

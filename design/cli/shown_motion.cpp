@@ -27,7 +27,8 @@ Result<std::string> file_to_read(const ShownOptions& options, std::string& certi
         certificate = path;
         return options.trajectory.empty() ? clearance::certificate_trajectory(path) : options.trajectory;
     }
-    if (!options.trajectory.empty()) return Error{ErrorCode::inconsistent, "--trajectory", "is of a certificate, and " + path + " is none"};
+    if (!options.trajectory.empty())
+        return Error{ErrorCode::inconsistent, "--trajectory", "is for a certificate, and " + path + " is none"};
     return path;
 }
 
@@ -57,10 +58,10 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
 
 void add_shown_options(CommandLine& app, ShownOptions& options) {
     app.option("FILE", options.path,
-               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: of a run, or with meshes")
+               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
         .required();
-    app.option("--unit", options.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
-    app.option("--trajectory", options.trajectory, "Of a certificate: the path that it speaks of (default: beside it)");
+    app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");
     app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
         .one_of(up_names);
 }

@@ -125,7 +125,7 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
     Errors not_taken;
     for (const auto& [option, value] : {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}})
         if (!value.empty())
-            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is of a certificate; ask fettle clearance")});
+            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is for a certificate; use fettle clearance")});
     if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
@@ -151,14 +151,14 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
 
 Command add_validate(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
-        program.command("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
+        program.command("validate", "Checks a scene, design, trajectory, certificate or mesh, and lists every fault with its place");
     auto options = std::make_shared<ValidateArguments>();
     app.option("FILE", options->path,
                "Scene, design, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
         .required();
     app.option("--trajectory", options->trajectory,
-               "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
-    app.option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
+               "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
+    app.option("--minimum", options->minimum, "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
     app.closing_words(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");

@@ -16,8 +16,8 @@ using core::mesh_files::Colour;
 /// these. The report's page says the last two again (design/report/web/src/style.css).
 inline constexpr Colour white{255, 255, 255}, ink{30, 30, 30}, nearest{31, 86, 196}, alarm{194, 24, 47};
 
-/// Of the moving part number `index`: eight colours that people with any colour vision tell apart (after Okabe and Ito, lighter, so that
-/// they can be shaded), from the ninth on the same in paler tones.
+/// The colour of moving part number `index`: eight colours that people with any colour vision can distinguish (after Okabe and Ito,
+/// lighter, so that they can be shaded), from the ninth on the same in paler tones.
 Colour part_colour(int index);
 
 /// One for each body. What is fixed is pale beside what moves; where nothing moves, nothing is.

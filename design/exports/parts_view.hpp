@@ -42,7 +42,7 @@ public:
 
     /// As large as the picture allows.
     Projection fitted(const ProjectionView& view, int width, int height) const;
-    /// Of the box of all parts [m].
+    /// Diagonal of the box of all parts [m].
     double diagonal() const;
     /// Does a part hide this point [m]? Of all edges the nearest to the viewer hides none of itself.
     bool hides(const Vector3& point, const Projection& projection, int width, int height) const;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Which contacts of a design are about to change: told from simulations on both sides of it, by comparing what is in contact at each step.
+/// Which contacts of a design are about to change: found by simulations on both sides of it, by comparing what is in contact at each step.
 /// Nothing is extrapolated: a change is known to lie between the largest simulated move that does not show it and the least that does.
-/// What it means for gradients (docs/method.md section 12): where closest features change, or edges become nearly parallel, forces are
-/// continuous and their derivatives are not, so that gradients jump; where bodies come to touch, part, slide or stick, gradients are
-/// continuous, and change fast.
+/// What it means for gradients (docs/method/design.md#checking-gradients): where closest features change, or edges become nearly parallel,
+/// forces are continuous and their derivatives are not, so that gradients jump; where bodies come to touch, part, slide or stick, gradients
+/// are continuous, and change fast.
 #pragma once
 
 #include <string>

@@ -25,7 +25,7 @@ struct DifferenceSteps {
     VectorX values;     ///< per quantity: where the gradients are checked
     VectorX noise;      ///< per quantity: its rounding
     VectorX size;       ///< per quantity: its largest value
-    VectorX tolerance;  ///< per quantity: what need not be told apart
+    VectorX tolerance;  ///< per quantity: what need not be distinguished
 
     // Of (q(s) - q(-s)) / 2s: standard deviation noise / (sqrt(2) s), three of it.
     double noise_error(Eigen::Index q, double step) const { return 3 / std::sqrt(2.0) * noise[q] / step; }
@@ -310,7 +310,7 @@ private:
     const CheckOptions& options_;
 };
 
-// In the order of the design; those that the objective hangs on most, if not all.
+// In the order of the design; those that the objective depends on most, if not all.
 std::vector<int> parameters_to_check(const problem::DesignProblem& problem, const VectorX& gradient, int most) {
     std::vector<int> order(static_cast<size_t>(gradient.size()));
     std::iota(order.begin(), order.end(), 0);

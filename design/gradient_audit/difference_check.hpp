@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Audit of a design's gradients: central differences of whole simulations. How the differences are weighed goes by themselves and by the
-/// noise of the quantities, never by comparing them with the adjoint. The same simulations tell which contacts are about to change.
+/// noise of the quantities, never by comparing them with the adjoint. The same simulations show which contacts are about to change.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace fettle::design::gradient_audit {
 
 /// The best derivative estimate from central differences D(s) of shrinking step size, by Richardson extrapolation
 ///   T(i, 0) = D(s_i),  T(i, j) = T(i, j-1) + (T(i, j-1) - T(i-1, j-1)) / (r^(2j) - 1)    with r = s_i-1 / s_i
-/// Of all T(i, j) the one with the smallest estimated error is taken: max(|T(i, j) - T(i, j-1)|, |T(i, j) - T(i-1, j-1)|), and no less
+/// Among all T(i, j) the one with the smallest estimated error is taken: max(|T(i, j) - T(i, j-1)|, |T(i, j) - T(i-1, j-1)|), and no less
 /// than what noise makes of D(s_i).
 /// Source: Ridders 1982, Advances in Engineering Software 4(2).
 struct DifferenceEstimate {
@@ -64,8 +64,8 @@ struct LineRow {
     std::string quantity;
     double adjoint = 0, difference = 0, difference_error = 0, relative_error = 0;  ///< as CheckRow's
     bool resolved = true;
-    /// Of ln |q(t) - q(0) - t q'(0)| over ln t, of the side where it is farther from 2, over the least steps (four or five) at which that
-    /// stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
+    /// Slope of ln |q(t) - q(0) - t q'(0)| over ln t, on the side where it is farther from 2, over the least steps (four or five) at which
+    /// that stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
     double slope = 0;
 };
 

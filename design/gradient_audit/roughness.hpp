@@ -65,7 +65,7 @@ RoughnessReport measure_roughness(const problem::DesignProblem& problem, const V
 /// nearer bounds. Largest component 1 or -1; zero only if no parameter has room.
 VectorX downhill_direction(const description::Design& design, const VectorX& p, const VectorX& gradient);
 
-/// What an optimiser of this design can tell apart: the objective to settings.tolerance of its size (of 1 if that is less), a constraint to
+/// What an optimiser of this design can resolve: the objective to settings.tolerance of its size (of 1 if that is less), a constraint to
 /// its margin, and no finer than settings.tolerance in the unit that its violation is counted in. SI.
 VectorX quantity_tolerances(const description::Design& design, const problem::DesignEvaluation& at);
 

@@ -96,7 +96,7 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum;
 }
 
-// Of the objective and of each constraint: what hangs on the motion.
+// Of the objective and of each constraint: what depends on the motion.
 std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at) {
     const description::Simulated simulated{*at.model, at.simulation.trajectory, design.clearance_tolerance};
     const auto zero = [&] { return adjoint::zero_seeds(*at.model, static_cast<int>(at.simulation.trajectory.steps.size())); };

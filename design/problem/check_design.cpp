@@ -106,7 +106,7 @@ private:
         };
         if (!finite)
             add(ErrorCode::out_of_range, place(parameter),
-                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are wanted");
+                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are expected");
         else if (!(parameter.lower <= parameter.value && parameter.value <= parameter.upper))
             add(ErrorCode::out_of_range, place(parameter),
                 "its value " + told(parameter.value) + " does not lie within its bounds, " + told(parameter.lower) + " to " +
@@ -122,10 +122,10 @@ private:
         for (const std::string& input : number.formula.inputs)
             if (scope.find(input) == nullptr)
                 return add(ErrorCode::unknown_key, number.place, "its formula names `" + input + "`, which is no parameter");
-        const auto wanted = core::expression::powers_of(core::scene::dimension_at(scene_, *found));
-        if (!same(number.formula.dimension, wanted))
+        const auto expected = core::expression::powers_of(core::scene::dimension_at(scene_, *found));
+        if (!same(number.formula.dimension, expected))
             return add(ErrorCode::wrong_type, number.place,
-                       "its formula is " + described(number.formula.dimension) + "; " + described(wanted) + " is wanted");
+                       "its formula is " + described(number.formula.dimension) + "; " + described(expected) + " is expected");
         const description::RelationValue at =
             description::function_of(number.formula, design_.parameters)(description::values_of(design_.parameters));
         if (!std::isfinite(at.value) || !at.gradient.allFinite())

@@ -133,7 +133,7 @@ void bind_exports(py::module_& module) {
         py::arg("arrangement") = "assembled", py::arg("every") = 1, py::arg("in_place") = false,
         "Parts for other programs, and with glb and vtu their motion: the paths of the files. format: glb, 3mf, stl, obj, vtu. arrangement "
         "(3mf, stl, obj): assembled; plate, for a printer's bed; parts, a file for each, with in_place where it stands at the start. "
-        "every: of vtu, a frame for so many steps.");
+        "every: for vtu, a frame for every so many steps.");
     module.def(
         "draw_picture",
         [](const Model& model, const Trajectory* trajectory, int t, const std::string& view, std::pair<int, int> size,

@@ -30,7 +30,7 @@ Formula formula_from(py::handle given) {
     if (py::isinstance<py::str>(given))
         return value_or_raise(core::expression::parse_formula(given.cast<std::string>(), Scope(), "formula"));
     if (py::isinstance<py::bool_>(given) || !PyNumber_Check(given.ptr()))
-        refuse(ErrorCode::wrong_type, "formula", shown(given) + ": a formula, a parameter, a number or a text with a unit is wanted");
+        refuse(ErrorCode::wrong_type, "formula", shown(given) + ": a formula, a parameter, a number or a text with a unit is expected");
     Formula out = core::expression::constant_formula(given.cast<double>());
     out.text = py::repr(py::float_(given.cast<double>())).cast<std::string>();
     return out;
@@ -56,7 +56,7 @@ Formula combined(const std::string& pattern, const std::vector<Formula>& operand
 std::vector<double> inputs_of(const Formula& formula, const py::dict& values) {
     std::vector<double> out;
     for (const std::string& name : formula.inputs) {
-        if (!values.contains(name.c_str())) refuse(ErrorCode::missing_key, "formula", "a value of `" + name + "` is wanted");
+        if (!values.contains(name.c_str())) refuse(ErrorCode::missing_key, "formula", "a value of `" + name + "` is expected");
         out.push_back(values[name.c_str()].cast<double>());
     }
     return out;

@@ -22,7 +22,7 @@ DesignFormulas::DesignFormulas(core::files::JsonDocument& document, double lengt
 
 DesignFormulas::~DesignFormulas() { document_.read_formulas({}); }
 
-// As the scene has them: those that follow from a parameter's variable follow from the parameter.
+// The scene's variables as they are; those that follow from a variable which a parameter replaces follow from the parameter.
 void DesignFormulas::take_scene_variables() {
     std::map<std::string, Formula> plain;
     for (const core::scene::Variable& variable : scene_variables_)
@@ -39,7 +39,7 @@ void DesignFormulas::add_parameters(const JsonNode& node, const std::vector<desc
     for (size_t k = 0; k < parameters.size(); ++k) {
         const description::Parameter& parameter = parameters[k];
         if (!core::expression::is_possible_name(parameter.name) && !parameter.name.empty())
-            nodes[k]["name"].fail(ErrorCode::out_of_range, "a parameter's name has no single quote in it: formulas name it");
+            nodes[k]["name"].fail(ErrorCode::out_of_range, "a parameter's name must not contain a single quote, because formulas quote it");
         scope_.names.push_back({parameter.name, core::expression::powers_of(parameter.unit.dimension)});
         values_[parameter.name] = parameter.value;
     }
@@ -51,7 +51,7 @@ void DesignFormulas::read_variables(const JsonNode& node) {
     for (const auto& [name, value] : node.members()) {
         if (name.starts_with('#')) continue;
         if (!core::expression::is_possible_name(name)) {
-            value.fail(ErrorCode::out_of_range, "a variable's name is not empty and has no single quote in it");
+            value.fail(ErrorCode::out_of_range, "a variable's name must not be empty or contain a single quote");
         } else if (values_.count(name) != 0) {
             value.fail(ErrorCode::inconsistent, "a parameter is called `" + name + "` already");
         } else if (value.is_string()) {
@@ -81,7 +81,7 @@ std::optional<double> DesignFormulas::read(const JsonNode& node, const std::stri
     for (const Error& error : formula.errors()) node.fail(error.code, error.message);
     if (!formula) return std::nullopt;
     if (formula->is_constant()) return core::expression::value_of<double>(*formula, {});
-    node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; name variables alone, which no parameter changes");
+    node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; use only variables that no parameter changes");
     return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The formulas of a design's file: over its parameters, its own `variables`, and those of its scene.
 ///     "variables": { "room": "= bore - pin" }          of parameters, and of the scene's variables
-///     "minimum": "= 2 * layer"                         any number of the file, of what no parameter changes
+///     "minimum": "= 2 * layer"                         any number of the file, if no parameter changes it
 /// Part of design_reader.hpp.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace fettle::design::reading {
 
 class DesignFormulas {
 public:
-    /// Reads the formulas of this document from now on. @param length_unit  In which numbers without a unit count [m].
+    /// Reads the formulas of this document from now on. @param length_unit  The unit of numbers without one [m].
     DesignFormulas(core::files::JsonDocument& document, double length_unit, std::vector<core::scene::Variable> scene_variables);
     DesignFormulas(const DesignFormulas&) = delete;
     DesignFormulas& operator=(const DesignFormulas&) = delete;
@@ -27,12 +27,12 @@ public:
 
     const std::vector<core::scene::Variable>& scene_variables() const { return scene_variables_; }
 
-    /// From here on formulas may name them; they take the place of the scene's variables of their names. Faults go to the node.
+    /// Formulas may name these parameters from here on; they replace the scene's variables of their names. Faults go to the node.
     void add_parameters(const core::files::JsonNode& node, const std::vector<description::Parameter>& parameters);
     /// The design's own `variables`.
     void read_variables(const core::files::JsonNode& node);
 
-    /// What formulas of the scene may name: the parameters, and the design's variables.
+    /// The names that formulas of the scene may use: the parameters, and the design's variables.
     std::vector<core::scene::FormulaInput> inputs_of_scene() const;
 
 private:

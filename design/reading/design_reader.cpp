@@ -142,7 +142,7 @@ private:
             if (used.count(design_.parameters[k].name) == 0)
                 nodes[k].fail(ErrorCode::inconsistent,
                               "no number of the scene follows from parameter \"" + design_.parameters[k].name +
-                                  "\": name it in a formula there, or in the design's `set`, such as \"/bodies/" +
+                                  "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
                                   (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
                                   "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
         check_scaled_parts();

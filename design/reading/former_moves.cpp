@@ -42,7 +42,7 @@ std::string place_of(const JsonNode& move, std::string& vector_key) {
     return move["material"].exists() ? "/materials/" + word(move["material"]) + "/mu" : "/friction/mu";
 }
 
-// Times what is not 1.
+// The product; a factor of 1 is left out.
 std::string multiple(const std::string& name, const std::string& scale) {
     return scale == "1" || scale.empty() ? name : scale == "-1" ? "-" + name : scale + " * " + name;
 }
@@ -52,7 +52,7 @@ std::string multiple(const std::string& name, const std::string& scale) {
 std::string instead_of_moves(const JsonNode& moves, const std::string& parameter) {
     const std::string name = core::expression::quoted_if_needed(parameter);
     std::string lines;
-    if (!moves.is_array()) return "formulas take the place of `moves`";
+    if (!moves.is_array()) return "formulas replace `moves`";
     for (const JsonNode& move : moves.elements()) {
         if (!move.is_object()) continue;
         std::string key;
@@ -70,8 +70,8 @@ std::string instead_of_moves(const JsonNode& moves, const std::string& parameter
         for (std::size_t k = 0; k < components.size(); ++k)
             if (components[k].shown() != "0") line(place + "/" + std::to_string(k), multiple(multiple(name, components[k].shown()), scale));
     }
-    return "formulas take the place of `moves`. Give the numbers in the scene by them, or in the design's `set`: " + lines +
-           "; add what other parameters have there, and the offsets (docs/convert_moves.py rewrites a file)";
+    return "formulas replace `moves`. Write them in the scene, or in the design's `set`: " + lines +
+           "; add the terms of other parameters there, and the offsets (docs/convert_moves.py rewrites a file)";
 }
 
 }  // namespace fettle::design::reading

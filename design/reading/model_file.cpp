@@ -33,7 +33,7 @@ std::string extension_of(const std::string& path) {
     return extension;
 }
 
-/// A file that is no JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
+/// A file that is not JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
 bool is_foreign(const std::string& path) {
     const std::string extension = extension_of(path);
     if (extension == ".json" || extension.empty()) return false;

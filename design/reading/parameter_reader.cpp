@@ -14,7 +14,7 @@ namespace {
 using core::files::JsonNode;
 using description::Parameter;
 
-// Of what a parameter can move, and pure numbers.
+// Units of the numbers that a parameter can move, and of pure numbers.
 std::vector<std::string_view> parameter_unit_names() {
     std::vector<std::string_view> names;
     for (const Dimension dimension :
@@ -52,7 +52,7 @@ public:
         parameter.unit = unit ? *find_unit(*unit) : default_unit(variable);
         if (variable != nullptr && !same(variable->formula.dimension, core::expression::powers_of(parameter.unit.dimension)))
             node.fail(ErrorCode::wrong_type, "the scene's variable `" + parameter.name + "` is " + described(variable->formula.dimension) +
-                                                 "; a parameter in " + std::string(parameter.unit.name) + " cannot take its place");
+                                                 "; a parameter in " + std::string(parameter.unit.name) + " cannot replace it");
         read_range(node, variable, parameter);
         if (node["moves"].exists()) node["moves"].fail(ErrorCode::unsupported, instead_of_moves(node["moves"], parameter.name));
         return parameter;
@@ -62,7 +62,7 @@ private:
     void read_name(const JsonNode& node, Parameter& parameter) {
         parameter.name = node.string().value_or("");
         if (!node.is_string()) return;
-        if (parameter.name.empty()) node.fail(ErrorCode::out_of_range, "a parameter's name is not empty");
+        if (parameter.name.empty()) node.fail(ErrorCode::out_of_range, "a parameter's name must not be empty");
         if (!names_.insert(parameter.name).second) {
             node.fail(ErrorCode::inconsistent, "another parameter is called " + node.shown() + " already; names are unique");
         }
@@ -73,7 +73,7 @@ private:
         return found == variables_.end() ? nullptr : &*found;
     }
 
-    // In which people write such a quantity.
+    // The unit in which people write such a quantity.
     Unit default_unit(const core::scene::Variable* variable) const {
         const auto dimension =
             variable == nullptr ? Dimension::length : named_dimension(variable->formula.dimension).value_or(Dimension::length);

@@ -38,8 +38,8 @@ Result<Json> read_result(const fs::path& folder) {
         return Error{ErrorCode::file_not_found, file.string(),
                      "is not there: a report is made of a folder that optimise, simulate or clearance wrote with --out"};
     Json result = parsed_json(*text);
-    if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is no JSON"};
-    if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is no answer of optimise, simulate or clearance"};
+    if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is not JSON"};
+    if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is not an answer of optimise, simulate or clearance"};
     return result;
 }
 

@@ -7,7 +7,7 @@ import fettle
 
 
 class MeanHeight(fettle.Quantity):
-    """Of a body's reference point over the motion."""
+    """Mean height of a body's reference point over the motion."""
 
     dimension = "length"
 

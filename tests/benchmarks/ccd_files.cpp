@@ -253,7 +253,7 @@ int run_ccd_files(int count, char** words) {
     app.add_option("--type", options.type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
         ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
     app.footer(
-        "Example:  ccd_benchmark ../shared/ccd/sample-queries --method inclusion --json\n"
+        "Example:  ccd_benchmark sample-queries --method inclusion --json\n"
         "CSV: 8 rows a query, xn,xd,yn,yd,zn,zd[,truth], vertices at t0 and at t1; truth also from STEM_mma_bool.json beside the file or\n"
         "in ../mma_bool. JSON: one pair of moving rigid bodies. The truth is that of contact, whatever --minimum-separation; counts of\n"
         "misses and false alarms are null (-) where a file has none. One thread. Exit code 1 if a contact was missed, 0 otherwise.");

@@ -15,7 +15,7 @@ using MovingVertices = std::function<core::geometry::PairVertices(double s)>;
 
 /// A time at which the pair touches, within `resolution` of s0 .. s1; negative if it does not.
 /// @param curvature  how far chords fall short: over an interval ds the vertices of the one leave their chords, together with those of the
-///                   other, by at most curvature ds^2 (|dtheta|^2 |X| / 8 each, docs/method.md section 7)
+///                   other, by at most curvature ds^2 (|dtheta|^2 |X| / 8 each, docs/method/collision.md#curved-paths)
 double find_passage(core::geometry::PairType type, const MovingVertices& vertices, double s0, double s1, double curvature,
                     double resolution = 1e-3);
 

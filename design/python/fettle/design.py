@@ -167,7 +167,7 @@ class Clearance(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mass(Record):
-    """Of bodies, as (body, kind), kind as in Body.mass_kind [kg]."""
+    """Mass of bodies, given as (body, kind), kind as in Body.mass_kind [kg]."""
 
     bodies: Sequence[Tuple[Which, str]]
 
@@ -226,7 +226,7 @@ class ContactLoad(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Energy(Record):
-    """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
+    """Energy of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
     kind: str  #: "kinetic", "potential", "spring", "total"
     over: str = "end"
@@ -408,7 +408,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault]) -> Any:
 
 
 def _faults_of_units(design: Design) -> List[Fault]:
-    """Of numbers with units in objective and constraints: their quantity says which dimension is wanted."""
+    """The faults of numbers with units in objective and constraints: their quantity determines the dimension."""
     faults: List[Fault] = []
     measured: List[Tuple[Any, str, Dict[str, Any]]] = [
         (term.quantity, f"objective term `{term.name}`", {"unit": term.unit}) for term in design.objective

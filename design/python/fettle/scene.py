@@ -320,12 +320,12 @@ _EFFORTS = {"length": "force", "angle": "torque"}
 def _unless(found: Any, wanted: type, where: str) -> List[Fault]:
     if isinstance(found, wanted):
         return []
-    return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a fettle.{wanted.__name__} is wanted")]
+    return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a fettle.{wanted.__name__} is expected")]
 
 
 def _unless_all(found: Any, wanted: type, where: str) -> List[Fault]:
     if not isinstance(found, (list, tuple)):
-        return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a list of fettle.{wanted.__name__} is wanted")]
+        return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a list of fettle.{wanted.__name__} is expected")]
     return [fault for k, each in enumerate(found) for fault in _unless(each, wanted, f"{where}/{k}")]
 
 

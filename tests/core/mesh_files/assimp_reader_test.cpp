@@ -109,8 +109,8 @@ TEST_CASE("What a file makes of assimp is an error: a wrong index, no end, no me
     CHECK(contains(fault(folder.write("a.glb", "glTF")), "cannot be read as a mesh"));
     for (const char* empty : {"a.3ds", "empty.glb", "empty.gltf", "empty.dae", "empty.amf"})
         CHECK(contains(fault(folder.write(empty, "")), "is empty; export or download it again"));
-    CHECK(contains(fault(folder.write("junk.gltf", "This is a letter.")), "what is in it is not of the kind that its name says"));
-    CHECK(contains(fault(folder.write("junk.dae", "junk")), "it is damaged, or no XML"));
+    CHECK(contains(fault(folder.write("junk.gltf", "This is a letter.")), "its contents are not of the kind that its name says"));
+    CHECK(contains(fault(folder.write("junk.dae", "junk")), "it is damaged or not XML"));
     const std::string path = folder.write("a.gltf", endless);  // by what is in it, not by its name
     const ImportOutcome slow = run_importer(path, {1, 1 << 30, 1 << 30});
     CHECK(slow.end == ImportOutcome::End::out_of_time);

@@ -337,8 +337,8 @@ TEST_CASE("errors say what is wrong and where") {
     check("a.off", "OFF 1 1 0\n0 0 0\n3 0 1 2\n", ErrorCode::out_of_range, "a.off:3", "`1` is not a vertex index in 0 to 0");
     check("a.off", "OFF BINARY\n", ErrorCode::unsupported, "a.off", "binary");
     check("a.off", "hello\n", ErrorCode::parse, "a.off:1", "OFF");
-    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "it is no PLY file");
-    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "is no STL file, or a damaged one");
+    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "it is not a PLY file");
+    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "is not an STL file, or is damaged");
     check("a.glb", "garbage", ErrorCode::parse, "a.glb", "cannot be read as a mesh");
 }
 

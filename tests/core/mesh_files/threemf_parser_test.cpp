@@ -139,7 +139,7 @@ TEST_CASE("3MF: what is wrong is told, and nothing is taken on trust") {
     bad_number.replace(bad_number.find("y=\"1\""), 5, "y=\"a\"");
     const Error number = only_error(parsed(bad_number));
     CHECK(contains(number.where, "a.3mf/3D/3dmodel.model:4"));
-    CHECK(contains(number.message, "`y` of a <vertex> is no number"));
+    CHECK(contains(number.message, "`y` of a <vertex> is not a number"));
     // Components that place components a hundred times each would fill any memory.
     std::string bomb = wheel;
     for (int level = 2; level < 9; ++level) {

@@ -217,7 +217,7 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(cut.at("left_out").size() == 3);
     const std::string told = run("gradient " + folder.design() + " --check --check-parameters 2").out;
     CHECK(told.find("left out: ") != std::string::npos);
-    for (const Json& name : cut.at("left_out")) CHECK(told.find("not looked at: " + name.get<std::string>()) == std::string::npos);
+    for (const Json& name : cut.at("left_out")) CHECK(told.find("not examined: " + name.get<std::string>()) == std::string::npos);
     CHECK(cut.at("check_simulations").get<int>() <= 58);
     CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 94 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));

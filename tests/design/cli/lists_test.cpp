@@ -137,8 +137,7 @@ TEST_CASE("Completion and manual: made from the program's own options") {
     }
     CHECK(draw.find("\\fB\\-\\-view\\fR \\fITEXT\\fR") != std::string::npos);
     const Answer help = run("--help");
-    for (const char* group : {"Start:", "Check what there is:", "Move and tune:", "See and pass on:", "About the program:"})
-        CHECK(help.says(group));
+    for (const char* group : {"Start:", "Check:", "Simulate and tune:", "Show and export:", "About the program:"}) CHECK(help.says(group));
 }
 
 }  // namespace fettle::design::cli::lists_test

@@ -208,11 +208,11 @@ TEST_CASE("what is no number is no evaluation, and its reason names what it is o
         double value, of_motion, of_mesh;
         std::string reason;
     };
-    const Case cases[] = {{nan, 0, 0, ": its value is no finite number"},
-                          {infinity, 0, 0, ": its value is no finite number"},
-                          {0, nan, 0, ": its derivative is no finite number"},
-                          {0, infinity, 0, ": its derivative is no finite number"},
-                          {0, 0, nan, ": its derivative by `height` is no finite number"}};
+    const Case cases[] = {{nan, 0, 0, ": its value is not a finite number"},
+                          {infinity, 0, 0, ": its value is not a finite number"},
+                          {0, nan, 0, ": its derivative is not a finite number"},
+                          {0, infinity, 0, ": its derivative is not a finite number"},
+                          {0, 0, nan, ": its derivative by `height` is not a finite number"}};
     for (const Case& c : cases) {
         const auto wrong = std::make_shared<Numbers>(c.value, c.of_motion, c.of_mesh);
         Design constrained = tilted_plate(), aimed = tilted_plate();

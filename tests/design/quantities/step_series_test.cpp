@@ -404,7 +404,7 @@ TEST_CASE("quantities of steps that cannot be are refused by name", "[joints]") 
         return errors.empty() ? std::string() : errors[0].message;
     };
     CHECK(message(Energy(EnergyKind::kinetic, Over::end), 3).find("no kinetic energy") != std::string::npos);
-    CHECK(message(MarkerSpeed({1, x_axis, x_axis}, Over::end), 3).find("knows no velocities") != std::string::npos);
+    CHECK(message(MarkerSpeed({1, x_axis, x_axis}, Over::end), 3).find("has no velocities") != std::string::npos);
     CHECK(message(MarkerSpeed({7, x_axis, x_axis}, Over::end), 3).find("7") != std::string::npos);
     CHECK(message(Energy(EnergyKind::total, Over::end), 0).find("needs a step") != std::string::npos);
     CHECK(message(JointLoad({JointLoadKind::force, "nothing"}, Over::end), 3).find("no joint `nothing`") != std::string::npos);

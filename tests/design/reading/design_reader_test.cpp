@@ -80,10 +80,10 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"= height / 2 + 0.12", "= heigth / 2", ErrorCode::out_of_range, "#/set/~1bodies~1cube~1position~12", "did you mean `height`?"},
         {"= height / 2 + 0.12", "= height / 2 +", ErrorCode::parse, "#/set/~1bodies~1cube~1position~12", "the formula ends"},
         {"= height / 2 + 0.12", "= height * width", ErrorCode::wrong_type, "#/set/~1bodies~1cube~1position~12", "this is an area"},
-        {"\"/bodies/cube/density\"", "\"/timestep\"", ErrorCode::wrong_type, "#/set/~1timestep", "a density, a number is wanted"},
+        {"\"/bodies/cube/density\"", "\"/timestep\"", ErrorCode::wrong_type, "#/set/~1timestep", "a density, a number is expected"},
         {"\"unit\": \"deg/s\"", "\"unit\": \"deg/sec\"", ErrorCode::out_of_range, "#/parameters/4/unit", "deg/s"},
         {"\"unit\": \"deg/s\"", "\"unit\": \"mm\"", ErrorCode::wrong_type, "#/set/~1bodies~1table~1prescribed~1ry~1rate",
-         "this is a length, an angular speed is wanted"},
+         "this is a length, an angular speed is expected"},
         {"\"name\": \"width\"", "\"name\": \"height\"", ErrorCode::inconsistent, "#/parameters/1/name", "already"},
         {"\"type\": \"play\"", "\"type\": \"plays\"", ErrorCode::out_of_range, "#/objective/3/type", "play"},
         {"\"weight\": 0.5", "\"wieght\": 0.5", ErrorCode::unknown_key, "#/objective/3/wieght", "weight"},
@@ -96,12 +96,12 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 5, \"upper\": 4", ErrorCode::inconsistent, "#/constraints/3/lower", "above"},
         // a quantity has a dimension: 30 mm is no mass, and a squared distance is no length
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 1.5, \"upper\": \"30mm\"", ErrorCode::wrong_type, "#/constraints/3/upper",
-         "a mass is wanted"},
+         "a mass is expected"},
         {"\"lower\": 0, \"upper\": 30", "\"lower\": 0, \"upper\": \"30 g\"", ErrorCode::wrong_type, "#/constraints/2/upper",
-         "a length is wanted"},
+         "a length is expected"},
         {"\"type\": \"mass\", \"bodies\": [\"cube\"], \"lower\": 1.5, \"upper\": 4",
          "\"type\": \"marker_path\", \"body\": \"cube\", \"point\": [0, 0, 0], \"points\": [[0, 0, 0]], \"upper\": \"4mm\"",
-         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is wanted"},
+         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is expected"},
         {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
         {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
         {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "#/scene", "smal.scene.json"},
@@ -148,7 +148,7 @@ TEST_CASE("a scene in a design's place is called one; what is no object is said 
     INFO(all(word.errors()));
     REQUIRE_FALSE(word);
     CHECK(word.errors().size() == 1);
-    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is wanted, found \"ipopt\""}));
+    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is expected, found \"ipopt\""}));
 }
 
 TEST_CASE("all faults are told at once") {
@@ -221,7 +221,7 @@ TEST_CASE("a density that is not per volume has no unit of a density per volume"
     const Result<DesignFile> wrong = read_design(folder.design());
     REQUIRE_FALSE(wrong);
     CHECK(wrong.errors()[0].where.find("#/set/~1bodies~1cube~1density") != std::string::npos);
-    CHECK(wrong.errors()[0].message.find("this is a density, a number is wanted") != std::string::npos);
+    CHECK(wrong.errors()[0].message.find("this is a density, a number is expected") != std::string::npos);
     const DesignFolder right(
         replaced(replaced(small_design, "\"value\": 1000, \"lower\": 500, \"upper\": 2000", "\"value\": 2, \"lower\": 1, \"upper\": 3"),
                  "\"unit\": \"kg/m^3\"", "\"unit\": \"1\""),
