@@ -16,6 +16,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 
 namespace fettle::design::cli {
@@ -183,8 +184,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     picture_options.title = !options.title.empty() ? options.title : shown->stem + (motion ? formatted(", t = %.6g s", instant.time) : "");
     if (instant.worst && !options.plain) picture_options.marker = marker_of(*instant.worst, shown->subject.model);
     const exports::Picture picture = exports::draw_picture(shown->assembly, instant.poses, picture_options);
-    const Errors errors =
-        core::files::write_file_atomically(options.out, png ? exports::png_bytes(exports::inked(picture)) : exports::svg_text(picture));
+    const Errors errors = core::files::write_file_atomically(options.out, png ? exports::png_bytes(picture) : exports::svg_text(picture));
     if (!errors.empty()) return console.input_errors(errors);
     Json json{{"status", "ok"},       {"out", options.out},     {"time", instant.time},
               {"width", size->first}, {"height", size->second}, {"worst", nullptr}};

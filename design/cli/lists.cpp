@@ -12,6 +12,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
@@ -87,7 +88,7 @@ Errors draw_shape(const std::string& name, const std::string& file) {
     options.height = 700;
     options.title = name + ", default dimensions";
     const exports::Picture picture = exports::draw_picture(assembly, assembly.keyframes.front().poses, options);
-    return core::files::write_file_atomically(file, png ? exports::png_bytes(exports::inked(picture)) : exports::svg_text(picture));
+    return core::files::write_file_atomically(file, png ? exports::png_bytes(picture) : exports::svg_text(picture));
 }
 
 struct ShapesArguments {

@@ -7,6 +7,7 @@
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/projection_view.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/design/python/arguments.hpp"
@@ -91,7 +92,7 @@ std::string picture(const Model& model, const Trajectory* trajectory, const Pict
     options.title = arguments.title;
     const auto& poses = trajectory == nullptr ? assembly.keyframes.front().poses : trajectory->poses[static_cast<std::size_t>(t)];
     const exports::Picture drawn = exports::draw_picture(assembly, poses, options);
-    return arguments.svg ? exports::svg_text(drawn) : exports::png_bytes(exports::inked(drawn));
+    return arguments.svg ? exports::svg_text(drawn) : exports::png_bytes(drawn);
 }
 
 py::bytes draw(const Model& model, const Trajectory* trajectory, const PictureArguments& arguments) {
