@@ -86,7 +86,7 @@ LawCurve involute(const Number& base, const Number& turn, const Number& from, co
 LawCurve law_curve(Law law, const Number& from, const Number& to);
 
 /// Natural cubic spline through the points (second derivative zero at the ends), or closed through the first point again, as one cubic per
-/// interval; parameters by the square roots of chord lengths (centripetal) at the present values. Contract: at least 2 points (3 closed),
+/// interval; parameters by the square roots of chord lengths (centripetal). Contract: at least 2 points (3 closed),
 /// neighbours differ.
 std::vector<Bezier> spline_through(const std::vector<Point2>& points, bool closed = false);
 

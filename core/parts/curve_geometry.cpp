@@ -304,6 +304,25 @@ double sampled_length(const Curve& curve) {
     return sum;
 }
 
+Box2 box_of(const Curve& curve) {
+    const int n = sample_count(curve);
+    Vector2 before = value(start_of(curve));
+    Box2 box{before, before};
+    double longest = 0;
+    for (int k = 1; k <= n; ++k) {
+        const Vector2 now = k == n ? value(end_of(curve)) : at(curve, static_cast<double>(k) / n).position;
+        box.low = box.low.cwiseMin(now);
+        box.high = box.high.cwiseMax(now);
+        longest = std::max(longest, (now - before).norm());
+        before = now;
+    }
+    if (n > 1) {
+        box.low.array() -= 0.3 * longest;
+        box.high.array() += 0.3 * longest;
+    }
+    return box;
+}
+
 double nearest_parameter(const Curve& curve, const Vector2& p) {
     if (const auto* line = std::get_if<Line>(&curve)) {
         const Vector2 a = value(line->start), d = value(line->end) - a;
@@ -482,46 +501,74 @@ LawCurve involute(const Number& base, const Number& turn, const Number& from, co
     return law_curve(std::move(law), from, to);
 }
 
+namespace {
+
+// Solves before[k] x[k-1] + at[k] x[k] + after[k] x[k+1] = right[k]; no pivots needed where rows are dominated by `at`.
+std::vector<Point2> tridiagonal(const std::vector<Number>& before, std::vector<Number> middle, const std::vector<Number>& after,
+                                std::vector<Point2> right) {
+    const std::size_t n = middle.size();
+    for (std::size_t k = 1; k < n; ++k) {
+        const Number factor = before[k] / middle[k - 1];
+        middle[k] = middle[k] - factor * after[k - 1];
+        right[k] = right[k] - factor * right[k - 1];
+    }
+    for (std::size_t k = n; k-- > 0;) {
+        if (k + 1 < n) right[k] = right[k] - after[k] * right[k + 1];
+        right[k] = (1.0 / middle[k]) * right[k];
+    }
+    return right;
+}
+
+}  // namespace
+
 std::vector<Bezier> spline_through(const std::vector<Point2>& points, bool closed) {
     FETTLE_ASSERT(points.size() >= (closed ? 3u : 2u), "a spline goes through at least two points, a closed one through three");
     const std::size_t n = points.size(), intervals = closed ? n : n - 1;
     const auto point = [&](std::size_t k) -> const Point2& { return points[k % n]; };
-    std::vector<double> h(intervals);
+    std::vector<Number> h;
     for (std::size_t k = 0; k < intervals; ++k) {
-        h[k] = std::sqrt((value(point(k + 1)) - value(point(k))).norm());
-        FETTLE_ASSERT(h[k] > 0, "neighbours of a spline differ");
+        h.push_back(sqrt(length(point(k + 1) - point(k))));
+        FETTLE_ASSERT(h[k].value > 0, "neighbours of a spline differ");
     }
-    // First derivatives m at the points: continuity of the second derivative, a linear system of constants, so m = weights . points.
-    MatrixX system = MatrixX::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)), right = system;
-    const auto add = [&](MatrixX& m, std::size_t row, std::size_t column, double x) {
-        m(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column % n)) += x;
-    };
+    // First derivatives m at the points, so that the second is continuous: of the interval from k on it is
+    //     6 (p1 - p0) / h^2 - (4 m0 + 2 m1) / h   at its start,   -6 (p1 - p0) / h^2 + (2 m0 + 4 m1) / h   at its end.
+    std::vector<Number> before(n), middle(n), after(n);
+    std::vector<Point2> right(n);
     for (std::size_t k = 0; k < n; ++k) {
-        const bool first = !closed && k == 0, last = !closed && k + 1 == n;
-        if (!last) {  // from the interval after k: (6 (p1 - p0) / h^2 - (4 m0 + 2 m1) / h) is the second derivative at its start
-            const double after = h[k % intervals];
-            add(system, k, k, 4 / after);
-            add(system, k, k + 1, 2 / after);
-            add(right, k, k + 1, 6 / (after * after));
-            add(right, k, k, -6 / (after * after));
+        if (closed || k + 1 < n) {
+            const Number inverse = 1.0 / h[k];
+            middle[k] += 4.0 * inverse;
+            after[k] = 2.0 * inverse;
+            right[k] = right[k] + (6.0 * inverse * inverse) * (point(k + 1) - point(k));
         }
-        if (!first) {
+        if (closed || k > 0) {
             const std::size_t previous = (k + n - 1) % n;
-            const double before = h[previous % intervals];
-            add(system, k, k, 4 / before);
-            add(system, k, previous, 2 / before);
-            add(right, k, k, 6 / (before * before));
-            add(right, k, previous, -6 / (before * before));
+            const Number inverse = 1.0 / h[previous];
+            middle[k] += 4.0 * inverse;
+            before[k] = 2.0 * inverse;
+            right[k] = right[k] + (6.0 * inverse * inverse) * (point(k) - point(previous));
         }
     }
-    const MatrixX weights = system.partialPivLu().solve(right);
-    std::vector<Point2> slopes(n);
-    for (std::size_t k = 0; k < n; ++k)
-        for (std::size_t i = 0; i < n; ++i)
-            slopes[k] = slopes[k] + Number(weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i))) * points[i];
+    std::vector<Point2> slopes;
+    if (!closed) {
+        slopes = tridiagonal(before, middle, after, right);
+    } else {
+        // Sherman and Morrison: the corners of the matrix are a product of two vectors.
+        const Number gamma = -middle[0], top = before[0], bottom = after[n - 1];
+        std::vector<Point2> aside(n);
+        aside[0] = {gamma, 0};
+        aside[n - 1] = {bottom, 0};
+        middle[0] = middle[0] - gamma;
+        middle[n - 1] = middle[n - 1] - bottom * top / gamma;
+        slopes = tridiagonal(before, middle, after, right);
+        const std::vector<Point2> z = tridiagonal(before, middle, after, aside);
+        const Number ratio = top / gamma, below = 1.0 + z[0].x + ratio * z[n - 1].x;
+        const Point2 factor = (1.0 / below) * (slopes[0] + ratio * slopes[n - 1]);
+        for (std::size_t k = 0; k < n; ++k) slopes[k] = slopes[k] - z[k].x * factor;
+    }
     std::vector<Bezier> out;
     for (std::size_t k = 0; k < intervals; ++k) {
-        const Number third = h[k] / 3;
+        const Number third = h[k] / 3.0;
         out.push_back({{point(k), point(k) + third * slopes[k], point(k + 1) - third * slopes[(k + 1) % n], point(k + 1)}});
     }
     return out;

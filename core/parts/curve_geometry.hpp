@@ -35,6 +35,13 @@ int sample_count(const Curve& curve);
 /// Some length of it, from samples [m]: 0 only if it is a point.
 double sampled_length(const Curve& curve);
 
+/// A box that holds it; of general curves by samples and a margin.
+struct Box2 {
+    Vector2 low, high;
+    bool meets(const Box2& b) const { return (low.array() <= b.high.array()).all() && (b.low.array() <= high.array()).all(); }
+};
+Box2 box_of(const Curve& curve);
+
 /// u of the point of the curve that is nearest to p; of general curves from samples, then refined.
 double nearest_parameter(const Curve& curve, const Vector2& p);
 double distance_to(const Curve& curve, const Vector2& p);

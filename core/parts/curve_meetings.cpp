@@ -71,11 +71,6 @@ void arc_arc(const Arc& a, const Arc& b, double tolerance, std::vector<Point2>& 
     out.push_back(foot - aside * left);
 }
 
-struct Box2 {
-    Vector2 low, high;
-    bool meets(const Box2& b) const { return (low.array() <= b.high.array()).all() && (b.low.array() <= high.array()).all(); }
-};
-
 struct Sample {
     double from, to;
     Box2 box;

@@ -9,7 +9,6 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_geometry.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/profile_booleans.hpp"
 #include "fettle/core/parts/sampled_profile.hpp"
 
 namespace fettle::core::parts {
@@ -85,10 +84,7 @@ Wall thinnest_wall(const Profile& profile, const Loop& hole) {
     return wall;
 }
 
-Placement2 turn_about(const Number& angle, const Point2& about) {
-    const Point2 d = direction(angle);
-    return {d, left_of(d), about - turned(about, d), false};
-}
+Placement2 turn_by(const Point2& d, const Point2& about) { return {d, left_of(d), about - turned(about, d), false}; }
 
 Loop placed(const Loop& loop, const Placement2& placement) {
     Loop out;
@@ -117,11 +113,6 @@ Loop numbered(Loop loop, int k) {
     for (Segment& segment : loop.segments)
         if (!segment.feature.empty()) segment.feature += " " + std::to_string(k + 1);
     return loop;
-}
-
-Profile numbered(Profile profile, int k) {
-    for (Loop& loop : profile.loops) loop = numbered(std::move(loop), k);
-    return profile;
 }
 
 // Gauss and Legendre's five points on [0, 1].
@@ -238,18 +229,18 @@ Errors faults_of(const Profile& profile) {
 }
 
 Loop moved(const Loop& loop, const Point2& by) { return placed(loop, {{1, 0}, {0, 1}, by, false}); }
-Loop turned(const Loop& loop, const Number& angle, const Point2& about) { return placed(loop, turn_about(angle, about)); }
+Loop turned(const Loop& loop, const Number& angle, const Point2& about) { return placed(loop, turn_by(direction(angle), about)); }
 Loop mirrored(const Loop& loop, const Point2& point, const Point2& along) { return placed(loop, mirror_in(point, along)); }
 Profile moved(const Profile& profile, const Point2& by) { return placed(profile, {{1, 0}, {0, 1}, by, false}); }
-Profile turned(const Profile& profile, const Number& angle, const Point2& about) { return placed(profile, turn_about(angle, about)); }
+Profile turned(const Profile& profile, const Number& angle, const Point2& about) {
+    return placed(profile, turn_by(direction(angle), about));
+}
+Profile turned(const Profile& profile, int k, int n, const Point2& about) { return placed(profile, turn_by(direction(k, n), about)); }
 Profile mirrored(const Profile& profile, const Point2& point, const Point2& along) { return placed(profile, mirror_in(point, along)); }
 
 std::vector<Loop> polar_copies(const Loop& loop, int count, const Point2& about) {
     std::vector<Loop> out;
-    for (int k = 0; k < count; ++k) {
-        const Point2 d = direction(k, count);
-        out.push_back(numbered(placed(loop, {d, left_of(d), about - turned(about, d), false}), k));
-    }
+    for (int k = 0; k < count; ++k) out.push_back(numbered(placed(loop, turn_by(direction(k, count), about)), k));
     return out;
 }
 
@@ -263,21 +254,6 @@ std::vector<Loop> linear_copies(const Loop& loop, int count, const Point2& step)
     std::vector<Loop> out;
     for (int k = 0; k < count; ++k) out.push_back(numbered(moved(loop, Number(k) * step), k));
     return out;
-}
-
-Result<Profile> polar_repeat(const Profile& profile, int count, const Point2& about) {
-    std::vector<Profile> copies;
-    for (int k = 0; k < count; ++k) {
-        const Point2 d = direction(k, count);
-        copies.push_back(numbered(placed(profile, {d, left_of(d), about - turned(about, d), false}), k));
-    }
-    return united(copies);
-}
-
-Result<Profile> linear_repeat(const Profile& profile, int count, const Point2& step) {
-    std::vector<Profile> copies;
-    for (int k = 0; k < count; ++k) copies.push_back(numbered(moved(profile, Number(k) * step), k));
-    return united(copies);
 }
 
 Number area(const Profile& profile) {
