@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+/// A part as drawn: mesh, exact Jacobian, true surfaces. Plain values, which do not need the drawing any more.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/parts/solid.hpp"
+
+namespace fettle::core::parts {
+
+struct DrawnPart {
+    geometry::Mesh mesh;             ///< [m]
+    std::vector<Matrix3X> jacobian;  ///< per dimension k: d vertices / d dimension k, 3 x n, exact
+    std::vector<DrawnSurface> surfaces;
+    std::vector<Facet> facets;  ///< per triangle of the mesh
+    Deviation deviation;
+    Structure structure;               ///< for the next drawing of this part
+    std::vector<std::string> changes;  ///< against the structure that the drawing was given (drawing.hpp)
+};
+
+struct DrawnOptions {
+    bool jacobian = true;
+    bool check = true;  ///< that the mesh is a solid: closed, oriented, without self-intersection (geometry/mesh_validity.hpp)
+};
+
+/// Errors: a mesh that is no solid; faults name the features whose facets meet ("`slot 2` and `rim` cross").
+Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::string& name, const DrawnOptions& options = {});
+
+}  // namespace fettle::core::parts

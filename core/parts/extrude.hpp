@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// Solids from profiles that are moved along z.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/parts/profile.hpp"
+#include "fettle/core/parts/solid.hpp"
+
+namespace fettle::core::parts {
+
+/// How a layer ends. Over the last `height` of it the outline draws in by `inset` (holes widen; < 0: the reverse), along straight slopes.
+/// inset = height: a chamfer of 45 degrees. height = the whole layer: draft.
+struct End {
+    Number inset, height;
+};
+
+/// From z = from to z = to > from.
+struct Layer {
+    Profile profile;
+    Number from, to;
+    End lower, upper;
+    std::string feature;  ///< of its end faces
+};
+
+/// Walls stand for planes and cylinders, with chamfers for planes and cones; other curves for extruded ones.
+/// Errors: an empty profile, heights out of order ("`collar` has no height: 0 mm"), facets that cross each other (the number of segments is
+/// too small for what is near), a chamfer larger than what it is cut from.
+Result<Solid> extruded(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const End& lower = {},
+                       const End& upper = {});
+
+/// Layers stacked on each other, in order, without gaps: each begins where the one before ends (same value, or it is an error). They share
+/// the faces between them: a crank is a collar, a disc and a pin. Each layer must touch the next in some area.
+Result<Solid> stacked(Drawing& drawing, const std::vector<Layer>& layers);
+
+/// Turned by `twist` [rad] in all as it rises, about the z axis, counter-clockwise if positive: helical gears; threads and worms from
+/// their cross section.
+/// @param steps  Number of slices; 0: by the drawing's facets.
+Result<Solid> twisted(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const Number& twist, int steps = 0);
+
+}  // namespace fettle::core::parts

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// The true surfaces that facets stand for: round is round.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/parts/point.hpp"
+
+namespace fettle::core::parts {
+
+enum class SurfaceKind {
+    plane,     ///< through `point`, normal `axis` (outwards)
+    cylinder,  ///< about the line through `point` along `axis`: `radius`
+    cone,      ///< the same, `radius` in the plane through `point`, growing by `slope` per length along `axis`
+    sphere,    ///< about `point`: `radius`
+    torus,     ///< about the line: a circle of radius `slope` whose centre runs at `radius` in the plane through `point`
+    extruded,  ///< a curve moved along `axis`
+    revolved,  ///< a curve turned about the line
+    helical    ///< a curve turned about the line while it moves along: `slope` per full turn
+};
+const char* name_of(SurfaceKind kind);
+
+/// @tparam T  Number while drawing, double once drawn.
+template <class T>
+struct SurfaceOf {
+    SurfaceKind kind = SurfaceKind::plane;
+    std::string feature;  ///< the designer's name of the curve that it comes from
+    T point_x = 0, point_y = 0, point_z = 0;
+    T axis_x = 0, axis_y = 0, axis_z = 1;  ///< of length 1
+    T radius = 0, slope = 0;
+    bool hollow = false;  ///< the material is outside: a bore
+};
+using Surface = SurfaceOf<Number>;
+using DrawnSurface = SurfaceOf<double>;
+
+/// Where the true surface is, seen from a facet that stands for it.
+enum class Side {
+    on,       ///< it is the facet
+    outside,  ///< on the facet or outside of the mesh
+    inside,   ///< on the facet or inside
+    both
+};
+
+/// Per triangle.
+struct Facet {
+    int surface = 0;  ///< index into the solid's
+    Side side = Side::on;
+};
+
+}  // namespace fettle::core::parts
