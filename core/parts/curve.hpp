@@ -50,6 +50,11 @@ struct Law {
     /// Largest |second derivative| over a range of the parameter [m / parameter^2]; without it the law is sampled, and what is said of the
     /// curve's distance from its chords is found, not proven.
     std::function<double(double from, double to)> largest_bend;
+    bool turns_one_way = false;  ///< promises that it has no inflection
+
+    /// Where this one runs at a distance to the left of another (profile_booleans.hpp, offset).
+    std::shared_ptr<const Law> offset_of;
+    Number offset_distance = 0;
 };
 
 /// A part of a law's curve: parameters from `from` to `to`, which may fall.
@@ -59,15 +64,17 @@ struct LawCurve {
     Point2 start, end;  ///< the points there, or the neighbours' that agree with them
 };
 
+using Curve = std::variant<Line, Arc, Bezier, LawCurve>;
+
 /// One curve of a loop.
 struct Segment {
-    std::variant<Line, Arc, Bezier, LawCurve> curve;
+    Curve curve;
     std::string feature;           ///< the designer's name for what it bounds: "rim", "slot 2"; for messages and surfaces
     std::optional<Facets> facets;  ///< how it becomes a polygon, if not as the drawing says
 };
 
-const Point2& start_of(const Segment& segment);
-const Point2& end_of(const Segment& segment);
+const Point2& start_of(const Curve& curve);
+const Point2& end_of(const Curve& curve);
 
 /// Involute of the circle of radius `base` about the origin, at the roll angle u:
 ///     base (cos(u + turn) + u sin(u + turn), sin(u + turn) - u cos(u + turn)),  at distance base sqrt(1 + u^2) from the origin.
@@ -79,7 +86,7 @@ LawCurve involute(const Number& base, const Number& turn, const Number& from, co
 LawCurve law_curve(Law law, const Number& from, const Number& to);
 
 /// Natural cubic spline through the points (second derivative zero at the ends), or closed through the first point again, as one cubic per
-/// interval; parameters by the square roots of chord lengths (centripetal) at the present values. Contract: at least 2 points (3 closed),
+/// interval; parameters by the square roots of chord lengths (centripetal). Contract: at least 2 points (3 closed),
 /// neighbours differ.
 std::vector<Bezier> spline_through(const std::vector<Point2>& points, bool closed = false);
 

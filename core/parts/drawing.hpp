@@ -38,8 +38,12 @@ public:
     Drawing& operator=(const Drawing&) = delete;
 
     /// The next dimension; derivatives are with respect to these, in their order.
-    Number dimension(double value) { return tape_.input(value); }
+    Number dimension(double value) {
+        dimensions_.push_back(value);
+        return tape_.input(value);
+    }
     int dimension_count() const { return tape_.input_count(); }
+    const std::vector<double>& dimensions() const { return dimensions_; }
     expression::Tape& tape() { return tape_; }
     const expression::Tape& tape() const { return tape_; }
 
@@ -48,8 +52,8 @@ public:
 
     /// For operations that decide: the kept decision, if there is one for this and it `holds`; else what `decide` returns, which is noted
     /// as a change if something else was kept.
-    const std::vector<int>& decision(const std::string& what, const std::function<bool(const std::vector<int>&)>& holds,
-                                     const std::function<std::vector<int>()>& decide);
+    std::vector<int> decision(const std::string& what, const std::function<bool(const std::vector<int>&)>& holds,
+                              const std::function<std::vector<int>()>& decide);
 
     const Structure& structure() const { return made_; }
     /// What could not be kept, a sentence each: the triangles are not those of the drawing whose structure was handed in. Empty where
@@ -58,6 +62,7 @@ public:
 
 private:
     expression::Tape tape_;
+    std::vector<double> dimensions_;
     Structure kept_, made_;
     std::vector<std::string> changes_;
 };

@@ -65,7 +65,7 @@ public:
     Point2 end() const;
 
 private:
-    Path& add(std::variant<Line, Arc, Bezier, LawCurve> curve);
+    Path& add(Curve curve);
 
     Point2 start_;
     std::string feature_;

@@ -34,15 +34,15 @@ Loop turned(const Loop& loop, const Number& angle, const Point2& about = {});
 Loop mirrored(const Loop& loop, const Point2& point, const Point2& along);
 Profile moved(const Profile& profile, const Point2& by);
 Profile turned(const Profile& profile, const Number& angle, const Point2& about = {});
+/// By the fraction k / n of a turn; n of them are symmetric.
+Profile turned(const Profile& profile, int k, int n, const Point2& about);
 Profile mirrored(const Profile& profile, const Point2& point, const Point2& along);
 
 /// Copies 0 .. count-1, the k-th turned by k * step about a point (step: a full turn / count if not given), moved by k * step. Features of
-/// copies are called "slot 1", "slot 2", ... They are united where they meet, if as one profile.
+/// copies are called "slot 1", "slot 2", ...
 std::vector<Loop> polar_copies(const Loop& loop, int count, const Point2& about = {});
 std::vector<Loop> polar_copies(const Loop& loop, int count, const Number& step, const Point2& about);
 std::vector<Loop> linear_copies(const Loop& loop, int count, const Point2& step);
-Result<Profile> polar_repeat(const Profile& profile, int count, const Point2& about = {});
-Result<Profile> linear_repeat(const Profile& profile, int count, const Point2& step);
 
 /// Area of the true figure [m^2]; of curves of a law by Gauss quadrature, to 1e-9.
 Number area(const Profile& profile);

@@ -18,6 +18,10 @@ Result<Profile> difference(const Profile& a, const Profile& b);
 Result<Profile> difference(const Profile& a, const std::vector<Profile>& cut);
 Result<Profile> intersection(const Profile& a, const Profile& b);
 
+/// Copies as one figure, united where they meet; by a full turn / count, by k * step. Features as in profile.hpp, polar_copies.
+Result<Profile> polar_repeat(const Profile& profile, int count, const Point2& about = {});
+Result<Profile> linear_repeat(const Profile& profile, int count, const Point2& step);
+
 /// Everything within `distance` of the figure (> 0, corners become arcs), or what is left when everything within -distance of what is not
 /// the figure is taken away (< 0). Exact for lines and arcs. Of other curves it is the curve through the offset points, whose tangents are
 /// exact. Parts that vanish are left out: a figure that vanishes altogether is empty.

@@ -2,6 +2,7 @@
 /// The true surfaces that facets stand for: round is round.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,8 @@ const char* name_of(SurfaceKind kind);
 template <class T>
 struct SurfaceOf {
     SurfaceKind kind = SurfaceKind::plane;
-    std::string feature;  ///< the designer's name of the curve that it comes from
-    T point_x = 0, point_y = 0, point_z = 0;
-    T axis_x = 0, axis_y = 0, axis_z = 1;  ///< of length 1
+    std::string feature;                             ///< the designer's name of the curve that it comes from
+    std::array<T, 3> point{0, 0, 0}, axis{0, 0, 1};  ///< axis: of length 1
     T radius = 0, slope = 0;
     bool hollow = false;  ///< the material is outside: a bore
 };

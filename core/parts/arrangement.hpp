@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// Curves, cut wherever they meet, and loops put together from the pieces: what Booleans and offsets of profiles are made with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/parts/curve_geometry.hpp"
+#include "fettle/core/parts/path.hpp"
+
+namespace fettle::core::parts {
+
+struct ArrangedCurve {
+    Segment segment;
+    int group = 0;
+};
+
+/// Part of a curve between two nodes, nothing meeting it in between.
+struct Piece {
+    std::size_t source = 0;  ///< which curve
+    Cut begin, end;          ///< on it
+    int from = 0, to = 0;    ///< nodes
+    bool backwards = false;  ///< against its curve; from and to are in the direction of the piece
+};
+
+struct Arrangement {
+    std::vector<ArrangedCurve> curves;
+    std::vector<Point2> nodes;
+    std::vector<Piece> pieces;  ///< by curve, each along it
+    double tolerance = 0;       ///< what is nearer than this is the same [m]
+
+    Curve curve_of(const Piece& piece) const;
+    Vector2 middle_of(const Piece& piece) const;
+    /// Whether two pieces lie on each other, in the same (1) or in opposite directions (-1); 0: they do not.
+    int coincide(const Piece& a, const Piece& b) const;
+};
+
+/// @param within_groups  Whether curves of the same group are cut by each other too.
+/// Points nearer than `tolerance` to each other are one node: that of the earlier curve.
+Arrangement arranged(std::vector<ArrangedCurve> curves, double tolerance, bool within_groups);
+
+Piece turned_round(Piece piece);
+
+/// Loops from pieces that run with the material to their left, where several leave a node by the sharpest turn to the left. Pieces of one
+/// curve that follow each other become one again. Errors: a piece that nothing follows.
+Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::vector<Piece>& pieces);
+
+}  // namespace fettle::core::parts

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/parts/drawn_part.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/geometry/mesh_validity.hpp"
+
+namespace fettle::core::parts {
+namespace {
+
+using expression::Tape;
+
+DrawnSurface drawn_surface(const Surface& surface) {
+    DrawnSurface out;
+    out.kind = surface.kind;
+    out.feature = surface.feature;
+    for (std::size_t k = 0; k < 3; ++k) {
+        out.point[k] = surface.point[k].value;
+        out.axis[k] = surface.axis[k].value;
+    }
+    out.radius = surface.radius.value;
+    out.slope = surface.slope.value;
+    out.hollow = surface.hollow;
+    return out;
+}
+
+std::vector<Matrix3X> jacobian_of(const Drawing& drawing, const Solid& solid) {
+    const int dimensions = drawing.dimension_count();
+    const auto n = static_cast<Eigen::Index>(solid.vertices.size());
+    std::vector<Matrix3X> out(static_cast<std::size_t>(dimensions), Matrix3X::Zero(3, n));
+    if (dimensions == 0) return out;
+    const auto& nodes = drawing.tape().nodes();
+    // Inputs are at the values that they were recorded with: those that the nodes of the vertices have.
+    const std::vector<double> at = expression::values<double>(nodes, drawing.dimensions());
+    const MatrixX gradients = expression::gradients(nodes, at, dimensions);
+    for (Eigen::Index v = 0; v < n; ++v) {
+        const Point3& p = solid.vertices[static_cast<std::size_t>(v)];
+        int row = 0;
+        for (const Number* x : {&p.x, &p.y, &p.z}) {
+            if (!x->is_constant())
+                for (int k = 0; k < dimensions; ++k) out[static_cast<std::size_t>(k)](row, v) = gradients(k, x->node);
+            ++row;
+        }
+    }
+    return out;
+}
+
+std::string features_of(const Solid& solid, int a, int b) {
+    const auto name = [&](int t) {
+        const std::string& feature = solid.surfaces[static_cast<std::size_t>(solid.facets[static_cast<std::size_t>(t)].surface)].feature;
+        return feature.empty() ? std::string("a face without a name") : "`" + feature + "`";
+    };
+    return name(a) == name(b) ? name(a) + " crosses itself" : name(a) + " and " + name(b) + " cross";
+}
+
+}  // namespace
+
+Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::string& name, const DrawnOptions& options) {
+    if (solid.triangles.empty()) return Error{ErrorCode::mesh_invalid, name, "`" + name + "` is empty: nothing of it is left"};
+    DrawnPart part;
+    Matrix3X vertices(3, static_cast<Eigen::Index>(solid.vertices.size()));
+    for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(static_cast<Eigen::Index>(v)) = value(solid.vertices[v]);
+    part.mesh = geometry::make_mesh(name, std::move(vertices), solid.triangles);
+    if (options.check) {
+        const auto crossing = [&] { return geometry::self_intersections(part.mesh, 5); };
+        Errors faults = geometry::validate_mesh(part.mesh, {true, false});
+        if (faults.empty())
+            for (const auto& [a, b] : crossing()) {
+                const Vector3 p = part.mesh.vertices.col(part.mesh.triangles[static_cast<std::size_t>(a)][0]);
+                faults.push_back({ErrorCode::mesh_invalid, name,
+                                  features_of(solid, a, b) + " near (" + format_length(p.x(), "mm", 4) + ", " +
+                                      format_length(p.y(), "mm", 4) + ", " + format_length(p.z(), "mm", 4) + ")"});
+                if (faults.size() > 1 && faults.back().message.substr(0, faults.back().message.find(" near")) ==
+                                             faults[faults.size() - 2].message.substr(0, faults[faults.size() - 2].message.find(" near")))
+                    faults.pop_back();
+            }
+        if (!faults.empty()) return faults;
+    }
+    if (options.jacobian) part.jacobian = jacobian_of(drawing, solid);
+    for (const Surface& surface : solid.surfaces) part.surfaces.push_back(drawn_surface(surface));
+    part.facets = solid.facets;
+    part.deviation = solid.deviation;
+    // Vertices are rounded, and the formulas that lead to them are some tens of operations long.
+    const double rounding = 64 * 0x1p-52 * part.mesh.vertices.cwiseAbs().maxCoeff();
+    part.deviation.out += rounding;
+    part.deviation.in += rounding;
+    part.structure = drawing.structure();
+    part.changes = drawing.changes();
+    return part;
+}
+
+}  // namespace fettle::core::parts

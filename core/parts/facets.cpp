@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/parts/facets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fettle::core::parts {
+namespace {
+
+constexpr double full_turn = 2 * std::numbers::pi;
+constexpr double most_segments = 100000;
+
+}  // namespace
+
+Lean opposite(Lean lean) {
+    if (lean == Lean::cover) return Lean::within;
+    return lean == Lean::within ? Lean::cover : Lean::through;
+}
+
+int segments_of(const Facets& facets, double radius, double angle) {
+    angle = std::abs(angle);
+    const bool whole = angle >= full_turn * (1 - 1e-12);
+    if (!(facets.chord > 0)) return std::max(whole ? 3 : 1, static_cast<int>(std::ceil(facets.segments * angle / full_turn - 1e-9)));
+    // r (1 / cos(half) - 1) <= chord, the larger of the two deviations; a flat turns by at most 120 degrees.
+    const double half = std::min(std::acos(radius / (radius + facets.chord)), std::numbers::pi / 3);
+    const double count = std::clamp(std::ceil(angle / (2 * half) - 1e-9), 1.0, most_segments);
+    const int least = static_cast<int>(count);
+    return whole ? std::max(4, (least + 3) / 4 * 4) : least;
+}
+
+}  // namespace fettle::core::parts

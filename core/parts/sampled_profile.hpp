@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+/// A profile on plain numbers, for questions that decide: is a point within it, what of its edge is nearest.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/parts/curve_geometry.hpp"
+#include "fettle/core/parts/profile.hpp"
+
+namespace fettle::core::parts {
+
+class SampledProfile {
+public:
+    explicit SampledProfile(const Profile& profile);
+
+    /// Right for points that are not within rounding of the edge.
+    bool contains(const Vector2& p) const;
+
+    struct Nearest {
+        double distance = 0;
+        std::size_t loop = 0, segment = 0;
+        double u = 0;
+        Vector2 point = Vector2::Zero();
+    };
+    /// Contract: not empty.
+    Nearest nearest(const Vector2& p) const;
+
+    Vector2 low() const { return low_; }
+    Vector2 high() const { return high_; }
+    /// Diagonal of its box.
+    double size() const { return (high_ - low_).norm(); }
+
+private:
+    struct Piece {
+        Curve curve;  ///< on plain numbers where it is no law
+        std::size_t loop, segment;
+        std::vector<Vector2> samples;
+        Vector2 low, high;
+    };
+    std::vector<Piece> pieces_;
+    Vector2 low_, high_;
+};
+
+/// On plain numbers: nothing of it is recorded. Laws stay as they are.
+Curve frozen(const Curve& curve);
+
+/// Twice the area that samples of the loop enclose; negative: it runs clockwise.
+double sampled_area(const Loop& loop);
+
+}  // namespace fettle::core::parts

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/parts/profile.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "fettle/core/parts/extrude.hpp"
+#include "fettle/tests/core/parts/part_check.hpp"
+
+namespace fettle::core::parts::profile_test {
+
+using part_check::checked;
+using part_check::told;
+using part_check::volume;
+using std::numbers::pi;
+
+TEST_CASE("a hole that breaks through is told with its wall and where") {
+    const auto plate = filled(circle({}, 10e-3, "rim"));
+    const double angle = 37 * pi / 180;
+    const auto pierced = with_hole(*plate, circle(polar(7.2e-3, angle), 3e-3, "axle"));
+    CHECK(told(pierced.errors()) == "axle: hole `axle` breaks through `rim`: wall -0.2 mm at 37 deg\n");
+    CHECK(with_hole(*plate, circle(polar(6.8e-3, angle), 3e-3, "axle")));
+    const auto twice = with_holes(*plate, {circle({-3e-3, 0}, 3e-3, "left"), circle({2e-3, 0}, 3e-3, "right")});
+    CHECK(told(twice.errors()) == "right: hole `right` breaks through `left`: wall -1 mm at 180 deg\n");
+}
+
+TEST_CASE("a loop that crosses itself or is empty is told") {
+    const auto bow = filled(polygon({{0, 0}, {1, 1}, {1, 0}, {0, 1.1}}, "bow"));
+    CHECK(told(bow.errors()).find("`bow` crosses or touches itself at") != std::string::npos);
+    CHECK(told(filled(polygon({{0, 0}, {1, 0}, {2, 0}}, "sliver")).errors()) == "sliver: `sliver` encloses no area\n");
+    CHECK(told(Path({0, 0}, "arm").line_to({1, 0}).arc_about({0.5, 0.1}, {2, 0}).closed().errors()).find("about (500 mm, 100 mm) begins") !=
+          std::string::npos);
+}
+
+TEST_CASE("areas of what lines, arcs and splines enclose") {
+    CHECK(area(*filled(circle({1, 2}, 3))).value == Approx(9 * pi).epsilon(1e-14));
+    CHECK(area(*filled(slot({0, 0}, {4, 0}, 1))).value == Approx(8 + pi).epsilon(1e-14));
+    const auto rounded_square = rounded(rectangle({0, 0}, 4, 3), 0.5);
+    CHECK(area(*filled(*rounded_square)).value == Approx(12 - (4 - pi) * 0.25).epsilon(1e-14));
+    const auto chamfered_square = chamfered(rectangle({0, 0}, 4, 3), 0.5);
+    CHECK(area(*filled(*chamfered_square)).value == Approx(12 - 4 * 0.125).epsilon(1e-14));
+    // A law: the limacon r = 2 + cos(phi), area pi (4 + 1/2).
+    const auto limacon = Path({3, 0})
+                             .along(law_curve(Law([](const auto& t) {
+                                                  using std::cos, std::sin;
+                                                  const auto r = 2.0 + cos(t);
+                                                  return std::array{r * cos(t), r * sin(t)};
+                                              }),
+                                              0, 2 * pi))
+                             .closed();
+    CHECK(area(*filled(*limacon)).value == Approx(4.5 * pi).epsilon(1e-10));
+    // Involute from its circle: r^2 u^3 / 6 between the radius at the start, the curve and the string... by the sector formula.
+    const double u = 0.8;
+    const auto flank = involute(1, 0, 0, u);
+    CHECK(value(flank.end).norm() == Approx(std::hypot(1, u)));
+}
+
+TEST_CASE("all ways to draw an arc agree, and corners take any neighbours") {
+    // The same half moon five ways.
+    const double r = 2e-3;
+    std::vector<Loop> loops;
+    loops.push_back(*Path({-r, 0}).line_to({r, 0}).arc_about({0, 0}, {-r, 0}).closed());
+    loops.push_back(*Path({-r, 0}).line_to({r, 0}).arc_through({0, r}, {-r, 0}).closed());
+    loops.push_back(*Path({-r, 0}).line_to({r, 0}).bulge_to({-r, 0}, 1).closed());
+    loops.push_back(*Path({-r, 0}).line_to({r, 0}).arc_by({0, 0}, pi).closed());
+    for (const Loop& loop : loops) CHECK(area(*filled(loop)).value == Approx(pi * r * r / 2).epsilon(1e-12));
+    const auto tangent = Path({0, 0}).line_to({r, 0}).tangent_arc_to({r, 2 * r}).line_to({0, 2 * r}).closed();
+    CHECK(area(*filled(*tangent)).value == Approx(2 * r * r + pi * r * r / 2).epsilon(1e-12));
+
+    const auto part = [](Drawing& drawing, const std::vector<Number>& d) -> Result<Solid> {
+        const auto loop = Path({0, 0}, "cam")
+                              .round(d[3])
+                              .line_to({d[0], 0})
+                              .round(d[3])
+                              .arc_through({1.2 * d[0], 0.5 * d[1]}, {d[0], d[1]})
+                              .chamfer(d[3], 0.7 * d[3])
+                              .line_to({0.5 * d[0], 1.1 * d[1]})
+                              .round(0.5 * d[3])
+                              .spline_through({{0.2 * d[0], 0.8 * d[1]}, {0, d[1]}})
+                              .round(0.2 * d[3])
+                              .closed();
+        if (!loop) return loop.errors();
+        const auto profile = filled(*loop);
+        if (!profile) return profile.errors();
+        return extruded(drawing, *profile, 0, d[2]);
+    };
+    checked(part, {20e-3, 12e-3, 3e-3, 1e-3});
+}
+
+TEST_CASE("profiles moved, turned, mirrored and repeated keep their areas and their derivatives") {
+    const auto part = [](Drawing& drawing, const std::vector<Number>& d) -> Result<Solid> {
+        const Loop rim = circle({}, d[0], "rim"), hole = slot({d[1], 0}, {d[1] + d[2], 0}, d[3], "slot");
+        auto profile = with_holes(*filled(rim), polar_copies(turned(mirrored(hole, {}, {1, 0}), d[4]), 5));
+        if (!profile) return profile.errors();
+        return extruded(drawing, moved(turned(*profile, d[4], {d[0], 0}), {d[2], d[3]}), 0, d[0]);
+    };
+    const DrawnPart drawn_part = checked(part, {20e-3, 8e-3, 6e-3, 2e-3, 0.3}, {0, 400, Lean::through});
+    const double area = pi * 400 - 5 * (6 * 4 + pi * 4);
+    CHECK(volume(drawn_part) == Approx(area * 1e-6 * 20e-3).epsilon(2e-4));
+}
+
+}  // namespace fettle::core::parts::profile_test
