@@ -161,8 +161,7 @@ SolidMaker SolidReader::extrude(const JsonNode& node, const std::string& name) {
         const Result<Profile> made = profile(sheet);
         if (!made) return made.errors();
         if (const auto error = too_fine(*made, 4, sheet, where)) return *error;
-        parts::Layer layer{*made, from.at(sheet), to.at(sheet), ends.lower(sheet), ends.upper(sheet), name};
-        return parts::stacked(sheet.drawing, {std::move(layer)});
+        return parts::extruded(sheet.drawing, *made, from.at(sheet), to.at(sheet), ends.lower(sheet), ends.upper(sheet));
     };
 }
 
