@@ -448,7 +448,15 @@ std::vector<Place> places_of(const Scene& scene) {
 
 int row_count() { return static_cast<int>(table().size()); }
 
-Dimension dimension_at(const Scene& scene, const Place& place) { return row_of(place).dimension(item_of(scene, place)); }
+Dimension dimension_at(const Scene& scene, const Place& place) {
+    const Item item = item_of(scene, place);
+    const Row& row = row_of(place);
+    if (row.key != "shape/dimensions/*" || !item.body().shape) return row.dimension(item);
+    const ShapeSpec& shape = *item.body().shape;
+    const std::string name = entry_name(row.numbers(item), static_cast<std::size_t>(place.entry));
+    if (std::find(shape.angles.begin(), shape.angles.end(), name) != shape.angles.end()) return Dimension::angle;
+    return std::find(shape.numbers.begin(), shape.numbers.end(), name) != shape.numbers.end() ? Dimension::number : Dimension::length;
+}
 
 double& at(Scene& scene, const Place& place) {
     return entry_of(numbers_of(item_of(scene, place), place), static_cast<std::size_t>(place.entry));

@@ -99,10 +99,14 @@ struct MeshProgram {
 
 /// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see read_options.hpp.
 struct ShapeSpec {
-    std::string generator;                     ///< its name; empty: a program makes the part
-    std::map<std::string, double> dimensions;  ///< lengths [m]
+    std::string generator;                     ///< its name; empty: a part's file or a program makes the part
+    std::map<std::string, double> dimensions;  ///< lengths [m], but for those that are listed below
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
+    std::string part = {};                 ///< of the library, or a file; then `generator` is empty
+    double chord = 0;                      ///< of a part: largest distance of a facet from what it stands for [m]; 0: not by this
+    std::vector<std::string> angles = {};  ///< dimensions of a part that are no lengths: angles [rad], plain numbers
+    std::vector<std::string> numbers = {};
     bool operator==(const ShapeSpec&) const = default;
 };
 

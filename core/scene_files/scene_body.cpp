@@ -175,24 +175,56 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     return source;
 }
 
+void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {
+    std::map<std::string, base::Dimension> quantities;
+    if (!spec.part.empty() && options_.part_dimensions) {
+        const auto found = options_.part_dimensions(spec);
+        if (!found) return report(found.errors(), node["part"]);
+        quantities = *found;
+    }
+    for (const auto& [name, value] : node["dimensions"].members()) {
+        if (name.starts_with('#')) continue;
+        const auto quantity = quantities.find(name);
+        if (quantity == quantities.end() || quantity->second == base::Dimension::length) {
+            spec.dimensions[name] = value.length(unit_).value_or(0);
+        } else if (quantity->second == base::Dimension::angle) {
+            spec.dimensions[name] = value.quantity(base::Dimension::angle, to_si(1, *base::find_unit("deg"))).value_or(0);
+            spec.angles.push_back(name);
+        } else {
+            spec.dimensions[name] = value.number().value_or(0);
+            spec.numbers.push_back(name);
+        }
+    }
+}
+
 void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
     scene::ShapeSpec spec;
     if (node["program"].exists()) {
         node.allow_keys({"program", "format", "time_limit", "dimensions"});
         spec.program = read_program(node, document_.path(), unit_);
         body.mesh_policy = scene::MeshPolicy::tolerant;
+    } else if (node["part"].exists()) {
+        node.allow_keys({"part", "dimensions", "counts", "facets"});
+        spec.part = node["part"].string().value_or("");
+        if (spec.part.ends_with(".part.json")) {
+            const auto file = mesh_files::find_mesh_file(spec.part, document_.path(), options_.mesh_dirs, node["part"].where());
+            if (!file) return report(file.errors(), node["part"]);
+            spec.part = *file;
+        }
+        spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
     } else {
-        node.allow_keys({"generator", "program", "dimensions", "counts"});
+        node.allow_keys({"generator", "part", "program", "dimensions", "counts"});
         spec.generator = node.require("generator").string().value_or("");
     }
     const std::size_t faults = document_.errors().size();
-    for (const auto& [name, value] : node["dimensions"].members()) spec.dimensions[name] = value.length(unit_).value_or(0);
-    for (const auto& [name, value] : node["counts"].members()) spec.counts[name] = value.integer(0).value_or(0);
+    for (const auto& [name, value] : node["counts"].members())
+        if (!name.starts_with('#')) spec.counts[name] = value.integer(0).value_or(0);
+    read_dimensions(node, spec);
     body.shape = spec;
     if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
-    if (spec.generator.empty() && (!spec.program || spec.program->command.empty())) return;
+    if (spec.generator.empty() && spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
     if (!options_.shape_generator) {
-        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.generator) +
+        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.part.empty() ? spec.generator : spec.part) +
                                               "\" cannot be made here: this program was given no generators");
         return;
     }
