@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <set>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/reading/former_moves.hpp"
 
 namespace fettle::design::reading {
@@ -63,6 +64,8 @@ private:
         parameter.name = node.string().value_or("");
         if (!node.is_string()) return;
         if (parameter.name.empty()) node.fail(ErrorCode::out_of_range, "a parameter's name must not be empty");
+        if (const std::string fault = core::base::name_fault(parameter.name); !parameter.name.empty() && !fault.empty())
+            node.fail(ErrorCode::out_of_range, "its name " + fault + "; a name is text on one line");
         if (!names_.insert(parameter.name).second) {
             node.fail(ErrorCode::inconsistent, "another parameter is called " + node.shown() + " already; names are unique");
         }

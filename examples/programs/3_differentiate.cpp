@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A design made in memory, with a quantity of its own: the mean height of a brick on a table that a motor tilts, and its derivatives by the
-// brick's length and the motor's speed, through the whole simulation, beside differences of whole simulations.
+// A design made in memory, with a quantity of its own: the mean height of a brick on a table that a motor tilts, and its derivatives.
 #include <cstdio>
 
 #include "fettle/design/gradient_audit/difference_check.hpp"
@@ -45,8 +44,8 @@ int main() {
     };
     if (!add_part(design, table, box(0.06, 0.06, 0.01)) || !add_part(design, brick, box(0.02, 0.012, 0.01))) return 3;
     design.parameters = {{"length", 0.02, 0.015, 0.03, *fettle::find_unit("mm")}, {"speed", 0.7, 0.2, 1.0, *fettle::find_unit("rad/s")}};
-    if (!set_number(design, "/bodies/brick/shape/dimensions/size_x", "length").empty()) return 3;
-    if (!set_number(design, "/bodies/table/prescribed/ry/rate", "speed").empty()) return 3;
+    const auto follows = [&](const char* place, const char* formula) { return set_number(design, place, formula).empty(); };
+    if (!follows("/bodies/brick/shape/dimensions/size_x", "length") || !follows("/bodies/table/prescribed/ry/rate", "speed")) return 3;
     design.objective = {{"height", 1, 1e-3, std::make_shared<MeanHeight>(1)}};  // in mm
 
     const auto problem = fettle::design::problem::DesignProblem::create(std::move(design));

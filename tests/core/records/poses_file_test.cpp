@@ -224,8 +224,8 @@ TEST_CASE("poses: every fault in a JSON has its pointer", "[stepper][poses]") {
                                                               "\", \"times\": " + times + ", \"bodies\": " + bodies + "}"),
                                  model));
     };
-    CHECK(mentions(of("[0,1]", R"({"crank": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/crank: 1 poses, 2 wanted"));
-    CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0]]})"), "bad.json#/bodies/crank/0: 6 numbers, 7 wanted"));
+    CHECK(mentions(of("[0,1]", R"({"crank": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/crank: 1 poses, 2 expected"));
+    CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0]]})"), "bad.json#/bodies/crank/0: 6 numbers, 7 expected"));
     CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0,1]]})"), "bad.json#/bodies/crank/0: the quaternion"));
     CHECK(mentions(of("[0]", R"({"cranc": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/cranc: the scene has no body"));
     CHECK(mentions(of("[0,0]", R"({"crank": [[0,0,0,1,0,0,0],[0,0,0,1,0,0,0]]})"), "bad.json#/times/1: time 0 does not come after 0"));

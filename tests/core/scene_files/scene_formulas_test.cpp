@@ -153,7 +153,7 @@ TEST_CASE("faults of formulas and variables have their places") {
     CHECK(errors_of(R"({ "x": "2mm" })", R"(["= x", 0, 0])").empty());
     CHECK(errors_of(R"({ "# x": "a comment", "x": "2mm" })", R"(["= x + 1", 0, 0])").empty());
     CHECK(has(errors_of(R"({ "x": "2mm" })", R"(["= y", 0, 0])"), "#/bodies/0/position/0", "`y`"));
-    CHECK(has(errors_of(R"({ "x": 2 })", R"(["= x", 0, 0])"), "#/bodies/0/position/0", "this is a number, a length is wanted"));
+    CHECK(has(errors_of(R"({ "x": 2 })", R"(["= x", 0, 0])"), "#/bodies/0/position/0", "this is a number, a length is expected"));
     CHECK(has(errors_of(R"({ "x": "2 kg" })", R"(["= x", 0, 0])"), "#/bodies/0/position/0", "this is a mass"));
     CHECK(has(errors_of(R"({ "x": "= y", "y": "= x" })", "[0, 0, 0]"), "#/variables/y", "`x` follows from itself"));
     CHECK(has(errors_of(R"({ "x": "= x" })", "[0, 0, 0]"), "#/variables/x", "follows from itself"));
@@ -181,11 +181,11 @@ TEST_CASE("an input takes the place of the variable of its name, and formulas of
     scope.names = {{"l", expression::powers_of(Dimension::length)}};
     inputs.push_back({"extra", expression::powers_of(Dimension::length), 0, *expression::parse_formula("2 * l", scope)});
     const Scene scene = read(inputs);
-    CHECK(scene.bodies[4].pose.position.z() == 0.03);
+    CHECK(scene.bodies.back().pose.position.z() == 0.03);
     for (const scene::Variable& variable : scene.variables) CHECK(variable.name != "l");
     std::string text = everything;
     text.replace(text.find("[90, 0, \"= l\"]"), 14, "[90, 0, \"= extra\"]");
-    CHECK(read(inputs, text).bodies[4].pose.position.z() == 0.06);
+    CHECK(read(inputs, text).bodies.back().pose.position.z() == 0.06);
 }
 
 }  // namespace fettle::core::scene_files::scene_formulas_test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "fettle/tests/design/small_design.hpp"
