@@ -2,6 +2,7 @@
 #include "fettle/core/part_files/curve_reader.hpp"
 
 #include <array>
+#include <cstdint>
 
 namespace fettle::core::part_files {
 namespace {
@@ -9,18 +10,79 @@ namespace {
 using base::Dimension;
 using base::ErrorCode;
 using expression::DimensionPowers;
+using expression::Operation;
 using files::JsonNode;
 
-// A point of a law as written, for parameters of any kind of number.
+// A number of a law, for parameters of any kind of number. What does not depend on the parameter is computed once.
+class LawNumber {
+public:
+    LawNumber(const PartNumber& number, const std::vector<Number>& values) {
+        std::vector<Operand> places;
+        for (const expression::Node& node : number.formula.nodes) {
+            Step step{node.operation, {}};
+            const auto count = static_cast<std::size_t>(expression::operand_count(node.operation));
+            const int input = node.operation == Operation::input ? number.positions[static_cast<std::size_t>(node.operands[0])] : 0;
+            bool varies = node.operation == Operation::input && input < 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                step.operands[i] = places[static_cast<std::size_t>(node.operands[i])];
+                varies = varies || step.operands[i].varies;
+            }
+            places.push_back({varies, varies ? steps_.size() : fixed_.size()});
+            if (varies)
+                steps_.push_back(step);
+            else if (node.operation == Operation::constant)
+                fixed_.emplace_back(node.number);
+            else if (node.operation == Operation::input)
+                fixed_.push_back(values[static_cast<std::size_t>(input)]);
+            else
+                fixed_.push_back(expression::applied<Number>(node.operation, fixed(step, 0), fixed(step, 1), fixed(step, 2)));
+        }
+    }
+
+    template <class T>
+    T at(const T& parameter) const {
+        if (steps_.empty()) return T(fixed_.back());
+        std::vector<T> found;
+        found.reserve(steps_.size());
+        const auto operand = [&](const Step& step, std::size_t i) -> T {
+            const Operand& place = step.operands[i];
+            return place.varies ? found[place.index] : place.index < fixed_.size() ? T(fixed_[place.index]) : T(0.0);
+        };
+        for (const Step& step : steps_) {
+            if (step.operation == Operation::input)
+                found.push_back(parameter);
+            else
+                found.push_back(expression::applied<T>(step.operation, operand(step, 0), operand(step, 1), operand(step, 2)));
+        }
+        return found.back();
+    }
+
+private:
+    struct Operand {
+        bool varies = false;
+        std::size_t index = SIZE_MAX;  // into the values of steps, or into fixed_; SIZE_MAX: there is none
+    };
+    struct Step {
+        Operation operation;
+        std::array<Operand, 3> operands;
+    };
+    Number fixed(const Step& step, std::size_t i) const {
+        return step.operands[i].index < fixed_.size() ? fixed_[step.operands[i].index] : Number(0);
+    }
+
+    std::vector<Step> steps_;
+    std::vector<Number> fixed_;
+};
+
+// A point of a law as written.
 struct WrittenLaw {
-    PartNumber first, second;
+    LawNumber first, second;
     bool is_polar = false;
-    std::vector<Number> values;
 
     template <class T>
     std::array<T, 2> operator()(const T& t) const {
         using std::cos, std::sin;
-        const T a = first.at<T>(values, t), b = second.at<T>(values, t);
+        const T a = first.at(t), b = second.at(t);
         if (!is_polar) return {a, b};
         return {a * cos(b), a * sin(b)};
     }
@@ -68,7 +130,7 @@ CurveMaker read_law(const JsonNode& node, PartNumbers& numbers) {
             second = *t;
     });
     return [=, begin = from, end = to](Sheet& sheet) {
-        return parts::law_curve(parts::Law(WrittenLaw{first, second, is_polar, sheet.values}), begin.at(sheet), end.at(sheet));
+        return parts::law_curve(parts::Law(WrittenLaw{LawNumber(first, sheet.values), LawNumber(second, sheet.values), is_polar}), begin.at(sheet), end.at(sheet));
     };
 }
 

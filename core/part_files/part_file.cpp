@@ -148,7 +148,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
         return document->errors();
     }
     if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
-    root.allow_keys({"fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
+    root.allow_keys({"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});
 
     auto contents = std::make_shared<Contents>();

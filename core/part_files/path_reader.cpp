@@ -16,7 +16,7 @@ using parts::Path;
 using parts::Point2;
 
 constexpr int most_repeats = 10'000;
-constexpr std::size_t most_segments = 100'000;
+constexpr std::size_t most_steps = 100'000;
 
 // Where steps are drawn: turned about the origin, then moved. Those of a repeat stand in another place each time.
 struct Placement {
@@ -183,7 +183,7 @@ Step read_repeat(const JsonNode& node, PartNumbers& numbers, const std::string& 
     const std::optional<PartNumber> every = node["every"].exists() ? std::optional(numbers.angle(node["every"])) : std::nullopt;
     return [=](Path& path, Sheet& sheet, const Placement& placed) {
         const Point2 point = about.at(sheet);
-        for (int k = 0; k < count && path.segments().size() < most_segments; ++k) {
+        for (int k = 0; k < count && path.segments().size() < most_steps; ++k) {
             Placement own{0, {1, 0}, static_cast<double>(k) * point, k == 0};
             if (!is_linear && k > 0) {
                 own.angle = every ? k * every->at(sheet) : Number(2 * std::numbers::pi * k / count);
@@ -234,8 +234,8 @@ LoopMaker read_path(const JsonNode& node, PartNumbers& numbers, const std::strin
     return [=, where = node.where()](Sheet& sheet) -> Result<parts::Loop> {
         Path path(start.at(sheet), name);
         for (const Step& step : steps) step(path, sheet, {});
-        if (path.segments().size() >= most_segments)
-            return Error{ErrorCode::out_of_range, where, "this path has more than " + std::to_string(most_segments) + " lines and curves"};
+        if (path.segments().size() >= most_steps)
+            return Error{ErrorCode::out_of_range, where, "this path has more than " + std::to_string(most_steps) + " lines and curves"};
         return located(path.closed(), where);
     };
 }
