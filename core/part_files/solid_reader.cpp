@@ -68,6 +68,24 @@ double whole_turn_segments(const Sheet& sheet, const Profile& profile) {
     return largest > 0 ? parts::segments_of(sheet.drawing.facets, largest, 2 * std::numbers::pi) : 1;
 }
 
+// Layers in order, those in a `repeat` as often as it says.
+std::vector<JsonNode> repeated_layers(const JsonNode& stack, const PartNumbers& numbers) {
+    constexpr int most = 1000;
+    std::vector<JsonNode> out;
+    for (const JsonNode& element : stack.objects()) {
+        if (!element["repeat"].exists()) {
+            out.push_back(element);
+            continue;
+        }
+        element.allow_keys({"repeat", "count"});
+        const std::vector<JsonNode> layers = element["repeat"].objects();
+        const int count = numbers.count(element.require("count"), 0, most).value_or(0);
+        for (int k = 0; k < count && out.size() < most; ++k) out.insert(out.end(), layers.begin(), layers.end());
+    }
+    if (out.size() >= most) stack.fail(ErrorCode::out_of_range, "a stack of at most 1000 layers is drawn");
+    return out;
+}
+
 }  // namespace
 
 SolidReader::SolidReader(PartNumbers& numbers, ProfileReader& profiles, const JsonNode& named)
@@ -174,7 +192,7 @@ SolidMaker SolidReader::stack(const JsonNode& node, const std::string& name) {
         std::string where;
     };
     std::vector<Layer> layers;
-    for (const JsonNode& layer : node["stack"].objects()) {
+    for (const JsonNode& layer : repeated_layers(node["stack"], numbers_)) {
         layer.allow_keys({"layer", "height", "chamfer", "chamfer_below", "chamfer_above", "name"});
         const JsonNode profile = layer.require("layer");
         const std::string own = layer["name"].string().value_or(profile.is_string() ? *profile.string() : name);

@@ -2,7 +2,8 @@
 /// Solids of a part's file. An object with one verb, and the keys that go with it; or the name of one of `solids`. Profiles in it are
 /// objects or names (profile_reader.hpp).
 ///     {"extrude": profile, "from": 0, "to": 5, "chamfer": 0.3}      along z; or "chamfer_below", "chamfer_above"; < 0: a flare
-///     {"stack": [{"layer": profile, "height": 2}, ...], "from": 0}  layers upon each other, each may have chamfers
+///     {"stack": [{"layer": profile, "height": 2}, ...], "from": 0}  layers upon each other, each may have chamfers;
+///                                                                   {"repeat": [layers], "count": n} among them
 ///     {"revolve": profile, "angle": "90deg", "from": 0}             about z: the profile's x is the distance from it, its y is z
 ///     {"twist": profile, "from": 0, "to": 10, "by": "30deg"}        turned as it rises: helical gears, threads
 ///     {"helix": profile, "pitch": 2, "turns": 5}                    carried round z as it rises: springs
