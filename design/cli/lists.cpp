@@ -177,7 +177,7 @@ Command add_joints(CommandLine& program) {
 }
 
 Command add_optimisers(CommandLine& program) {
-    return add_list(program, "optimisers", "Lists the optimisers that a design can name", "ipopt", run_optimisers);
+    return add_list(program, "optimisers", "Lists the optimisers that a design can name", "sqp", run_optimisers);
 }
 
 }  // namespace fettle::design::cli

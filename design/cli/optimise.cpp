@@ -173,7 +173,8 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     app.also_called("optimize");
     auto options = std::make_shared<OptimiseArguments>();
     app.option("DESIGN", options->path, "Design to start from").required();
-    app.option("--optimiser,--optimizer", options->optimiser, "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: the design's)")
+    app.option("--optimiser,--optimizer", options->optimiser,
+               "sqp, gauss_newton, ipopt, mma, ccsaq, slsqp or cobyla (default: the design's)")
         .one_of(optimisers::optimiser_names());
     app.option("--out", options->out, "Folder for the result (default: the design's `output`)");
     app.option("--starts", options->starts, "How many starts: the file's values, then random ones; the best result is kept")

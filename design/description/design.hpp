@@ -35,7 +35,7 @@ struct ObjectiveTerm {
 };
 
 struct OptimiserSettings {
-    std::string name = "ipopt";  ///< optimisers/optimisation.hpp knows which there are
+    std::string name = "sqp";  ///< optimisers/optimisation.hpp knows which there are
     int max_evaluations = 100;
     double tolerance = 1e-4;
 };

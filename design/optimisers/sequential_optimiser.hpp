@@ -26,11 +26,11 @@ enum class Curvature {
     gauss_newton  ///< where f is nothing but its residuals' squares, those alone: best where they can become nearly nothing
 };
 
-/// Called "ipopt", which solves its steps, and "gauss_newton".
+/// Called "sqp" and "gauss_newton".
 class SequentialOptimiser : public Optimiser {
 public:
     explicit SequentialOptimiser(Curvature curvature = Curvature::estimated) : curvature_(curvature) {}
-    std::string name() const override { return curvature_ == Curvature::gauss_newton ? "gauss_newton" : "ipopt"; }
+    std::string name() const override { return curvature_ == Curvature::gauss_newton ? "gauss_newton" : "sqp"; }
     NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions& options) const override;
 
 private:

@@ -31,7 +31,7 @@ inline std::string bore_design(const std::string& x, const std::string& y, const
   "set": { "/bodies/pin/position": ["= x", "= y", 0], "/bodies/pin/shape/dimensions/radius": "= radius" },
   )" + sums +
            R"(,
-  "optimiser": { "name": "ipopt", "max_evaluations": 60 }
+  "optimiser": { "name": "sqp", "max_evaluations": 60 }
 })";
 }
 

@@ -129,7 +129,7 @@ class Quantity:
 
     def deviations(self, simulated: "_fettle.Simulated") -> ArrayLike:
         """(m,) numbers whose squares sum up to the value (SI, so in the square root of its unit), in an order that does not change; empty,
-        where it is no such sum. Given them, the optimisers "ipopt" and "gauss_newton" know the curvature of the objective."""
+        where it is no such sum. Given them, the optimisers "sqp" and "gauss_newton" know the curvature of the objective."""
         return ()
 
     def deviation_gradient(self, simulated: "_fettle.Simulated", i: int) -> QuantityGradient:
@@ -328,7 +328,7 @@ class Relation(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class OptimiserSettings(Record):
-    name: str = "ipopt"
+    name: str = "sqp"
     max_evaluations: int = 100
     tolerance: float = 1e-4
 

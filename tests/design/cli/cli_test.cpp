@@ -186,6 +186,24 @@ TEST_CASE("gradient --check tells which contacts are about to change") {
     CHECK(text.find("12 contacts in all: if lift falls by 0.01 to 0.1 mm") != std::string::npos);
 }
 
+TEST_CASE("optimise: \"ipopt\" is Ipopt's own optimiser, \"sqp\" the one that a design has by itself") {
+    const std::string settings = R"({ "name": "mma", "max_evaluations": 8 })",
+                      own_settings = R"({ "name": "ipopt", "max_evaluations": 20 })";
+    const DesignFolder folder(replaced(small_design, settings, own_settings));
+    const auto answer = [&](const std::string& options) {
+        return run("optimise " + folder.design() + options + " --json --no-report --out " + folder.file("out")).json();
+    };
+    const Json own = answer(""), by_steps = answer(" --optimiser sqp");
+    for (const Json& each : {own, by_steps}) {
+        CAPTURE(each.dump());
+        CHECK(each.at("constraint_violation") == 0);
+        CHECK(each.at("objective").get<double>() < each.at("objective_start").get<double>());
+    }
+    CHECK(own.at("evaluations").get<int>() <= 20);
+    CHECK(own.at("parameters") != by_steps.at("parameters"));
+    CHECK(run("optimisers").says("the default"));
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");

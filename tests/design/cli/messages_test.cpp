@@ -199,7 +199,7 @@ TEST_CASE("messages: lengths are in the file's unit, and one step is one step") 
 
 TEST_CASE("messages: each evaluation says which requirement it misses, by how much, and what it is for") {
     const DesignFolder folder;
-    const Answer answer = run("optimise " + folder.design() + " --optimiser ipopt --no-report --out " + folder.file("out"), true);
+    const Answer answer = run("optimise " + folder.design() + " --optimiser sqp --no-report --out " + folder.file("out"), true);
     CAPTURE(answer.out);
     CHECK(answer.says("meets every requirement"));
     CHECK(answer.says("the best so far"));
@@ -252,7 +252,7 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     const description::Design& design = problem.design();
     studies::OptimiseOutcome outcome;
     outcome.report.status = optimisers::OptimiserStatus::optimal;
-    outcome.report.message = "ipopt: no change near by promises a gain above the tolerance";
+    outcome.report.message = "sqp: no change near by promises a gain above the tolerance";
     outcome.start = outcome.report.point = description::values_of(design.parameters);
     outcome.report.best.usable = outcome.final.usable = outcome.play_taken_up.usable = true;
     outcome.report.feasible = true;

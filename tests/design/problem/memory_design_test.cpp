@@ -237,7 +237,7 @@ TEST_CASE("a relation of one's own: the optimiser keeps it") {
     };
     design.objective = {{"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
     design.relations = {{.name = "taper", .bounds = {.lower = 0.6, .margin = 1e-5}, .at = taper}};
-    design.optimiser = {"ipopt", 20, 1e-6};
+    design.optimiser = {"sqp", 20, 1e-6};
     design.steps = 1;
     const auto problem = DesignProblem::create(std::move(design));
     REQUIRE(problem);

@@ -129,7 +129,7 @@ TEST_CASE("the largest play is found in the middle of the bore, and called optim
         e.objective_branches = e.constraint_branches = {};
         return e;
     };
-    const auto optimiser = optimisers::make_optimiser("ipopt");
+    const auto optimiser = optimisers::make_optimiser("sqp");
     optimisers::OptimiserOptions options;
     options.max_evaluations = 60;
     const auto without = optimisers::optimise(blind, **optimiser, options);
