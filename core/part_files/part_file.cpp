@@ -26,6 +26,7 @@ struct PartFile::Contents {
     std::vector<PartRelation> relations;
     PartNumbers numbers{1e-3};
     SolidMaker solid;
+    std::shared_ptr<const std::map<std::string, ProfileMaker>> profiles;
     std::vector<std::shared_ptr<const void>> named;  // what `solid` points to
 };
 
@@ -148,7 +149,8 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
         return document->errors();
     }
     if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
-    root.allow_keys({"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
+    root.allow_keys(
+        {"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});
 
     auto contents = std::make_shared<Contents>();
@@ -174,6 +176,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     SolidReader solids(numbers, profiles, root["solids"]);
     solids.read_named();
     contents->solid = solids.read(root.require("solid"), contents->name);
+    contents->profiles = profiles.named_makers();
     contents->named = {profiles.named_makers(), solids.named_makers()};
     if (!document->errors().empty()) return document->errors();
     return PartFile(std::move(contents));
@@ -194,8 +197,8 @@ Errors PartFile::faults(const std::vector<double>& values) const {
         if (!base::is_usable_number(values[k]))
             errors.push_back({ErrorCode::not_finite, where, dimension.name + " is no number that can be used; give a finite one"});
         else if (dimension.kind == PartDimensionKind::length && !(values[k] > 0))
-            errors.push_back({ErrorCode::out_of_range, where,
-                              dimension.name + " is " + base::format_length(values[k], "mm") + "; allowed: above 0 mm"});
+            errors.push_back(
+                {ErrorCode::out_of_range, where, dimension.name + " is " + base::format_length(values[k], "mm") + "; allowed: above 0 mm"});
     }
     if (!errors.empty()) return errors;
     std::vector<double> all;
@@ -203,6 +206,26 @@ Errors PartFile::faults(const std::vector<double>& values) const {
     for (const PartRelation& relation : relations())
         if (auto error = fault_of(relation, all)) errors.push_back(std::move(*error));
     return errors;
+}
+
+std::vector<std::string> PartFile::profile_names() const {
+    std::vector<std::string> out;
+    for (const auto& [name, maker] : *contents_->profiles) out.push_back(name);
+    return out;
+}
+
+Errors PartFile::with_profile(const std::string& name, const std::vector<double>& values,
+                              const std::function<void(const parts::Profile&)>& use) const {
+    Errors errors = faults(values);
+    if (!errors.empty()) return errors;
+    parts::Drawing drawing;
+    std::vector<Number> dimensions;
+    for (const double value : values) dimensions.push_back(drawing.dimension(value));
+    Sheet sheet{drawing, contents_->numbers.values(std::move(dimensions)), {}, {}, 0};
+    const Result<parts::Profile> profile = contents_->profiles->at(name)(sheet);
+    if (!profile) return profile.errors();
+    use(*profile);
+    return {};
 }
 
 Result<parts::DrawnPart> PartFile::drawn(const std::vector<double>& values, const parts::Facets& facets, const parts::Structure& structure,

@@ -18,6 +18,7 @@
 /// A file may be anybody's: what it asks for is bounded (depth, copies, facets), and what is beyond ends in an error.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -81,6 +82,13 @@ public:
     /// A pure function; may be called from several threads.
     Result<parts::DrawnPart> drawn(const std::vector<double>& values, const parts::Facets& facets = {},
                                    const parts::Structure& structure = {}, const parts::DrawnOptions& options = {}) const;
+
+    /// The file's `profiles`, by name.
+    std::vector<std::string> profile_names() const;
+    /// Draws one of them at these values and hands it to `use`: its numbers live no longer than the call.
+    /// Errors: faults(), those of drawing. Contract: a name of profile_names().
+    Errors with_profile(const std::string& name, const std::vector<double>& values,
+                        const std::function<void(const parts::Profile&)>& use) const;
 
 private:
     struct Contents;

@@ -46,7 +46,7 @@ public:
     void read_named();
     ProfileMaker read(const files::JsonNode& node, const std::string& name);
     /// What has been read must not outlive this.
-    std::shared_ptr<const void> named_makers() const { return makers_; }
+    std::shared_ptr<const std::map<std::string, ProfileMaker>> named_makers() const { return makers_; }
 
 private:
     struct Verb;
