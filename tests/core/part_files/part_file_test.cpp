@@ -84,8 +84,8 @@ TEST_CASE("part file: profiles have the area of what they describe") {
           Approx(200 + 12.5 * pi).epsilon(1e-3));
     CHECK(area(R"({"path": [[0, 0], ["= wide", 0], {"to": ["= wide", "= high"], "round": 2}, {"to": [0, "= high"], "chamfer": 2}]})") ==
           Approx(200 - (4 - pi) - 2).epsilon(1e-3));
-    CHECK(area(R"({"law": {"t": [0, "360deg"], "x": "= wide * cos(t)", "y": "= high * sin(t)"}})") == Approx(200 * pi).epsilon(2e-3));
-    CHECK(area(R"({"law": {"t": [0, "360deg"], "radius": "= wide + aside * cos(2 * t)"}})") ==
+    CHECK(area(R"j({"law": {"t": [0, "360deg"], "x": "= wide * cos(t)", "y": "= high * sin(t)"}})j") == Approx(200 * pi).epsilon(2e-3));
+    CHECK(area(R"j({"law": {"t": [0, "360deg"], "radius": "= wide + aside * cos(2 * t)"}})j") ==
           Approx(pi * (400 + 4.5)).epsilon(2e-3));
     CHECK(area(R"({"holes": {"repeat": {"circle": 1, "centre": [6, 0]}, "count": "= holes"}, "in": {"circle": 10}})") ==
           Approx(96 * pi).epsilon(2e-3));
