@@ -216,7 +216,7 @@ TEST_CASE("part library: a Geneva wheel lets its pin pass with its clearance") {
             for (const auto& line : figure.lines) least = std::min(least, distance(p, line));
         }
         INFO(slots);
-        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.out + 1e-9));
+        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.in + 1e-9));
     }
 }
 
