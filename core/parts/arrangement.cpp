@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
+#include "fettle/core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {
@@ -155,7 +156,48 @@ Piece turned_round(Piece piece) {
     return piece;
 }
 
-Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::vector<Piece>& pieces) {
+Coincidence::Coincidence(const Arrangement& arrangement) : arrangement_(arrangement) {
+    for (std::size_t k = 0; k < arrangement.pieces.size(); ++k)
+        by_nodes_[std::minmax(arrangement.pieces[k].from, arrangement.pieces[k].to)].push_back(k);
+}
+
+int Coincidence::find(std::size_t piece, bool of_other_group, std::size_t& other) const {
+    const Piece& a = arrangement_.pieces[piece];
+    const int group = arrangement_.curves[a.source].group;
+    for (const std::size_t k : by_nodes_.at(std::minmax(a.from, a.to))) {
+        const Piece& b = arrangement_.pieces[k];
+        if (k == piece || (of_other_group && group == arrangement_.curves[b.source].group)) continue;
+        other = k;
+        if (const int way = arrangement_.coincide(a, b); way != 0) return way;
+    }
+    return 0;
+}
+
+std::vector<Piece> bounding(const Arrangement& arrangement, const std::vector<Loop>& a, const std::vector<Loop>& b,
+                            Combination combination) {
+    const SampledLoops in_a(a), in_b(b);
+    const Coincidence coincidence(arrangement);
+    std::vector<Piece> kept;
+    for (std::size_t k = 0; k < arrangement.pieces.size(); ++k) {
+        const Piece& piece = arrangement.pieces[k];
+        const bool of_a = arrangement.curves[piece.source].group == 0;
+        std::size_t other = 0;
+        if (const int way = coincidence.find(k, true, other); way != 0) {
+            // Once, and only where the material of both is on the same side (for a difference: on opposite ones).
+            if (of_a && (way > 0) == (combination != Combination::subtract)) kept.push_back(piece);
+            continue;
+        }
+        const bool inside = (of_a ? in_b : in_a).contains(arrangement.middle_of(piece));
+        if (combination == Combination::subtract && !of_a) {
+            if (inside) kept.push_back(turned_round(piece));
+        } else if (inside == (combination == Combination::intersect)) {
+            kept.push_back(piece);
+        }
+    }
+    return kept;
+}
+
+Result<std::vector<std::vector<std::size_t>>> chains_from(const Arrangement& arrangement, const std::vector<Piece>& pieces) {
     std::vector<Curve> curves;
     std::map<int, std::vector<std::size_t>> leaving_node;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -163,7 +205,7 @@ Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::
         leaving_node[pieces[k].from].push_back(k);
     }
     std::vector<char> used(pieces.size(), 0);
-    std::vector<Loop> loops;
+    std::vector<std::vector<std::size_t>> chains;
     for (std::size_t first = 0; first < pieces.size(); ++first) {
         if (used[first]) continue;
         std::vector<std::size_t> chain{first};
@@ -194,6 +236,16 @@ Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::
             used[next] = 1;
             chain.push_back(next);
         }
+        chains.push_back(std::move(chain));
+    }
+    return chains;
+}
+
+Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::vector<Piece>& pieces) {
+    const auto chains = chains_from(arrangement, pieces);
+    if (!chains) return chains.errors();
+    std::vector<Loop> loops;
+    for (const auto& chain : *chains) {
         // Neighbours of one curve become one piece again.
         std::vector<Piece> merged;
         const auto continues = [&](const Piece& a, const Piece& b) {

@@ -2,7 +2,8 @@
 /// Curves, cut wherever they meet, and loops put together from the pieces: what Booleans and offsets of profiles are made with.
 #pragma once
 
-#include <string>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
@@ -42,8 +43,31 @@ Arrangement arranged(std::vector<ArrangedCurve> curves, double tolerance, bool w
 
 Piece turned_round(Piece piece);
 
-/// Loops from pieces that run with the material to their left, where several leave a node by the sharpest turn to the left. Pieces of one
-/// curve that follow each other become one again. Errors: a piece that nothing follows.
+enum class Combination { unite, subtract, intersect };
+
+/// The pieces that bound the combination of groups 0 and 1, which are the loops a and b, as they run round it.
+std::vector<Piece> bounding(const Arrangement& arrangement, const std::vector<Loop>& a, const std::vector<Loop>& b,
+                            Combination combination);
+
+/// Pieces that lie on others, by the nodes they join.
+class Coincidence {
+public:
+    explicit Coincidence(const Arrangement& arrangement);
+
+    /// 1, -1: one lies on it in the same, the opposite direction; 0: none. `other` is which.
+    int find(std::size_t piece, bool of_other_group, std::size_t& other) const;
+
+private:
+    const Arrangement& arrangement_;
+    std::map<std::pair<int, int>, std::vector<std::size_t>> by_nodes_;
+};
+
+/// Pieces that run with the material to their left, by index, in loops; where several leave a node, the sharpest turn to the left.
+/// Errors: a piece that nothing follows.
+Result<std::vector<std::vector<std::size_t>>> chains_from(const Arrangement& arrangement, const std::vector<Piece>& pieces);
+
+/// Loops from pieces that run with the material to their left. Pieces of one curve that follow each other become one again.
+/// Errors: as above.
 Result<std::vector<Loop>> loops_from(const Arrangement& arrangement, const std::vector<Piece>& pieces);
 
 }  // namespace fettle::core::parts

@@ -202,6 +202,17 @@ const Point2& end_of(const Curve& curve) {
         curve);
 }
 
+Curve frozen(const Curve& curve) {
+    const auto plain = [](const Point2& p) { return constant(value(p)); };
+    if (const auto* line = std::get_if<Line>(&curve)) return Line{plain(line->start), plain(line->end)};
+    if (const auto* arc = std::get_if<Arc>(&curve))
+        return Arc{plain(arc->start), plain(arc->end), plain(arc->centre), arc->radius.value, arc->counter_clockwise};
+    if (const auto* b = std::get_if<Bezier>(&curve))
+        return Bezier{{plain(b->points[0]), plain(b->points[1]), plain(b->points[2]), plain(b->points[3])}};
+    const auto& law = std::get<LawCurve>(curve);
+    return LawCurve{law.law, law.from.value, law.to.value, plain(law.start), plain(law.end)};
+}
+
 bool is_whole_circle(const Arc& arc) { return value(arc.start) == value(arc.end); }
 
 Number sweep_of(const Arc& arc) {

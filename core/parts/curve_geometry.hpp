@@ -10,6 +10,9 @@
 
 namespace fettle::core::parts {
 
+/// On plain numbers: nothing of it is recorded. Laws stay as they are.
+Curve frozen(const Curve& curve);
+
 struct CurvePoint {
     Vector2 position, velocity;  ///< velocity: d position / du
 };

@@ -209,10 +209,14 @@ std::vector<Meeting> meetings(const Curve& a, const Curve& b, double tolerance) 
             if (is_new(value(m.on_a.point))) out.push_back(m);
         return out;
     }
+    // Decided on plain numbers, recorded where they meet.
+    const auto on_both = [&](const Vector2& p) { return is_new(p) && parameter_on(a, p, tolerance) && parameter_on(b, p, tolerance); };
+    const auto plain = closed_form(frozen(a), frozen(b), tolerance);
+    if (std::none_of(plain.begin(), plain.end(), [&](const Point2& p) { return on_both(value(p)); })) return out;
     for (const Point2& p : closed_form(a, b, tolerance)) {
-        if (!is_new(value(p))) continue;
-        const auto u = parameter_on(a, value(p), tolerance), v = parameter_on(b, value(p), tolerance);
-        if (u && v) out.push_back({{*u, *u, p}, {*v, *v, p}});
+        if (!on_both(value(p))) continue;
+        const double u = *parameter_on(a, value(p), tolerance), v = *parameter_on(b, value(p), tolerance);
+        out.push_back({{u, u, p}, {v, v, p}});
     }
     return out;
 }

@@ -16,7 +16,7 @@ std::vector<int> Drawing::decision(const std::string& what, const std::function<
     } else {
         made_.decisions.push_back({what, decide()});
         if (kept != nullptr && kept->numbers != made_.decisions.back().numbers)
-            changes_.push_back("the " + what + " had to be made anew");
+            changes_.push_back("the " + what + " could not be kept");
         else if (kept == nullptr && !kept_.decisions.empty())
             changes_.push_back("the " + what + " was not there before");
     }

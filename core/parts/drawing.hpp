@@ -50,12 +50,19 @@ public:
     /// Of what is drawn from here on and has none of its own. What is cut away is drawn with `opposite` lean.
     Facets facets;
 
+    /// What something is made of, without a choice: a change if it was kept and is another.
+    void note(const std::string& what, const std::vector<int>& numbers) {
+        decision(
+            what, [&](const std::vector<int>& before) { return before == numbers; }, [&] { return numbers; });
+    }
+
     /// For operations that decide: the kept decision, if there is one for this and it `holds`; else what `decide` returns, which is noted
     /// as a change if something else was kept.
     std::vector<int> decision(const std::string& what, const std::function<bool(const std::vector<int>&)>& holds,
                               const std::function<std::vector<int>()>& decide);
 
     const Structure& structure() const { return made_; }
+    const Structure& kept() const { return kept_; }
     /// What could not be kept, a sentence each: the triangles are not those of the drawing whose structure was handed in. Empty where
     /// none was.
     const std::vector<std::string>& changes() const { return changes_; }

@@ -2,7 +2,7 @@
 #include "fettle/core/parts/drawn_part.hpp"
 
 #include <algorithm>
-#include <set>
+#include <cstdint>
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
@@ -48,6 +48,15 @@ std::vector<Matrix3X> jacobian_of(const Drawing& drawing, const Solid& solid) {
     return out;
 }
 
+// Numbers of vertices and triangles, and a hash of the latter.
+std::vector<int> fingerprint(const geometry::Mesh& mesh) {
+    std::uint64_t hash = 14695981039346656037u;
+    for (const auto& triangle : mesh.triangles)
+        for (const int v : triangle) hash = (hash ^ static_cast<std::uint64_t>(v)) * 1099511628211u;
+    return {static_cast<int>(mesh.vertices.cols()), static_cast<int>(mesh.triangles.size()), static_cast<int>(hash & 0x7fffffff),
+            static_cast<int>(hash >> 33)};
+}
+
 std::string features_of(const Solid& solid, int a, int b) {
     const auto name = [&](int t) {
         const std::string& feature = solid.surfaces[static_cast<std::size_t>(solid.facets[static_cast<std::size_t>(t)].surface)].feature;
@@ -89,6 +98,12 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
     part.deviation.in += rounding;
     part.structure = drawing.structure();
     part.changes = drawing.changes();
+    // Whatever was decided on the way: are the triangles those of before?
+    const Decision triangles{"triangles", fingerprint(part.mesh)};
+    const auto& kept = drawing.kept().decisions;
+    if (part.changes.empty() && !kept.empty() && kept.back().what == triangles.what && kept.back().numbers != triangles.numbers)
+        part.changes.push_back("the triangles are not those of before");
+    part.structure.decisions.push_back(triangles);
     return part;
 }
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/faceted_profile.hpp"
-#include "fettle/core/parts/inset.hpp"
+#include "fettle/core/parts/arrangement.hpp"
+#include "fettle/core/parts/levels.hpp"
 #include "fettle/core/parts/solid_builder.hpp"
 
 namespace fettle::core::parts {
@@ -17,11 +17,6 @@ using geometry::Triangle;
 
 std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
 std::string quoted(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
-
-const std::string& name_of(const Profile& profile) {
-    static const std::string none;
-    return profile.loops.empty() || profile.loops.front().segments.empty() ? none : profile.loops.front().segments.front().feature;
-}
 
 // What a curve that is moved along z from one level to another sweeps out; it may draw in on the way.
 Surface wall_surface(const FacetedCurve& from, const FacetedCurve& to, const Number& z0, const Number& z1, bool straight) {
@@ -49,28 +44,19 @@ Surface wall_surface(const FacetedCurve& from, const FacetedCurve& to, const Num
     return out;
 }
 
-struct Level {
-    FacetedProfile polygons;
-    Number z;
-};
+/// Per loop and polygon edge: the vertices along it, both ends included; more than two where another layer meets it.
+using Rim = std::vector<std::vector<std::vector<int>>>;
 
-using Rings = std::vector<std::vector<int>>;  ///< per loop: its vertices
-
-Rings add_rings(const Level& level, SolidBuilder& builder) {
-    Rings rings;
+Rim plain_rim(const Level& level, SolidBuilder& builder) {
+    Rim rim;
     for (const FacetedLoop& loop : level.polygons.loops) {
         std::vector<int> ring;
         for (const Point2& p : loop.points) ring.push_back(builder.add_vertex({p.x, p.y, level.z}));
-        rings.push_back(std::move(ring));
+        std::vector<std::vector<int>> edges;
+        for (std::size_t k = 0; k < ring.size(); ++k) edges.push_back({ring[k], ring[(k + 1) % ring.size()]});
+        rim.push_back(std::move(edges));
     }
-    return rings;
-}
-
-bool same_shape(const FacetedProfile& a, const FacetedProfile& b) {
-    if (a.loops.size() != b.loops.size()) return false;
-    for (std::size_t l = 0; l < a.loops.size(); ++l)
-        if (a.loops[l].curve != b.loops[l].curve) return false;
-    return true;
+    return rim;
 }
 
 // Facets of an arc that draws in while it rises are flat where its ends stay in their directions; else it is charged for the turn.
@@ -92,151 +78,199 @@ void add_turned_arcs(const FacetedProfile& low, const FacetedProfile& high, Soli
     }
 }
 
-void add_walls(const Level& low, const Level& high, const Rings& low_rings, const Rings& high_rings, bool straight, SolidBuilder& builder) {
+void add_walls(const Level& low, const Level& high, const Rim& low_rim, const Rim& high_rim, SolidBuilder& builder) {
     std::vector<int> surfaces;
     for (std::size_t k = 0; k < low.polygons.curves.size(); ++k)
-        surfaces.push_back(builder.add_surface(wall_surface(low.polygons.curves[k], high.polygons.curves[k], low.z, high.z, straight)));
-    for (std::size_t l = 0; l < low_rings.size(); ++l) {
-        const auto &a = low_rings[l], &b = high_rings[l];
-        for (std::size_t k = 0; k < a.size(); ++k) {
-            const std::size_t next = (k + 1) % a.size(), curve = static_cast<std::size_t>(low.polygons.loops[l].curve[k]);
+        surfaces.push_back(
+            builder.add_surface(wall_surface(low.polygons.curves[k], high.polygons.curves[k], low.z, high.z, low.straight_above)));
+    for (std::size_t l = 0; l < low_rim.size(); ++l) {
+        for (std::size_t k = 0; k < low_rim[l].size(); ++k) {
+            const auto curve = static_cast<std::size_t>(low.polygons.loops[l].curve[k]);
             const FacetedCurve &from = low.polygons.curves[curve], &to = high.polygons.curves[curve];
             const Facet facet{surfaces[curve], side_of(std::max(from.out, to.out), std::max(from.in, to.in))};
-            builder.add_strip({a[k], a[next]}, {b[k], b[next]}, facet);
+            builder.add_strip(low_rim[l][k], high_rim[l][k], facet);
         }
     }
-    if (!straight) add_turned_arcs(low.polygons, high.polygons, builder);
+    if (!low.straight_above) add_turned_arcs(low.polygons, high.polygons, builder);
 }
 
-void add_deviations(const FacetedProfile& polygons, SolidBuilder& builder) {
-    for (const FacetedCurve& curve : polygons.curves) builder.add_deviation(curve.out, curve.in, curve.proven);
+Facet plane_facet(const Number& z, bool upwards, const std::string& feature, SolidBuilder& builder) {
+    Surface plane;
+    plane.feature = feature;
+    plane.point = {0, 0, z};
+    plane.axis = {0, 0, upwards ? 1 : -1};
+    return {builder.add_surface(plane), Side::on};
 }
 
-Result<bool> add_face(Drawing& drawing, const Level& level, const Rings& rings, bool upwards, const std::string& feature,
-                      SolidBuilder& builder) {
+std::optional<Errors> add_end(Drawing& drawing, const Level& level, const Rim& rim, bool upwards, const std::string& feature,
+                              SolidBuilder& builder) {
     const auto triangles = face_triangles(drawing, level.polygons, feature);
     if (!triangles) return triangles.errors();
     std::vector<int> vertices;
-    for (const auto& ring : rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
-    Surface plane;
-    plane.feature = feature;
-    plane.point = {0, 0, level.z};
-    plane.axis = {0, 0, upwards ? 1 : -1};
-    const Facet facet{builder.add_surface(plane), Side::on};
+    for (const auto& ring : rim)
+        for (const auto& edge : ring) vertices.push_back(edge.front());
+    const Facet facet = plane_facet(level.z, upwards, feature, builder);
     for (const Triangle& t : *triangles) {
         const auto v = [&](std::size_t k) { return vertices[static_cast<std::size_t>(t[k])]; };
         builder.add_triangle_facing(upwards, v(0), v(1), v(2), facet);
     }
-    return true;
+    return std::nullopt;
 }
 
-bool is_none(const End& end) { return end.inset.is_constant() && end.inset.value == 0; }
+std::vector<Loop> polygon_loops(const FacetedProfile& polygons) {
+    std::vector<Loop> loops;
+    for (const FacetedLoop& polygon : polygons.loops) {
+        Loop loop;
+        for (std::size_t k = 0; k < polygon.points.size(); ++k)
+            loop.segments.push_back({Line{polygon.points[k], polygon.points[(k + 1) % polygon.points.size()]},
+                                     polygons.curves[static_cast<std::size_t>(polygon.curve[k])].feature,
+                                     {}});
+        loops.push_back(std::move(loop));
+    }
+    return loops;
+}
 
-// The levels of a layer from below; neighbours with the same outline are joined by straight walls.
-Result<std::vector<Level>> levels_of(Drawing& drawing, const Layer& layer) {
-    const double height = layer.to.value - layer.from.value;
-    const std::string& name = layer.feature.empty() ? name_of(layer.profile) : layer.feature;
-    if (!(height > 0)) return Error{ErrorCode::out_of_range, name, quoted(name) + " has no height: " + millimetres(height)};
-    double ends = 0;
-    for (const End* end : {&layer.lower, &layer.upper}) {
-        if (is_none(*end)) continue;
-        if (!(end->height.value > 0))
-            return Error{ErrorCode::out_of_range, name,
-                         "the end of " + quoted(name) + " draws in by " + millimetres(end->inset.value) + " over no height"};
-        ends += end->height.value;
+/// Where two layers meet: their rims, cut by each other, and the faces between them.
+struct Step {
+    Rim below, above;
+};
+
+// The rim of one of the two, from the arrangement's nodes.
+Rim cut_rim(const Arrangement& arrangement, const std::vector<Loop>& loops, std::size_t first_source, const std::vector<int>& vertex) {
+    std::vector<std::vector<int>> chains(arrangement.curves.size());
+    for (const Piece& piece : arrangement.pieces) {
+        auto& chain = chains[piece.source];
+        if (chain.empty()) chain.push_back(vertex[static_cast<std::size_t>(piece.from)]);
+        chain.push_back(vertex[static_cast<std::size_t>(piece.to)]);
     }
-    if (ends > height * (1 + 1e-12))
-        return Error{ErrorCode::out_of_range, name,
-                     "the ends of " + quoted(name) + " draw in over " + millimetres(ends) + ", which is more than its height, " +
-                         millimetres(height)};
-    auto base = faceted(drawing, layer.profile);
-    if (!base) return base.errors();
-    const auto drawn_in = [&](const End& end) -> Result<FacetedProfile> {
-        auto profile = inset(layer.profile, end.inset);
-        if (!profile) return profile.errors();
-        // With as many segments as the outline has.
-        for (std::size_t l = 0, curve = 0; l < profile->loops.size(); ++l) {
-            for (std::size_t s = 0; s < profile->loops[l].segments.size(); ++s, ++curve) {
-                Segment& segment = profile->loops[l].segments[s];
-                Facets facets = segment.facets ? *segment.facets : drawing.facets;
-                if (!std::holds_alternative<Line>(segment.curve)) facets.chord = 0;
-                segment.facets = facets;
+    Rim rim;
+    std::size_t source = first_source;
+    for (const Loop& loop : loops) {
+        std::vector<std::vector<int>> edges;
+        for (std::size_t k = 0; k < loop.segments.size(); ++k) edges.push_back(chains[source++]);
+        // An edge shorter than the tolerance has become a point: that of its neighbours.
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            if (edges[k].empty()) edges[k].push_back(edges[(k + edges.size() - 1) % edges.size()].back());
+        rim.push_back(std::move(edges));
+    }
+    return rim;
+}
+
+std::optional<Errors> add_step_face(Drawing& drawing, const Arrangement& arrangement, const std::vector<Piece>& pieces,
+                                    const std::vector<int>& vertex, const Number& z, bool upwards, const std::string& feature,
+                                    SolidBuilder& builder) {
+    if (pieces.empty()) return std::nullopt;
+    const auto chains = chains_from(arrangement, pieces);
+    if (!chains) return chains.errors();
+    FacetedProfile region;
+    std::vector<int> vertices;
+    for (const auto& chain : *chains) {
+        FacetedLoop loop;
+        for (const std::size_t k : chain) {
+            loop.points.push_back(arrangement.nodes[static_cast<std::size_t>(pieces[k].from)]);
+            loop.curve.push_back(static_cast<int>(region.curves.size()));
+            region.curves.push_back({{}, arrangement.curves[pieces[k].source].segment.feature, 0, 0, true});
+            vertices.push_back(vertex[static_cast<std::size_t>(pieces[k].from)]);
+        }
+        region.loops.push_back(std::move(loop));
+    }
+    const auto triangles = face_triangles(drawing, region, feature);
+    if (!triangles) return triangles.errors();
+    const Facet facet = plane_facet(z, upwards, feature, builder);
+    for (const Triangle& t : *triangles) {
+        const auto v = [&](std::size_t k) { return vertices[static_cast<std::size_t>(t[k])]; };
+        builder.add_triangle_facing(upwards, v(0), v(1), v(2), facet);
+    }
+    return std::nullopt;
+}
+
+Result<Step> add_step(Drawing& drawing, const Level& below, const Level& above, const std::string& name_below,
+                      const std::string& name_above, SolidBuilder& builder) {
+    const std::vector<Loop> a = polygon_loops(below.polygons), b = polygon_loops(above.polygons);
+    std::vector<ArrangedCurve> curves;
+    std::size_t first_above = 0;
+    double size = 0;
+    for (const int group : {0, 1}) {
+        if (group == 1) first_above = curves.size();
+        for (const Loop& loop : group == 0 ? a : b) {
+            for (const Segment& segment : loop.segments) {
+                curves.push_back({segment, group});
+                size = std::max(size, value(start_of(segment.curve)).cwiseAbs().maxCoeff());
             }
         }
-        FacetedProfile out;
-        for (std::size_t l = 0, curve = 0; l < profile->loops.size(); ++l) {
-            FacetedLoop polygon;
-            const FacetedLoop& model = base->loops[l];
-            for (const Segment& segment : profile->loops[l].segments) {
-                const int index = static_cast<int>(curve++);
-                const bool is_line = std::holds_alternative<Line>(segment.curve);
-                const int edges = static_cast<int>(std::count(model.curve.begin(), model.curve.end(), index));
-                Chain chain;
-                if (!is_line) {
-                    const auto* arc = std::get_if<Arc>(&segment.curve);
-                    const bool around = arc != nullptr && !is_whole_circle(*arc) && segment.facets->lean != Lean::through &&
-                                        arc->counter_clockwise == (segment.facets->lean == Lean::cover);
-                    chain = chain_of(segment.curve, around ? edges - 1 : edges, segment.facets->lean);
-                }
-                out.curves.push_back({segment.curve, segment.feature, chain.out, chain.in, chain.proven});
-                if (chain.through_start) {
-                    polygon.points.push_back(start_of(segment.curve));
-                    polygon.curve.push_back(index);
-                }
-                for (const Point2& p : chain.inner) {
-                    polygon.points.push_back(p);
-                    polygon.curve.push_back(index);
-                }
-            }
-            out.loops.push_back(std::move(polygon));
-        }
-        if (!same_shape(*base, out))
-            return Error{ErrorCode::out_of_range, name,
-                         "the end of " + quoted(name) + " cannot be drawn in: an edge vanishes; take a smaller inset"};
-        return out;
-    };
-    std::vector<Level> levels;
-    if (is_none(layer.lower)) {
-        levels.push_back({*base, layer.from});
-    } else {
-        auto end = drawn_in(layer.lower);
-        if (!end) return end.errors();
-        levels.push_back({std::move(*end), layer.from});
-        if (!(layer.lower.height.value >= height * (1 - 1e-12))) levels.push_back({*base, layer.from + layer.lower.height});
     }
-    if (is_none(layer.upper)) {
-        levels.push_back({std::move(*base), layer.to});
-    } else {
-        auto end = drawn_in(layer.upper);
-        if (!end) return end.errors();
-        const bool has_base = layer.to.value - layer.upper.height.value > levels.back().z.value + 1e-12 * height;
-        if (has_base) levels.push_back({std::move(*base), layer.to - layer.upper.height});
-        levels.push_back({std::move(*end), layer.to});
+    const Arrangement arrangement = arranged(std::move(curves), 1e-9 * size, false);
+    std::vector<int> combinatorics;
+    for (const Piece& piece : arrangement.pieces) {
+        combinatorics.push_back(static_cast<int>(piece.source));
+        combinatorics.push_back(piece.from);
+        combinatorics.push_back(piece.to);
     }
-    return levels;
+    drawing.note("step from " + quoted(name_below) + " to " + quoted(name_above), combinatorics);
+    if (bounding(arrangement, a, b, Combination::intersect).empty())
+        return Error{ErrorCode::inconsistent, name_above,
+                     quoted(name_above) + " does not stand on " + quoted(name_below) + ", the layer below it"};
+    std::vector<int> vertex;
+    for (const Point2& p : arrangement.nodes) vertex.push_back(builder.add_vertex({p.x, p.y, below.z}));
+    if (auto errors = add_step_face(drawing, arrangement, bounding(arrangement, a, b, Combination::subtract), vertex, below.z, true,
+                                    name_below, builder))
+        return *errors;
+    // What overhangs: the layer above without the one below, seen from it.
+    Arrangement swapped = arrangement;
+    for (ArrangedCurve& curve : swapped.curves) curve.group = 1 - curve.group;
+    if (auto errors =
+            add_step_face(drawing, swapped, bounding(swapped, b, a, Combination::subtract), vertex, below.z, false, name_above, builder))
+        return *errors;
+    return Step{cut_rim(arrangement, a, 0, vertex), cut_rim(arrangement, b, first_above, vertex)};
 }
 
 }  // namespace
 
-Result<Solid> extruded(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const End& lower, const End& upper) {
-    const auto levels = levels_of(drawing, {profile, from, to, lower, upper, {}});
-    if (!levels) return levels.errors();
+Result<Solid> stacked(Drawing& drawing, const std::vector<Layer>& layers) {
+    if (layers.empty()) return Error{ErrorCode::inconsistent, {}, "a stack has no layers"};
+    for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
+        const double gap = layers[k + 1].from.value - layers[k].to.value;
+        if (std::abs(gap) > 1e-12 * std::abs(layers[k].to.value - layers[k].from.value))
+            return Error{ErrorCode::inconsistent, name_of(layers[k + 1]),
+                         quoted(name_of(layers[k + 1])) + (gap > 0 ? " begins " : " begins below the end of the layer before it, by ") +
+                             millimetres(std::abs(gap)) + (gap > 0 ? " above the end of the layer before it" : "") +
+                             ": layers follow each other"};
+    }
+    std::vector<std::vector<Level>> stack;
+    for (const Layer& layer : layers) {
+        auto levels = levels_of(drawing, layer);
+        if (!levels) return levels.errors();
+        stack.push_back(std::move(*levels));
+    }
     SolidBuilder builder;
-    std::vector<Rings> rings;
-    for (const Level& level : *levels) {
-        rings.push_back(add_rings(level, builder));
-        add_deviations(level.polygons, builder);
+    for (const auto& levels : stack)
+        for (const Level& level : levels)
+            for (const FacetedCurve& curve : level.polygons.curves) builder.add_deviation(curve.out, curve.in, curve.proven);
+    Rim lower = plain_rim(stack.front().front(), builder);
+    if (auto errors = add_end(drawing, stack.front().front(), lower, false, name_of(layers.front()), builder)) return *errors;
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        const auto& levels = stack[k];
+        for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
+            const bool is_last = i + 2 == levels.size(), meets_next = is_last && k + 1 < stack.size();
+            Step step;
+            if (meets_next) {
+                auto made = add_step(drawing, levels[i + 1], stack[k + 1].front(), name_of(layers[k]), name_of(layers[k + 1]), builder);
+                if (!made) return made.errors();
+                step = std::move(*made);
+            } else {
+                step.below = plain_rim(levels[i + 1], builder);
+                step.above = step.below;
+            }
+            add_walls(levels[i], levels[i + 1], lower, step.below, builder);
+            lower = std::move(step.above);
+        }
     }
-    const std::string& name = name_of(profile);
-    const auto bottom = add_face(drawing, levels->front(), rings.front(), false, name, builder);
-    if (!bottom) return bottom.errors();
-    for (std::size_t k = 0; k + 1 < levels->size(); ++k) {
-        const bool straight = !((k == 0 && !is_none(lower)) || (k + 2 == levels->size() && !is_none(upper)));
-        add_walls((*levels)[k], (*levels)[k + 1], rings[k], rings[k + 1], straight, builder);
-    }
-    const auto top = add_face(drawing, levels->back(), rings.back(), true, name, builder);
-    if (!top) return top.errors();
+    if (auto errors = add_end(drawing, stack.back().back(), lower, true, name_of(layers.back()), builder)) return *errors;
     return builder.take();
+}
+
+Result<Solid> extruded(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const End& lower, const End& upper) {
+    return stacked(drawing, {{profile, from, to, lower, upper, {}}});
 }
 
 }  // namespace fettle::core::parts

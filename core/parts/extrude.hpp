@@ -33,9 +33,4 @@ Result<Solid> extruded(Drawing& drawing, const Profile& profile, const Number& f
 /// the faces between them: a crank is a collar, a disc and a pin. Each layer must touch the next in some area.
 Result<Solid> stacked(Drawing& drawing, const std::vector<Layer>& layers);
 
-/// Turned by `twist` [rad] in all as it rises, about the z axis, counter-clockwise if positive: helical gears; threads and worms from
-/// their cross section.
-/// @param steps  Number of slices; 0: by the drawing's facets.
-Result<Solid> twisted(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const Number& twist, int steps = 0);
-
 }  // namespace fettle::core::parts

@@ -73,6 +73,12 @@ std::size_t FacetedProfile::point_count() const {
 Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
     if (profile.loops.empty()) return Error{ErrorCode::inconsistent, {}, "a profile is empty: nothing of it is left"};
     FacetedProfile out;
+    std::vector<int> kinds;
+    for (const Loop& loop : profile.loops) {
+        kinds.push_back(-static_cast<int>(loop.segments.size()));
+        for (const Segment& segment : loop.segments) kinds.push_back(static_cast<int>(segment.curve.index()));
+    }
+    drawing.note("outline of " + quoted(profile.loops.front().segments.front().feature), kinds);
     for (const Loop& loop : profile.loops) {
         FacetedLoop polygon;
         for (const Segment& segment : loop.segments) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Solids from profiles that run along a helix: springs, the ridge of a thread. Whole threads are rather twisted (extrude.hpp): one mesh,
-/// without a Boolean.
+/// Solids from profiles that turn about z while they rise: springs and the ridge of a thread along a helix; helical gears, worms and whole
+/// threads from their cross section, twisted: one mesh, without a Boolean.
 #pragma once
 
 #include "fettle/core/parts/profile.hpp"
@@ -12,5 +12,10 @@ namespace fettle::core::parts {
 /// turns * 2 pi while it rises by pitch per turn (falls: left-handed). Plane ends in the half planes.
 /// Errors: a profile that is empty or reaches the axis; that meets itself after a turn (taller than the pitch); turns not > 0.
 Result<Solid> along_helix(Drawing& drawing, const Profile& profile, const Number& pitch, const Number& turns);
+
+/// Turned by `twist` [rad] in all as it rises, about the z axis, counter-clockwise if positive: helical gears; threads and worms from
+/// their cross section.
+/// @param steps  Number of slices; 0: by the drawing's facets.
+Result<Solid> twisted(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const Number& twist, int steps = 0);
 
 }  // namespace fettle::core::parts

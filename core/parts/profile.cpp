@@ -9,7 +9,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_geometry.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/sampled_profile.hpp"
+#include "fettle/core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {
@@ -40,7 +40,7 @@ const std::string& name_of(const Loop& loop) {
 Vector2 middle_of(const Loop& loop) {
     if (loop.segments.size() == 1)
         if (const auto* arc = std::get_if<Arc>(&loop.segments.front().curve)) return value(arc->centre);
-    const SampledProfile sampled(Profile{{loop}});
+    const SampledLoops sampled({loop});
     return (sampled.low() + sampled.high()) / 2;
 }
 
@@ -52,7 +52,7 @@ struct Wall {
 };
 
 Wall thinnest_wall(const Profile& profile, const Loop& hole) {
-    const SampledProfile sampled(profile);
+    const SampledLoops sampled(profile.loops);
     Wall wall;
     const auto look = [&](const Vector2& p) {
         const auto nearest = sampled.nearest(p);
@@ -143,7 +143,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
             continue;
         }
         const Wall wall = thinnest_wall(out, inwards);
-        if (!(wall.thickness > same_place * SampledProfile(out).size())) {
+        if (!(wall.thickness > same_place * SampledLoops(out.loops).size())) {
             const Vector2 from_middle = wall.place - middle_of(inwards);
             errors.push_back({ErrorCode::inconsistent, name,
                               "hole " + quoted(name) + " breaks through " + quoted(wall.feature) + ": wall " + millimetres(wall.thickness) +
@@ -151,7 +151,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
             continue;
         }
         // What lies within the hole would float in it.
-        const SampledProfile of_hole(Profile{{inwards}});
+        const SampledLoops of_hole({inwards});
         for (const Loop& other : out.loops)
             if (of_hole.contains(at(other.segments.front().curve, 0.3).position))
                 errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted(name) + " lies around " + quoted(name_of(other))});
@@ -174,7 +174,7 @@ Errors faults_of(const Profile& profile) {
         Curve curve;
         const std::string* feature;
         std::size_t loop, index, count;
-        Vector2 low, high;
+        Box2 box;
     };
     Errors faults;
     std::vector<Piece> pieces;
@@ -187,14 +187,14 @@ Errors faults_of(const Profile& profile) {
         }
         for (std::size_t s = 0; s < loop.segments.size(); ++s) {
             const Segment& segment = loop.segments[s];
-            const SampledProfile box(Profile{{Loop{{segment}}}});
-            if (!box.low().allFinite() || !box.high().allFinite()) {
+            const Box2 box = box_of(segment.curve);
+            if (!box.low.allFinite() || !box.high.allFinite()) {
                 faults.push_back({ErrorCode::not_finite, segment.feature, quoted(segment.feature) + " has points that are not finite"});
                 return faults;
             }
-            pieces.push_back({frozen(segment.curve), &segment.feature, l, s, loop.segments.size(), box.low(), box.high()});
-            low = low.cwiseMin(box.low());
-            high = high.cwiseMax(box.high());
+            pieces.push_back({frozen(segment.curve), &segment.feature, l, s, loop.segments.size(), box});
+            low = low.cwiseMin(box.low);
+            high = high.cwiseMax(box.high);
         }
     }
     const double size = pieces.empty() ? 0 : (high - low).norm(), tolerance = same_place * size;
@@ -205,11 +205,12 @@ Errors faults_of(const Profile& profile) {
 
     std::vector<std::size_t> order(pieces.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return pieces[a].low.x() < pieces[b].low.x(); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return pieces[a].box.low.x() < pieces[b].box.low.x(); });
     for (std::size_t i = 0; i < order.size() && faults.size() < 5; ++i) {
-        for (std::size_t j = i + 1; j < order.size() && pieces[order[j]].low.x() <= pieces[order[i]].high.x(); ++j) {
+        for (std::size_t j = i + 1; j < order.size() && pieces[order[j]].box.low.x() <= pieces[order[i]].box.high.x(); ++j) {
             const Piece &a = pieces[std::min(order[i], order[j])], &b = pieces[std::max(order[i], order[j])];
-            if (a.low.y() > b.high.y() || b.low.y() > a.high.y()) continue;
+            if (!a.box.meets(b.box)) continue;
             const bool same_loop = a.loop == b.loop, b_follows = same_loop && (a.index + 1) % a.count == b.index,
                        a_follows = same_loop && (b.index + 1) % b.count == a.index;
             for (const Meeting& m : meetings(a.curve, b.curve, tolerance)) {

@@ -3,79 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/arrangement.hpp"
-#include "fettle/core/parts/sampled_profile.hpp"
+#include "fettle/core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
 constexpr double same_place = 1e-9;  // of the size of what is cut
 
-enum class Operation { unite, subtract, intersect };
-
 double joint_size(const Profile& a, const Profile& b) {
-    const SampledProfile sa(a), sb(b);
+    const SampledLoops sa(a.loops), sb(b.loops);
     return (sa.high().cwiseMax(sb.high()) - sa.low().cwiseMin(sb.low())).norm();
 }
 
-// Pieces that lie on a piece of the other group, by the nodes they join.
-class Coincidence {
-public:
-    explicit Coincidence(const Arrangement& arrangement) : arrangement_(arrangement) {
-        for (std::size_t k = 0; k < arrangement.pieces.size(); ++k) by_nodes_[key(arrangement.pieces[k])].push_back(k);
-    }
-
-    /// 1, -1: one lies on it in the same, the opposite direction; 0: none. `other` is which.
-    int find(std::size_t piece, bool of_other_group, std::size_t& other) const {
-        const Piece& a = arrangement_.pieces[piece];
-        for (const std::size_t k : by_nodes_.at(key(a))) {
-            const Piece& b = arrangement_.pieces[k];
-            if (k == piece || (of_other_group && group(a) == group(b))) continue;
-            other = k;
-            if (const int way = arrangement_.coincide(a, b); way != 0) return way;
-        }
-        return 0;
-    }
-
-private:
-    int group(const Piece& piece) const { return arrangement_.curves[piece.source].group; }
-    static std::pair<int, int> key(const Piece& piece) { return std::minmax(piece.from, piece.to); }
-
-    const Arrangement& arrangement_;
-    std::map<std::pair<int, int>, std::vector<std::size_t>> by_nodes_;
-};
-
-Result<Profile> combined(const Profile& a, const Profile& b, Operation operation) {
-    if (a.loops.empty()) return operation == Operation::unite ? b : Profile{};
-    if (b.loops.empty()) return operation == Operation::intersect ? Profile{} : a;
+Result<Profile> combined(const Profile& a, const Profile& b, Combination combination) {
+    if (a.loops.empty()) return combination == Combination::unite ? b : Profile{};
+    if (b.loops.empty()) return combination == Combination::intersect ? Profile{} : a;
     std::vector<ArrangedCurve> curves;
     for (const int group : {0, 1})
         for (const Loop& loop : (group == 0 ? a : b).loops)
             for (const Segment& segment : loop.segments) curves.push_back({segment, group});
     const Arrangement arrangement = arranged(std::move(curves), same_place * joint_size(a, b), false);
-    const SampledProfile in_a(a), in_b(b);
-    const Coincidence coincidence(arrangement);
-    std::vector<Piece> kept;
-    for (std::size_t k = 0; k < arrangement.pieces.size(); ++k) {
-        const Piece& piece = arrangement.pieces[k];
-        const bool of_a = arrangement.curves[piece.source].group == 0;
-        std::size_t other = 0;
-        if (const int way = coincidence.find(k, true, other); way != 0) {
-            // Once, and only where the material of both is on the same side (for a difference: on opposite ones).
-            if (of_a && (way > 0) == (operation != Operation::subtract)) kept.push_back(piece);
-            continue;
-        }
-        const bool inside = (of_a ? in_b : in_a).contains(arrangement.middle_of(piece));
-        if (operation == Operation::subtract && !of_a) {
-            if (inside) kept.push_back(turned_round(piece));
-        } else if (inside == (operation == Operation::intersect)) {
-            kept.push_back(piece);
-        }
-    }
-    auto loops = loops_from(arrangement, kept);
+    auto loops = loops_from(arrangement, bounding(arrangement, a.loops, b.loops, combination));
     if (!loops) return loops.errors();
     return Profile{std::move(*loops)};
 }
@@ -129,9 +80,9 @@ std::vector<ArrangedCurve> curves_beside(const Profile& profile, const Number& d
 
 }  // namespace
 
-Result<Profile> united(const Profile& a, const Profile& b) { return combined(a, b, Operation::unite); }
-Result<Profile> difference(const Profile& a, const Profile& b) { return combined(a, b, Operation::subtract); }
-Result<Profile> intersection(const Profile& a, const Profile& b) { return combined(a, b, Operation::intersect); }
+Result<Profile> united(const Profile& a, const Profile& b) { return combined(a, b, Combination::unite); }
+Result<Profile> difference(const Profile& a, const Profile& b) { return combined(a, b, Combination::subtract); }
+Result<Profile> intersection(const Profile& a, const Profile& b) { return combined(a, b, Combination::intersect); }
 
 Result<Profile> united(const std::vector<Profile>& profiles) {
     Profile out;
@@ -167,7 +118,7 @@ Result<Profile> linear_repeat(const Profile& profile, int count, const Point2& s
 
 Result<Profile> offset(const Profile& profile, const Number& distance) {
     if (profile.loops.empty() || distance.value == 0) return profile;
-    const SampledProfile original(profile);
+    const SampledLoops original(profile.loops);
     const double tolerance = same_place * (original.size() + 2 * std::abs(distance.value));
     const Arrangement arrangement = arranged(curves_beside(profile, -distance, tolerance), tolerance, true);
     const Coincidence coincidence(arrangement);

@@ -65,7 +65,7 @@ public:
 private:
     std::vector<double> shares(const std::vector<int>& chain) const {
         std::vector<double> out{0};
-        if (chain.size() == 2) return {0, 1};
+        if (chain.size() <= 2) return chain.size() == 1 ? std::vector<double>{0} : std::vector<double>{0, 1};
         const Vector3 start = value(vertex(chain.front())), way = value(vertex(chain.back())) - start;
         for (std::size_t k = 1; k + 1 < chain.size(); ++k)
             out.push_back((value(vertex(chain[k])) - start).dot(way) / std::max(way.squaredNorm(), 1e-300));

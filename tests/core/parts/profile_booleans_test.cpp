@@ -6,7 +6,7 @@
 #include <random>
 
 #include "fettle/core/parts/extrude.hpp"
-#include "fettle/core/parts/sampled_profile.hpp"
+#include "fettle/core/parts/sampled_loops.hpp"
 #include "fettle/tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::profile_booleans_test {
@@ -164,7 +164,7 @@ TEST_CASE("offsets have the area of Steiner's formula, and grow and shrink by wh
     const auto apart = offset(bell, -0.3);
     REQUIRE(apart);
     CHECK(apart->loops.size() == 2);
-    const SampledProfile around(bell);
+    const SampledLoops around(bell.loops);
     for (const Loop& loop : apart->loops)
         for (const Segment& segment : loop.segments)
             for (int k = 0; k <= 10; ++k) CHECK(around.nearest(at(segment.curve, k / 10.0).position).distance == Approx(0.3).epsilon(1e-9));
@@ -186,7 +186,7 @@ TEST_CASE("an offset of a law is as far from it everywhere, with exact derivativ
         const auto cam = offset(pitch, d);
         INFO(told(cam.errors()));
         REQUIRE(cam);
-        const SampledProfile around(pitch);
+        const SampledLoops around(pitch.loops);
         for (const Segment& segment : cam->loops.front().segments)
             for (int k = 0; k <= 20; ++k)
                 CHECK(around.nearest(at(segment.curve, k / 20.0).position).distance == Approx(std::abs(d)).epsilon(1e-6));

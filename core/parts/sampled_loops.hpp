@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-/// A profile on plain numbers, for questions that decide: is a point within it, what of its edge is nearest.
+/// The loops of a profile on plain numbers, for questions that decide: is a point within them, what of their edge is nearest.
 #pragma once
 
 #include <vector>
 
 #include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/profile.hpp"
+#include "fettle/core/parts/path.hpp"
 
 namespace fettle::core::parts {
 
-class SampledProfile {
+class SampledLoops {
 public:
-    explicit SampledProfile(const Profile& profile);
+    explicit SampledLoops(const std::vector<Loop>& loops);
 
     /// Right for points that are not within rounding of the edge.
     bool contains(const Vector2& p) const;
@@ -22,7 +22,7 @@ public:
         double u = 0;
         Vector2 point = Vector2::Zero();
     };
-    /// Contract: not empty.
+    /// Contract: there is a curve.
     Nearest nearest(const Vector2& p) const;
 
     Vector2 low() const { return low_; }
@@ -40,9 +40,6 @@ private:
     std::vector<Piece> pieces_;
     Vector2 low_, high_;
 };
-
-/// On plain numbers: nothing of it is recorded. Laws stay as they are.
-Curve frozen(const Curve& curve);
 
 /// Twice the area that samples of the loop enclose; negative: it runs clockwise.
 double sampled_area(const Loop& loop);

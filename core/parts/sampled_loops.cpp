@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/sampled_profile.hpp"
+#include "fettle/core/parts/sampled_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,22 +8,6 @@
 #include "fettle/core/base/contract.hpp"
 
 namespace fettle::core::parts {
-namespace {
-
-Point2 frozen_point(const Point2& p) { return constant(value(p)); }
-
-}  // namespace
-
-Curve frozen(const Curve& curve) {
-    if (const auto* line = std::get_if<Line>(&curve)) return Line{frozen_point(line->start), frozen_point(line->end)};
-    if (const auto* arc = std::get_if<Arc>(&curve))
-        return Arc{frozen_point(arc->start), frozen_point(arc->end), frozen_point(arc->centre), arc->radius.value, arc->counter_clockwise};
-    if (const auto* b = std::get_if<Bezier>(&curve))
-        return Bezier{{frozen_point(b->points[0]), frozen_point(b->points[1]), frozen_point(b->points[2]), frozen_point(b->points[3])}};
-    const auto& law = std::get<LawCurve>(curve);
-    return LawCurve{law.law, law.from.value, law.to.value, frozen_point(law.start), frozen_point(law.end)};
-}
-
 double sampled_area(const Loop& loop) {
     double area = 0;
     for (const Segment& segment : loop.segments) {
@@ -38,12 +22,12 @@ double sampled_area(const Loop& loop) {
     return area;
 }
 
-SampledProfile::SampledProfile(const Profile& profile) {
+SampledLoops::SampledLoops(const std::vector<Loop>& loops) {
     low_ = Vector2::Constant(std::numeric_limits<double>::infinity());
     high_ = -low_;
-    for (std::size_t l = 0; l < profile.loops.size(); ++l) {
-        for (std::size_t s = 0; s < profile.loops[l].segments.size(); ++s) {
-            Piece piece{frozen(profile.loops[l].segments[s].curve), l, s, {}, {}, {}};
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        for (std::size_t s = 0; s < loops[l].segments.size(); ++s) {
+            Piece piece{frozen(loops[l].segments[s].curve), l, s, {}, {}, {}};
             const int count = sample_count(piece.curve);
             piece.samples.push_back(value(start_of(piece.curve)));
             for (int k = 1; k < count; ++k) piece.samples.push_back(at(piece.curve, static_cast<double>(k) / count).position);
@@ -66,7 +50,7 @@ SampledProfile::SampledProfile(const Profile& profile) {
     }
 }
 
-bool SampledProfile::contains(const Vector2& p) const {
+bool SampledLoops::contains(const Vector2& p) const {
     // Crossings of the ray towards +x; samples decide where they are clear, bisection along the curve where not.
     bool inside = false;
     for (const Piece& piece : pieces_) {
@@ -98,8 +82,8 @@ bool SampledProfile::contains(const Vector2& p) const {
     return inside;
 }
 
-SampledProfile::Nearest SampledProfile::nearest(const Vector2& p) const {
-    FETTLE_ASSERT(!pieces_.empty(), "an empty profile has no nearest point");
+SampledLoops::Nearest SampledLoops::nearest(const Vector2& p) const {
+    FETTLE_ASSERT(!pieces_.empty(), "loops without curves have no nearest point");
     Nearest best;
     best.distance = std::numeric_limits<double>::infinity();
     for (const Piece& piece : pieces_) {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/parts/helix.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/turned_sections.hpp"
+
+namespace fettle::core::parts {
+namespace {
+
+constexpr double full_turn = 2 * std::numbers::pi;
+
+std::string quoted(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
+std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
+
+int steps_of(Drawing& drawing, const std::string& name, double radius, double angle) {
+    return drawing.decision(
+        "steps of the turn of " + quoted(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
+        [&] {
+            // A turn's worth of segments for each turn.
+            const double turns = std::abs(angle) / full_turn, a_turn = segments_of(drawing.facets, radius, full_turn);
+            return std::vector<int>{std::max(1, static_cast<int>(std::ceil(turns * a_turn - 1e-9)))};
+        })[0];
+}
+
+}  // namespace
+
+Result<Solid> along_helix(Drawing& drawing, const Profile& profile, const Number& pitch, const Number& turns) {
+    const auto section = faceted(drawing, profile);
+    if (!section) return section.errors();
+    const std::string name = profile.loops.front().segments.front().feature;
+    if (!(turns.value > 0)) return Error{ErrorCode::out_of_range, name, quoted(name) + " runs along a helix of no turns"};
+    double nearest = INFINITY, farthest = 0, low = INFINITY, high = -INFINITY;
+    for (const FacetedLoop& loop : section->loops) {
+        for (const Point2& p : loop.points) {
+            nearest = std::min(nearest, p.x.value);
+            farthest = std::max(farthest, p.x.value);
+            low = std::min(low, p.y.value);
+            high = std::max(high, p.y.value);
+        }
+    }
+    if (!(nearest > 0))
+        return Error{ErrorCode::out_of_range, name, quoted(name) + " reaches over the axis of its helix by " + millimetres(-nearest)};
+    if (turns.value >= 1 && !(high - low < std::abs(pitch.value)))
+        return Error{ErrorCode::out_of_range, name,
+                     quoted(name) + " is " + millimetres(high - low) + " high and meets itself after a turn: the pitch is " +
+                         millimetres(std::abs(pitch.value))};
+    const Number angle = full_turn * turns;
+    return turned_section(drawing, *section, SectionPlane::through_axis, 0, angle, pitch * turns,
+                          steps_of(drawing, name, farthest, angle.value), name);
+}
+
+Result<Solid> twisted(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const Number& twist, int steps) {
+    const auto section = faceted(drawing, profile);
+    if (!section) return section.errors();
+    const std::string name = profile.loops.front().segments.front().feature;
+    if (!(to.value > from.value))
+        return Error{ErrorCode::out_of_range, name, quoted(name) + " has no height: " + millimetres(to.value - from.value)};
+    double farthest = 0;
+    for (const FacetedLoop& loop : section->loops)
+        for (const Point2& p : loop.points) farthest = std::max(farthest, value(p).norm());
+    if (steps <= 0) steps = steps_of(drawing, name, farthest, twist.value);
+    return turned_section(drawing, *section, SectionPlane::across, from, twist, to - from, steps, name);
+}
+
+}  // namespace fettle::core::parts
