@@ -118,7 +118,8 @@ CurveMaker read_law(const JsonNode& node, PartNumbers& numbers) {
     if (is_polar && (node["x"].exists() || node["y"].exists()))
         node.fail(ErrorCode::inconsistent, "a law has either `x` and `y`, or `radius` and `angle`");
     if (numbers.scope().find("t") != nullptr)
-        node["t"].fail(ErrorCode::inconsistent, "`t` is the parameter of the law here, and a dimension, count or variable too; rename that");
+        node["t"].fail(ErrorCode::inconsistent,
+                       "`t` is the parameter of the law here, and a dimension, count or variable too; rename that");
     PartNumber first, second;
     numbers.with_parameter("t", from.formula.dimension, [&] {
         first = numbers.length(is_polar ? node["radius"] : node.require("x"));
@@ -130,7 +131,8 @@ CurveMaker read_law(const JsonNode& node, PartNumbers& numbers) {
             second = *t;
     });
     return [=, begin = from, end = to](Sheet& sheet) {
-        return parts::law_curve(parts::Law(WrittenLaw{LawNumber(first, sheet.values), LawNumber(second, sheet.values), is_polar}), begin.at(sheet), end.at(sheet));
+        return parts::law_curve(parts::Law(WrittenLaw{LawNumber(first, sheet.values), LawNumber(second, sheet.values), is_polar}),
+                                begin.at(sheet), end.at(sheet));
     };
 }
 

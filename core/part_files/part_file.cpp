@@ -148,7 +148,8 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
         return document->errors();
     }
     if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
-    root.allow_keys({"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
+    root.allow_keys(
+        {"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});
 
     auto contents = std::make_shared<Contents>();
@@ -194,8 +195,8 @@ Errors PartFile::faults(const std::vector<double>& values) const {
         if (!base::is_usable_number(values[k]))
             errors.push_back({ErrorCode::not_finite, where, dimension.name + " is no number that can be used; give a finite one"});
         else if (dimension.kind == PartDimensionKind::length && !(values[k] > 0))
-            errors.push_back({ErrorCode::out_of_range, where,
-                              dimension.name + " is " + base::format_length(values[k], "mm") + "; allowed: above 0 mm"});
+            errors.push_back(
+                {ErrorCode::out_of_range, where, dimension.name + " is " + base::format_length(values[k], "mm") + "; allowed: above 0 mm"});
     }
     if (!errors.empty()) return errors;
     std::vector<double> all;

@@ -23,9 +23,7 @@ void PartNumbers::add_dimension(const std::string& name, Dimension dimension) {
     scope_.names.push_back({name, expression::powers_of(dimension)});
 }
 
-void PartNumbers::add_count(const std::string& name, int value) {
-    scope_.names.push_back({name, {}, expression::constant_formula(value)});
-}
+void PartNumbers::add_count(const std::string& name, int value) { scope_.names.push_back({name, {}, expression::constant_formula(value)}); }
 
 void PartNumbers::add_variables(const JsonNode& node) {
     std::map<std::string, std::string> texts;
@@ -112,8 +110,7 @@ std::optional<int> PartNumbers::count(const JsonNode& node, int least, int most)
     return std::nullopt;
 }
 
-void PartNumbers::with_parameter(const std::string& name, const expression::DimensionPowers& dimension,
-                                 const std::function<void()>& read) {
+void PartNumbers::with_parameter(const std::string& name, const expression::DimensionPowers& dimension, const std::function<void()>& read) {
     scope_.names.push_back({name, dimension});
     parameter_ = name;
     read();
@@ -136,8 +133,7 @@ PartPoint read_point(const JsonNode& node, const PartNumbers& numbers) {
     const std::vector<JsonNode> two = list.is_array() ? list.elements() : std::vector<JsonNode>();
     if (two.size() != 2) {
         if (list.exists())
-            list.fail(ErrorCode::wrong_type,
-                      "a point is wanted, [x, y] or {\"polar\": [distance, angle]}, found " + list.shown());
+            list.fail(ErrorCode::wrong_type, "a point is wanted, [x, y] or {\"polar\": [distance, angle]}, found " + list.shown());
         return out;
     }
     out.first = numbers.length(two[0]);

@@ -80,8 +80,8 @@ std::optional<Comparison> read_comparison(const JsonNode& node, const PartNumber
         const DimensionPowers own = side.formula.dimension;
         if (expression::same(own, wanted)) continue;
         if (!own.is_number() || !side.formula.is_constant() || !dimension) {
-            node.fail(ErrorCode::wrong_type, expression::described(own) + " and " + expression::described(wanted) +
-                                                 " cannot be compared" + (own.is_number() ? "; give the number a unit" : ""));
+            node.fail(ErrorCode::wrong_type, expression::described(own) + " and " + expression::described(wanted) + " cannot be compared" +
+                                                 (own.is_number() ? "; give the number a unit" : ""));
             return std::nullopt;
         }
         side = {expression::constant_formula(side.formula.nodes.back().number * numbers.scope().plain_unit(*dimension), wanted)};
@@ -113,8 +113,8 @@ std::optional<Error> fault_of(const PartRelation& relation, const std::vector<do
     if (all_hold(relation.comparison, found)) return std::nullopt;
     std::string numbers;
     for (std::size_t k = 0; k < found.size(); ++k)
-        numbers += (k == 0 ? "" : " " + relation.comparison.signs[k - 1] + " ") +
-                   shown(found[k], relation.comparison.sides[k].formula.dimension);
+        numbers +=
+            (k == 0 ? "" : " " + relation.comparison.signs[k - 1] + " ") + shown(found[k], relation.comparison.sides[k].formula.dimension);
     return Error{ErrorCode::out_of_range, relation.where,
                  "`" + relation.check + "` must hold" + (relation.otherwise.empty() ? "" : ", or " + relation.otherwise) +
                      "; here it would be " + numbers};

@@ -57,15 +57,18 @@ Step read_line(const JsonNode& node, PartNumbers& numbers, const std::string&) {
 
 Step read_arc_to(const JsonNode& node, PartNumbers& numbers, const std::string&) {
     const PartPoint to = read_point(node["arc_to"], numbers);
-    const int ways = static_cast<int>(node["centre"].exists()) + static_cast<int>(node["through"].exists()) +
-                     static_cast<int>(node["bulge"].exists());
-    if (ways > 1) node.fail(ErrorCode::inconsistent, "an arc has one of `centre`, `through` and `bulge`, or none: then it goes on tangentially");
+    const int ways =
+        static_cast<int>(node["centre"].exists()) + static_cast<int>(node["through"].exists()) + static_cast<int>(node["bulge"].exists());
+    if (ways > 1)
+        node.fail(ErrorCode::inconsistent, "an arc has one of `centre`, `through` and `bulge`, or none: then it goes on tangentially");
     if (node["clockwise"].exists() && !node["centre"].exists())
         node["clockwise"].fail(ErrorCode::inconsistent, "only an arc with a `centre` may run either way");
     if (node["centre"].exists()) {
         const PartPoint centre = read_point(node["centre"], numbers);
         const bool clockwise = node["clockwise"].boolean().value_or(false);
-        return [=](Path& path, Sheet& sheet, const Placement& placed) { path.arc_about(placed(centre.at(sheet)), placed(to.at(sheet)), !clockwise); };
+        return [=](Path& path, Sheet& sheet, const Placement& placed) {
+            path.arc_about(placed(centre.at(sheet)), placed(to.at(sheet)), !clockwise);
+        };
     }
     if (node["through"].exists()) {
         const PartPoint middle = read_point(node["through"], numbers);
@@ -130,7 +133,8 @@ const Verb* verb_of(const JsonNode& node) {
 
 // What is to become of the corner at the end of a step.
 Step read_corner(const JsonNode& node, PartNumbers& numbers) {
-    if (node["round"].exists() && node["chamfer"].exists()) node.fail(ErrorCode::inconsistent, "a corner is rounded or chamfered, not both");
+    if (node["round"].exists() && node["chamfer"].exists())
+        node.fail(ErrorCode::inconsistent, "a corner is rounded or chamfered, not both");
     if (node["round"].exists()) {
         const PartNumber radius = numbers.length(node["round"]);
         return [=](Path& path, Sheet& sheet, const Placement&) { path.round(radius.at(sheet)); };
@@ -151,11 +155,13 @@ void add_step(const JsonNode& node, PartNumbers& numbers, const std::string& pat
     if (verb == nullptr) {
         std::vector<std::string_view> known{"polar"};
         for (const Verb& each : verbs()) known.push_back(each.name);
-        std::string message = "a step of a path is a point, or an object with one of the keys " ;
+        std::string message = "a step of a path is a point, or an object with one of the keys ";
         for (const std::string_view each : known) message += (each == known.front() ? "`" : ", `") + std::string(each) + "`";
         for (const auto& [key, value] : node.is_object() ? node.members() : std::vector<std::pair<std::string, JsonNode>>())
-            if (const auto nearest = files::nearest_word(key, known)) message += "; did you mean `" + *nearest + "`, where `" + key + "` stands?";
-        node.fail(node.is_object() ? ErrorCode::unknown_key : ErrorCode::wrong_type, message + (node.is_object() ? "" : "; found " + node.shown()));
+            if (const auto nearest = files::nearest_word(key, known))
+                message += "; did you mean `" + *nearest + "`, where `" + key + "` stands?";
+        node.fail(node.is_object() ? ErrorCode::unknown_key : ErrorCode::wrong_type,
+                  message + (node.is_object() ? "" : "; found " + node.shown()));
         return;
     }
     std::vector<std::string_view> keys{verb->name, "round", "chamfer", "name"};
@@ -215,7 +221,8 @@ std::vector<Point2> points_at(const std::vector<PartPoint>& points, const Sheet&
 LoopMaker read_path(const JsonNode& node, PartNumbers& numbers, const std::string& name) {
     const std::vector<JsonNode> elements = node["path"].elements();
     if (elements.size() < 2) {
-        node["path"].fail(ErrorCode::out_of_range, "a path is a list of a point to begin at and at least one step; found " + node["path"].shown());
+        node["path"].fail(ErrorCode::out_of_range,
+                          "a path is a list of a point to begin at and at least one step; found " + node["path"].shown());
         return {};
     }
     const JsonNode& first = elements.front();

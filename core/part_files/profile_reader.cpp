@@ -64,7 +64,8 @@ std::optional<std::string> verb_of(const JsonNode& node, const std::vector<std::
         if (node[verb].exists()) found.emplace_back(verb);
     if (found.size() == 1) return found.front();
     if (found.size() > 1) {
-        node.fail(ErrorCode::inconsistent, "one thing at a time: this has `" + found[0] + "` and `" + found[1] + "`; put one into the other");
+        node.fail(ErrorCode::inconsistent,
+                  "one thing at a time: this has `" + found[0] + "` and `" + found[1] + "`; put one into the other");
         return std::nullopt;
     }
     std::string near;
@@ -86,7 +87,8 @@ Result<Profile> profile_of(const std::string& name, const ProfileMaker& maker, S
     return made;
 }
 
-ProfileReader::ProfileReader(PartNumbers& numbers, const JsonNode& named) : numbers_(numbers), named_(named), makers_(std::make_shared<std::map<std::string, ProfileMaker>>()) {}
+ProfileReader::ProfileReader(PartNumbers& numbers, const JsonNode& named)
+    : numbers_(numbers), named_(named), makers_(std::make_shared<std::map<std::string, ProfileMaker>>()) {}
 
 const std::vector<ProfileReader::Verb>& ProfileReader::verbs() {
     using P = ProfileReader;
@@ -145,7 +147,8 @@ ProfileMaker ProfileReader::reference(const JsonNode& node) {
 
 ProfileMaker ProfileReader::read_object(const JsonNode& node, const std::string& name) {
     if (!node.is_object()) {
-        if (node.exists()) node.fail(ErrorCode::wrong_type, "a profile is wanted: an object, or the name of one of `profiles`; found " + node.shown());
+        if (node.exists())
+            node.fail(ErrorCode::wrong_type, "a profile is wanted: an object, or the name of one of `profiles`; found " + node.shown());
         return {};
     }
     std::vector<std::string_view> known;
@@ -219,7 +222,9 @@ ProfileMaker ProfileReader::circle(const JsonNode& node, const std::string& name
     const PartPoint centre = read_point(node["centre"], numbers_);
     return [=, where = node.where()](Sheet& sheet) -> Result<Profile> {
         const Number r = radius.at(sheet);
-        if (!(r.value > 0)) return Error{ErrorCode::out_of_range, where, "the radius of `" + name + "` is " + base::format_length(r.value, "mm") + "; it must be above 0"};
+        if (!(r.value > 0))
+            return Error{ErrorCode::out_of_range, where,
+                         "the radius of `" + name + "` is " + base::format_length(r.value, "mm") + "; it must be above 0"};
         return parts::filled(parts::circle(centre.at(sheet), r, name));
     };
 }
@@ -373,9 +378,9 @@ ProfileMaker with_corners(const ProfileMaker& what, const PartNumber& size, cons
         for (const Loop& loop : made->loops) {
             // What is convex of a hole is concave of the material.
             const bool is_hole = made->loops.size() > 1 && parts::area({{loop}}).value < 0;
-            const parts::Corners own = !is_hole || corners == parts::Corners::all  ? corners
-                                       : corners == parts::Corners::convex ? parts::Corners::concave
-                                                                           : parts::Corners::convex;
+            const parts::Corners own = !is_hole || corners == parts::Corners::all ? corners
+                                       : corners == parts::Corners::convex        ? parts::Corners::concave
+                                                                                  : parts::Corners::convex;
             Result<Loop> done = cut(loop, size.at(sheet), own, {});
             if (!done) return done.errors();
             out.loops.push_back(std::move(*done));

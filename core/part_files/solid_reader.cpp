@@ -150,7 +150,8 @@ SolidMaker SolidReader::reference(const JsonNode& node) {
 
 SolidMaker SolidReader::read_object(const JsonNode& node, const std::string& name) {
     if (!node.is_object()) {
-        if (node.exists()) node.fail(ErrorCode::wrong_type, "a solid is wanted: an object, or the name of one of `solids`; found " + node.shown());
+        if (node.exists())
+            node.fail(ErrorCode::wrong_type, "a solid is wanted: an object, or the name of one of `solids`; found " + node.shown());
         return {};
     }
     std::vector<std::string_view> known;
@@ -231,7 +232,8 @@ SolidMaker SolidReader::revolve(const JsonNode& node, const std::string& name) {
 
 SolidMaker SolidReader::twist(const JsonNode& node, const std::string& name) {
     const ProfileMaker profile = profiles_.read(node["twist"], name);
-    const PartNumber from = numbers_.length(node["from"]), to = numbers_.length(node.require("to")), by = numbers_.angle(node.require("by"));
+    const PartNumber from = numbers_.length(node["from"]), to = numbers_.length(node.require("to")),
+                     by = numbers_.angle(node.require("by"));
     return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const Result<Profile> made = profile(sheet);
         if (!made) return made.errors();
@@ -396,9 +398,7 @@ SolidMaker SolidReader::turn(const JsonNode& node, const std::string& name) {
 SolidMaker SolidReader::mirror(const JsonNode& node, const std::string& name) {
     const SolidMaker what = read(node["mirror"], name);
     const std::string plane = node.require("across").choice({"xy", "yz", "xz"}).value_or("xy");
-    const parts::Point3 normal = plane == "xy"   ? parts::Point3{0, 0, 1}
-                                 : plane == "yz" ? parts::Point3{1, 0, 0}
-                                                 : parts::Point3{0, 1, 0};
+    const parts::Point3 normal = plane == "xy" ? parts::Point3{0, 0, 1} : plane == "yz" ? parts::Point3{1, 0, 0} : parts::Point3{0, 1, 0};
     return [=](Sheet& sheet) -> Result<Solid> {
         const Result<Solid> made = what(sheet);
         return made ? Result<Solid>(parts::mirrored(*made, normal)) : made;

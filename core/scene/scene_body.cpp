@@ -221,7 +221,10 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
     if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
     if (spec.generator.empty() && spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
     if (!options_.shape_generator) {
-        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.part.empty() ? spec.generator : spec.part) +
+        node.fail(ErrorCode::unsupported, "shape \"" +
+                                              (spec.program        ? spec.program->command.front()
+                                               : spec.part.empty() ? spec.generator
+                                                                   : spec.part) +
                                               "\" cannot be made here: this program was given no generators");
         return;
     }

@@ -82,12 +82,13 @@ Entry part_entry(const core::part_files::PartFile& part) {
         const std::string kind = core::part_files::name_of(d.kind);
         entry.facts["dimensions"].push_back({{"name", d.name}, {"default", d.value}, {"kind", kind}, {"meaning", d.about}});
         const auto quantity = core::expression::powers_of(core::part_files::dimension_of(d.kind));
-        entry.details += formatted("  %-26s %12s  %s%s\n", d.name.c_str(), core::part_files::shown(d.value, quantity).c_str(), d.about.c_str(),
-                                   d.kind == PartDimensionKind::coordinate ? " (any sign)" : "");
+        entry.details += formatted("  %-26s %12s  %s%s\n", d.name.c_str(), core::part_files::shown(d.value, quantity).c_str(),
+                                   d.about.c_str(), d.kind == PartDimensionKind::coordinate ? " (any sign)" : "");
     }
     entry.facts["counts"] = Json::array();
     for (const core::part_files::PartCount& c : part.counts()) {
-        entry.facts["counts"].push_back({{"name", c.name}, {"default", c.value}, {"least", c.least}, {"most", c.most}, {"meaning", c.about}});
+        entry.facts["counts"].push_back(
+            {{"name", c.name}, {"default", c.value}, {"least", c.least}, {"most", c.most}, {"meaning", c.about}});
         entry.details += formatted("  %-26s %12d  %s (%d to %d)\n", c.name.c_str(), c.value, c.about.c_str(), c.least, c.most);
     }
     entry.facts["relations"] = Json::array();
@@ -137,7 +138,8 @@ struct ShapesArguments {
 int run_shapes(const ShapesArguments& options, Console& console) {
     std::vector<Entry> entries;
     for (const shapes::GeneratorInfo& info : shapes::generator_table()) entries.push_back(shape_entry(info));
-    for (const shapes::LibraryPart& each : shapes::part_library()) entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value()));
+    for (const shapes::LibraryPart& each : shapes::part_library())
+        entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value()));
     if (options.name.ends_with(core::part_files::part_file_ending)) {
         const auto part = shapes::find_part(options.name);
         if (!part) return console.input_errors(part.errors());

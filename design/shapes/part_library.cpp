@@ -9,7 +9,7 @@ using core::part_files::PartFile;
 
 const std::vector<LibraryPart>& part_library() {
     static const std::vector<LibraryPart> all{
-#include "part_library.inc"  // made by CMake of the files
+#include <part_library.inc>  // made by CMake of the files
     };
     return all;
 }

@@ -152,7 +152,8 @@ TEST_CASE("part library: 200 random valid dimensions of every part", "[slow]") {
 
 TEST_CASE("part library: volumes in closed form") {
     // The volume of the mesh is that of the part but for what its facets leave out or add: their area by the chord, at most.
-    const auto check = [](const std::string& name, const Counts& counts, const std::function<double(const std::map<std::string, double>&)>& exact) {
+    const auto check = [](const std::string& name, const Counts& counts,
+                          const std::function<double(const std::map<std::string, double>&)>& exact) {
         const PartFile file = part(name, counts);
         std::map<std::string, double> values;
         for (const PartDimension& dimension : file.dimensions()) values[dimension.name] = dimension.value;
@@ -169,11 +170,11 @@ TEST_CASE("part library: volumes in closed form") {
         const double r = d["shaft_radius"] + d["clearance"];
         return pi * (std::pow(r + d["wall"], 2) - r * r) * d["thickness"];
     });
-    check("plate", {{"columns", 0}}, [](auto d) {
-        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2)) * d["thickness"];
-    });
+    check("plate", {{"columns", 0}},
+          [](auto d) { return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2)) * d["thickness"]; });
     check("plate", {}, [](auto d) {
-        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2) - 4 * pi * std::pow(d["pin_radius"] + d["clearance"], 2)) *
+        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2) -
+                4 * pi * std::pow(d["pin_radius"] + d["clearance"], 2)) *
                d["thickness"];
     });
     check("slotted_link", {}, [](auto d) {
@@ -181,9 +182,8 @@ TEST_CASE("part library: volumes in closed form") {
         const double slot = d["travel"] + 2 * d["clearance"];
         return (pi * outer * outer + 2 * outer * far - 2 * pi * r * r - 2 * r * slot) * d["thickness"];
     });
-    check("eccentric", {}, [](auto d) {
-        return pi * (std::pow(d["radius"], 2) - std::pow(d["shaft_radius"] + d["clearance"], 2)) * d["thickness"];
-    });
+    check("eccentric", {},
+          [](auto d) { return pi * (std::pow(d["radius"], 2) - std::pow(d["shaft_radius"] + d["clearance"], 2)) * d["thickness"]; });
     check("pin", {}, [](auto d) {
         const double r = d["bore_radius"] - d["clearance"], top = r - d["chamfer"];
         return pi * (std::pow(d["head_radius"], 2) * d["head_thickness"] + r * r * (d["length"] - d["chamfer"]) +
@@ -232,7 +232,8 @@ TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash
         values_b[2] = -pair.shift;
         values_a[8] = values_b[8] = 2e-3;
         const Figure of_a = figure_at(drawn(a, values_a, fine(1e-6)).mesh, 0), of_b = figure_at(drawn(b, values_b, fine(1e-6)).mesh, 0);
-        const double module = values_a[0], r_a = module * pair.teeth_a / 2, r_b = module * pair.teeth_b / 2, play = values_a[3] + values_b[3];
+        const double module = values_a[0], r_a = module * pair.teeth_a / 2, r_b = module * pair.teeth_b / 2,
+                     play = values_a[3] + values_b[3];
         const auto clash = [&](double angle_a, double extra) {
             // A tooth of a towards b, a gap of b towards a, then rolled; b turned on by `extra` of arc.
             const double angle_b = pi + pi / pair.teeth_b - angle_a * pair.teeth_a / pair.teeth_b + extra / r_b;
