@@ -178,6 +178,10 @@ void SceneBodies::read_dimensions(const files::JsonNode& node, ShapeSpec& spec) 
         const auto found = options_.part_dimensions(spec);
         if (!found) return report(found.errors(), node["part"]);
         quantities = *found;
+        for (const auto& [name, quantity] : quantities) {
+            if (quantity == base::Dimension::angle) spec.angles.push_back(name);
+            if (quantity == base::Dimension::number) spec.numbers.push_back(name);
+        }
     }
     for (const auto& [name, value] : node["dimensions"].members()) {
         if (name.starts_with('#')) continue;
@@ -186,10 +190,8 @@ void SceneBodies::read_dimensions(const files::JsonNode& node, ShapeSpec& spec) 
             spec.dimensions[name] = value.length(unit_).value_or(0);
         } else if (quantity->second == base::Dimension::angle) {
             spec.dimensions[name] = value.quantity(base::Dimension::angle, to_si(1, *base::find_unit("deg"))).value_or(0);
-            spec.angles.push_back(name);
         } else {
             spec.dimensions[name] = value.number().value_or(0);
-            spec.numbers.push_back(name);
         }
     }
 }
