@@ -237,7 +237,12 @@ void SceneBodies::make_shape(const files::JsonNode& node, Body& body) {
         spec.part = node["part"].string().value_or("");
         if (spec.part.ends_with(".part.json")) {
             const auto file = mesh_files::find_mesh_file(spec.part, document_.path(), options_.mesh_dirs, node["part"].where());
-            if (!file) return report(file.errors(), node["part"]);
+            if (!file) {
+                base::Errors errors = file.errors();  // of a search that knows meshes
+                for (base::Error& error : errors)
+                    if (error.message.starts_with("mesh file")) error.message.replace(0, 4, "part");
+                return report(errors, node["part"]);
+            }
             spec.part = *file;
         }
         spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
@@ -384,7 +389,9 @@ std::vector<Body> SceneBodies::components(const files::JsonNode& node, Body body
 void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node) {
     for (const auto& error : errors) {
         const bool placed = error.where.empty() || error.where == node.where();
-        node.fail(error.code, (placed ? "" : error.where + ": ") + error.message);
+        constexpr std::string_view written_here = "shape#";  // of a part's text: its pointer goes on from the node's
+        const std::string where = error.where.starts_with(written_here) ? error.where.substr(written_here.size()) : error.where;
+        node.fail(error.code, (placed ? "" : where + ": ") + error.message);
     }
 }
 
