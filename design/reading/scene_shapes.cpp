@@ -33,7 +33,8 @@ MadeShape part_of_file(const core::scene::ShapeSpec& spec) {
             return Error{ErrorCode::out_of_range, "counts/segments",
                          "segments is " + std::to_string(segments->second) + "; allowed: from 8 to 720"};
         if (spec.chord > 0)
-            return Error{ErrorCode::inconsistent, "counts/segments", "`facets` says how far facets may be from what is round; `segments` goes without it"};
+            return Error{ErrorCode::inconsistent, "counts/segments",
+                         "`facets` says how far facets may be from what is round; `segments` goes without it"};
         facets.segments = segments->second;
         counts.erase(segments);
     }

@@ -28,9 +28,8 @@ std::vector<double> defaults(const PartFile& file) {
 Errors reading_faults(const std::string& text) { return PartFile::parse(text, "a.part.json").errors(); }
 
 bool is_told(const Errors& errors, const std::string& where, const std::string& words) {
-    return std::any_of(errors.begin(), errors.end(), [&](const Error& error) {
-        return error.where.ends_with(where) && error.message.find(words) != std::string::npos;
-    });
+    return std::any_of(errors.begin(), errors.end(),
+                       [&](const Error& error) { return error.where.ends_with(where) && error.message.find(words) != std::string::npos; });
 }
 
 // The area of a profile, drawn 1 mm thick [mm^2]. Of what has arcs it is that of polygons.
@@ -78,15 +77,15 @@ TEST_CASE("part file: profiles have the area of what they describe") {
     CHECK(area(R"({"circle": "= wide / 2", "centre": {"polar": [5, "= tilt"]}})") == Approx(100 * pi).epsilon(1e-3));
     CHECK(area(R"({"polygon": [[0, 0], ["= wide", 0], [0, "= high"]]})") == Approx(100));
     CHECK(area(R"({"slot": [[0, 0], ["= wide", 0]], "radius": 3})") == Approx(120 + 9 * pi).epsilon(1e-3));
-    CHECK(area(R"({"path": [[0, 0], ["= wide", 0], {"arc_to": ["= wide", "= high"], "centre": ["= wide", "= high / 2"]}, [0, "= high"]]})") ==
-          Approx(200 + 12.5 * pi).epsilon(1e-3));
+    CHECK(
+        area(R"({"path": [[0, 0], ["= wide", 0], {"arc_to": ["= wide", "= high"], "centre": ["= wide", "= high / 2"]}, [0, "= high"]]})") ==
+        Approx(200 + 12.5 * pi).epsilon(1e-3));
     CHECK(area(R"({"path": [[0, 0], ["= wide", 0], {"arc_to": ["= wide", "= high"], "bulge": 1}, [0, "= high"]]})") ==
           Approx(200 + 12.5 * pi).epsilon(1e-3));
     CHECK(area(R"({"path": [[0, 0], ["= wide", 0], {"to": ["= wide", "= high"], "round": 2}, {"to": [0, "= high"], "chamfer": 2}]})") ==
           Approx(200 - (4 - pi) - 2).epsilon(1e-3));
-    CHECK(area(R"({"law": {"t": [0, "360deg"], "x": "= wide * cos(t)", "y": "= high * sin(t)"}})") == Approx(200 * pi).epsilon(2e-3));
-    CHECK(area(R"({"law": {"t": [0, "360deg"], "radius": "= wide + aside * cos(2 * t)"}})") ==
-          Approx(pi * (400 + 4.5)).epsilon(2e-3));
+    CHECK(area(R"j({"law": {"t": [0, "360deg"], "x": "= wide * cos(t)", "y": "= high * sin(t)"}})j") == Approx(200 * pi).epsilon(2e-3));
+    CHECK(area(R"j({"law": {"t": [0, "360deg"], "radius": "= wide + aside * cos(2 * t)"}})j") == Approx(pi * (400 + 4.5)).epsilon(2e-3));
     CHECK(area(R"({"holes": {"repeat": {"circle": 1, "centre": [6, 0]}, "count": "= holes"}, "in": {"circle": 10}})") ==
           Approx(96 * pi).epsilon(2e-3));
     CHECK(area(R"({"holes": {"repeat": {"circle": 1}, "count": 0}, "in": {"circle": 10}})") == Approx(100 * pi).epsilon(1e-3));
@@ -106,25 +105,30 @@ TEST_CASE("part file: faults of the file, with place and remedy") {
     CHECK(is_told(reading_faults(part(R"("solod": 1, "solid": {"extrude": {"circle": 1}, "to": 1})")), "/solod", "`solid`"));
     CHECK(is_told(reading_faults(part(R"("solid": {"extrud": {"circle": 1}, "to": 1})")), "/solid", "did you mean `extrude`"));
     CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circel": 1}, "to": 1})")), "/solid/extrude", "did you mean `circle`"));
-    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circle": 1, "center": [0, 0]}, "to": 1})")), "/extrude/center", "`centre`"));
+    CHECK(
+        is_told(reading_faults(part(R"("solid": {"extrude": {"circle": 1, "center": [0, 0]}, "to": 1})")), "/extrude/center", "`centre`"));
     CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circle": "= wied"}, "to": 1})")), "/extrude/circle", "`wide`"));
     CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circle": "= tilt"}, "to": 1})")), "/extrude/circle", "an angle"));
-    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": "rign", "to": 1}, "profiles": {"ring": {"circle": 1}})")), "/solid/extrude", "`ring`"));
-    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circle": 1, "slot": 2}, "to": 1})")), "/solid/extrude", "`circle` and `slot`"));
+    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": "rign", "to": 1}, "profiles": {"ring": {"circle": 1}})")), "/solid/extrude",
+                  "`ring`"));
+    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"circle": 1, "slot": 2}, "to": 1})")), "/solid/extrude",
+                  "`circle` and `slot`"));
     CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"path": [[0, 0], {"arcto": [1, 1]}]}, "to": 1})")), "/path/1", "`arc_to`"));
     CHECK(is_told(reading_faults(part(R"("relations": [{"check": "wide"}], "solid": {"sphere": 1})")), "/relations/0/check", "a < b"));
-    CHECK(is_told(reading_faults(part(R"("relations": [{"check": "wide < tilt"}], "solid": {"sphere": 1})")), "/check", "cannot be compared"));
+    CHECK(is_told(reading_faults(part(R"("relations": [{"check": "wide < tilt"}], "solid": {"sphere": 1})")), "/check",
+                  "cannot be compared"));
     CHECK(is_told(reading_faults(part(R"("variables": {"wide": "= high"}, "solid": {"sphere": 1})")), "/variables/wide", "unique"));
-    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"repeat": {"circle": 1}, "count": "= ratio"}, "to": 1})")), "/count", "counts alone"));
+    CHECK(is_told(reading_faults(part(R"("solid": {"extrude": {"repeat": {"circle": 1}, "count": "= ratio"}, "to": 1})")), "/count",
+                  "counts alone"));
     CHECK(is_told(PartFile::parse(part(R"("solid": {"sphere": 1})"), "a.part.json", {{"hols", 3}}).errors(), "counts/hols", "`holes`"));
-    CHECK(is_told(PartFile::parse(part(R"("solid": {"sphere": 1})"), "a.part.json", {{"holes", 9}}).errors(), "counts/holes", "from 0 to 8"));
+    CHECK(
+        is_told(PartFile::parse(part(R"("solid": {"sphere": 1})"), "a.part.json", {{"holes", 9}}).errors(), "counts/holes", "from 0 to 8"));
 }
 
 TEST_CASE("part file: relations hold in the designer's words") {
-    const auto file = PartFile::parse(
-        part(R"("relations": [{"check": "high + aside < wide / 2 <= 12", "or": "it falls over"},
+    const auto file = PartFile::parse(part(R"("relations": [{"check": "high + aside < wide / 2 <= 12", "or": "it falls over"},
                               {"check": "ratio < 0", "or": "never", "when": "holes > 5"}], "solid": {"extrude": {"circle": 1}, "to": 1})"),
-        "a.part.json");
+                                      "a.part.json");
     REQUIRE(file);
     std::vector<double> values = defaults(*file);
     CHECK(file->faults(values).empty());
@@ -148,7 +152,8 @@ TEST_CASE("part file: what asks for too much, or for itself, ends") {
         REQUIRE_FALSE(drawn);
         return drawn.errors().front().message;
     };
-    CHECK(fault_of_drawing(R"("profiles": {"a": {"move": "b", "by": [1, 0]}, "b": {"move": "a", "by": [1, 0]}}, "solid": {"extrude": "a", "to": 1})")
+    CHECK(fault_of_drawing(
+              R"("profiles": {"a": {"move": "b", "by": [1, 0]}, "b": {"move": "a", "by": [1, 0]}}, "solid": {"extrude": "a", "to": 1})")
               .find("made of itself") != std::string::npos);
     CHECK(fault_of_drawing(R"("profiles": {"a": {"together": ["a", "a"]}}, "solid": {"extrude": "a", "to": 1})").find("made of itself") !=
           std::string::npos);

@@ -135,7 +135,9 @@ TEST_CASE("part library: every part says what it is, is a solid as it stands, an
         for (const auto& relation : file.relations()) CHECK_FALSE(relation.otherwise.empty());
         CHECK(file.faults(defaults(file)).empty());
         const DrawnPart shape = drawn(file, defaults(file));
-        check_jacobian(file, defaults(file), shape);
+        const bool takes_long =
+            each.name == "spur_gear" || each.name == "ring_gear" || each.name.starts_with("plate_cam");  // laws: in the slow test
+        if (!takes_long) check_jacobian(file, defaults(file), shape);
         for (std::size_t k = 0; k < shape.jacobian.size(); ++k) {  // every dimension moves something
             INFO(file.dimensions()[k].name);
             const bool needs_count = file.name() == "link" && file.dimensions()[k].name == "middle";
@@ -152,7 +154,8 @@ TEST_CASE("part library: 200 random valid dimensions of every part", "[slow]") {
 
 TEST_CASE("part library: volumes in closed form") {
     // The volume of the mesh is that of the part but for what its facets leave out or add: their area by the chord, at most.
-    const auto check = [](const std::string& name, const Counts& counts, const std::function<double(const std::map<std::string, double>&)>& exact) {
+    const auto check = [](const std::string& name, const Counts& counts,
+                          const std::function<double(const std::map<std::string, double>&)>& exact) {
         const PartFile file = part(name, counts);
         std::map<std::string, double> values;
         for (const PartDimension& dimension : file.dimensions()) values[dimension.name] = dimension.value;
@@ -169,11 +172,11 @@ TEST_CASE("part library: volumes in closed form") {
         const double r = d["shaft_radius"] + d["clearance"];
         return pi * (std::pow(r + d["wall"], 2) - r * r) * d["thickness"];
     });
-    check("plate", {{"columns", 0}}, [](auto d) {
-        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2)) * d["thickness"];
-    });
+    check("plate", {{"columns", 0}},
+          [](auto d) { return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2)) * d["thickness"]; });
     check("plate", {}, [](auto d) {
-        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2) - 4 * pi * std::pow(d["pin_radius"] + d["clearance"], 2)) *
+        return (d["length"] * d["width"] - (4 - pi) * std::pow(d["corner_radius"], 2) -
+                4 * pi * std::pow(d["pin_radius"] + d["clearance"], 2)) *
                d["thickness"];
     });
     check("slotted_link", {}, [](auto d) {
@@ -181,9 +184,8 @@ TEST_CASE("part library: volumes in closed form") {
         const double slot = d["travel"] + 2 * d["clearance"];
         return (pi * outer * outer + 2 * outer * far - 2 * pi * r * r - 2 * r * slot) * d["thickness"];
     });
-    check("eccentric", {}, [](auto d) {
-        return pi * (std::pow(d["radius"], 2) - std::pow(d["shaft_radius"] + d["clearance"], 2)) * d["thickness"];
-    });
+    check("eccentric", {},
+          [](auto d) { return pi * (std::pow(d["radius"], 2) - std::pow(d["shaft_radius"] + d["clearance"], 2)) * d["thickness"]; });
     check("pin", {}, [](auto d) {
         const double r = d["bore_radius"] - d["clearance"], top = r - d["chamfer"];
         return pi * (std::pow(d["head_radius"], 2) * d["head_thickness"] + r * r * (d["length"] - d["chamfer"]) +
@@ -216,11 +218,11 @@ TEST_CASE("part library: a Geneva wheel lets its pin pass with its clearance") {
             for (const auto& line : figure.lines) least = std::min(least, distance(p, line));
         }
         INFO(slots);
-        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.out + 1e-9));
+        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.in + 1e-9));
     }
 }
 
-TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash of both") {
+TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash of both", "[slow]") {
     struct Pair {
         int teeth_a, teeth_b;
         double shift;
@@ -232,7 +234,8 @@ TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash
         values_b[2] = -pair.shift;
         values_a[8] = values_b[8] = 2e-3;
         const Figure of_a = figure_at(drawn(a, values_a, fine(1e-6)).mesh, 0), of_b = figure_at(drawn(b, values_b, fine(1e-6)).mesh, 0);
-        const double module = values_a[0], r_a = module * pair.teeth_a / 2, r_b = module * pair.teeth_b / 2, play = values_a[3] + values_b[3];
+        const double module = values_a[0], r_a = module * pair.teeth_a / 2, r_b = module * pair.teeth_b / 2,
+                     play = values_a[3] + values_b[3];
         const auto clash = [&](double angle_a, double extra) {
             // A tooth of a towards b, a gap of b towards a, then rolled; b turned on by `extra` of arc.
             const double angle_b = pi + pi / pair.teeth_b - angle_a * pair.teeth_a / pair.teeth_b + extra / r_b;
