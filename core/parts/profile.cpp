@@ -18,7 +18,7 @@ constexpr double same_place = 1e-9;  // of the profile's size
 
 std::string millimetres(double metres) { return format_length(metres, "mm", 3); }
 std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
-std::string parts::quoted(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
+std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
 
 std::string degrees(double radians) {
     const double turn = radians < 0 ? radians + 2 * std::numbers::pi : radians;
@@ -139,14 +139,14 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
         const std::string& name = name_of(hole);
         for (const Error& error : faults_of(Profile{{reversed(inwards)}})) errors.push_back(error);
         if (profile.loops.empty()) {
-            errors.push_back({ErrorCode::inconsistent, name, "hole " + parts::quoted(name) + " is in nothing: the profile is empty"});
+            errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " is in nothing: the profile is empty"});
             continue;
         }
         const Wall wall = thinnest_wall(out, inwards);
         if (!(wall.thickness > same_place * SampledLoops(out.loops).size())) {
             const Vector2 from_middle = wall.place - middle_of(inwards);
             errors.push_back({ErrorCode::inconsistent, name,
-                              "hole " + parts::quoted(name) + " breaks through " + parts::quoted(wall.feature) + ": wall " +
+                              "hole " + quoted_feature(name) + " breaks through " + quoted_feature(wall.feature) + ": wall " +
                                   millimetres(wall.thickness) + " at " + degrees(std::atan2(from_middle.y(), from_middle.x()))});
             continue;
         }
@@ -155,7 +155,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
         for (const Loop& other : out.loops)
             if (of_hole.contains(at(other.segments.front().curve, 0.3).position))
                 errors.push_back(
-                    {ErrorCode::inconsistent, name, "hole " + parts::quoted(name) + " lies around " + parts::quoted(name_of(other))});
+                    {ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " lies around " + quoted_feature(name_of(other))});
         out.loops.push_back(inwards);
     }
     if (!errors.empty()) return errors;
@@ -191,7 +191,7 @@ Errors faults_of(const Profile& profile) {
             const Box2 box = box_of(segment.curve);
             if (!box.low.allFinite() || !box.high.allFinite()) {
                 faults.push_back(
-                    {ErrorCode::not_finite, segment.feature, parts::quoted(segment.feature) + " has points that are not finite"});
+                    {ErrorCode::not_finite, segment.feature, quoted_feature(segment.feature) + " has points that are not finite"});
                 return faults;
             }
             pieces.push_back({frozen(segment.curve), &segment.feature, l, s, loop.segments.size(), box});
@@ -203,7 +203,7 @@ Errors faults_of(const Profile& profile) {
     for (std::size_t l = 0; l < profile.loops.size(); ++l)
         if (!profile.loops[l].segments.empty() && !(std::abs(sampled_area(profile.loops[l])) > tolerance * size))
             faults.push_back(
-                {ErrorCode::inconsistent, name_of(profile.loops[l]), parts::quoted(name_of(profile.loops[l])) + " encloses no area"});
+                {ErrorCode::inconsistent, name_of(profile.loops[l]), quoted_feature(name_of(profile.loops[l])) + " encloses no area"});
     if (!faults.empty()) return faults;
 
     std::vector<std::size_t> order(pieces.size());
@@ -221,9 +221,9 @@ Errors faults_of(const Profile& profile) {
                 if (b_follows && (p - value(end_of(a.curve))).norm() <= 2 * tolerance) continue;
                 if (a_follows && (p - value(start_of(a.curve))).norm() <= 2 * tolerance) continue;
                 const std::string names = *a.feature == *b.feature
-                                              ? (same_loop ? parts::quoted(*a.feature) + " crosses or touches itself"
-                                                           : "two curves of " + parts::quoted(*a.feature) + " cross or touch")
-                                              : parts::quoted(*a.feature) + " and " + parts::quoted(*b.feature) + " cross or touch";
+                                              ? (same_loop ? quoted_feature(*a.feature) + " crosses or touches itself"
+                                                           : "two curves of " + quoted_feature(*a.feature) + " cross or touch")
+                                              : quoted_feature(*a.feature) + " and " + quoted_feature(*b.feature) + " cross or touch";
                 faults.push_back({ErrorCode::inconsistent, *a.feature, names + " at " + place(p)});
                 break;
             }
