@@ -75,7 +75,7 @@ TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten"
     const TemporaryFolder folder;
     const json listed = run("new --json").json()["starters"];
     REQUIRE(listed.size() == starters().size());
-    REQUIRE(listed.size() >= 9);
+    REQUIRE(listed.size() >= 10);
     for (const Starter& starter : starters()) {
         CAPTURE(starter.name);
         CHECK_FALSE(starter.description.empty());
