@@ -75,7 +75,7 @@ TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten"
     const TemporaryFolder folder;
     const json listed = run("new --json").json()["starters"];
     REQUIRE(listed.size() == starters().size());
-    REQUIRE(listed.size() >= 5);
+    REQUIRE(listed.size() >= 10);
     for (const Starter& starter : starters()) {
         CAPTURE(starter.name);
         CHECK_FALSE(starter.description.empty());
@@ -95,15 +95,18 @@ TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten"
     CHECK(run("new hindge", true).says("hinge"));
 }
 
-TEST_CASE("Starters: the hinge is tuned to what it asks for") {
+TEST_CASE("Starters: hinge and ratchet are tuned to what they ask for") {
     const TemporaryFolder folder;
-    REQUIRE(run("new hinge --in " + folder.path.string()).code == 0);
-    const Answer answer = run("optimise " + folder.file("hinge.design.json") + " --out " + folder.file("out") + " --json");
-    CAPTURE(answer.out);
-    CHECK(answer.code == 0);
-    CHECK(answer.json()["status"] == "optimal");
-    CHECK(answer.json()["clearance"]["least"].get<double>() >= 0.2e-3);
-    CHECK(answer.json()["clearance"]["least"].get<double>() < 0.205e-3);
+    for (const std::string name : {"hinge", "ratchet"}) {
+        CAPTURE(name);
+        REQUIRE(run("new " + name + " --in " + folder.path.string()).code == 0);
+        const Answer answer = run("optimise " + folder.file(name + ".design.json") + " --out " + folder.file(name + ".out") + " --json");
+        CAPTURE(answer.out);
+        CHECK(answer.code == 0);
+        CHECK(answer.json()["status"] == "optimal");
+        CHECK(answer.json()["clearance"]["least"].get<double>() >= 0.2e-3);
+        CHECK(answer.json()["clearance"]["least"].get<double>() < 0.205e-3);
+    }
 }
 
 TEST_CASE("Comments: a key that starts with # says nothing, anywhere; others are still refused") {
