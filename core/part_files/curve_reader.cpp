@@ -92,7 +92,8 @@ struct WrittenLaw {
 std::array<PartNumber, 2> read_ends(const JsonNode& node, const PartNumbers& numbers) {
     const std::vector<JsonNode> ends = node.is_array() ? node.elements() : std::vector<JsonNode>();
     if (ends.size() != 2) {
-        if (node.exists()) node.fail(ErrorCode::wrong_type, "the ends of the parameter are wanted, [0, \"360deg\"]; found " + node.shown());
+        if (node.exists())
+            node.fail(ErrorCode::wrong_type, "expected the two ends of the parameter, [0, \"360deg\"], found " + node.shown());
         return {};
     }
     std::array<PartNumber, 2> out{numbers.number_of_any(ends[0]), numbers.number_of_any(ends[1])};

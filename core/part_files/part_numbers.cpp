@@ -133,7 +133,7 @@ PartPoint read_point(const JsonNode& node, const PartNumbers& numbers) {
     const std::vector<JsonNode> two = list.is_array() ? list.elements() : std::vector<JsonNode>();
     if (two.size() != 2) {
         if (list.exists())
-            list.fail(ErrorCode::wrong_type, "a point is wanted, [x, y] or {\"polar\": [distance, angle]}, found " + list.shown());
+            list.fail(ErrorCode::wrong_type, "expected a point, [x, y] or {\"polar\": [distance, angle]}, found " + list.shown());
         return out;
     }
     out.first = numbers.length(two[0]);
@@ -145,7 +145,7 @@ PartPoint3 read_point3(const JsonNode& node, const PartNumbers& numbers, Dimensi
     if (!node.exists()) return {};
     const std::vector<JsonNode> three = node.is_array() ? node.elements() : std::vector<JsonNode>();
     if (three.size() != 3) {
-        node.fail(ErrorCode::wrong_type, "a list of three, [x, y, z], is wanted, found " + node.shown());
+        node.fail(ErrorCode::wrong_type, "expected a list of three, [x, y, z], found " + node.shown());
         return {};
     }
     return {numbers.number(three[0], dimension), numbers.number(three[1], dimension), numbers.number(three[2], dimension)};

@@ -64,7 +64,7 @@ std::optional<Comparison> read_comparison(const JsonNode& node, const PartNumber
     if (!text) return std::nullopt;
     const SplitText parts = split(*text);
     if (parts.signs.empty()) {
-        node.fail(ErrorCode::parse, "a comparison is wanted, \"a < b\", with <, <=, > or >=; found " + node.shown());
+        node.fail(ErrorCode::parse, "expected a comparison, \"a < b\", with <, <=, > or >=; found " + node.shown());
         return std::nullopt;
     }
     Comparison out{{}, parts.signs};

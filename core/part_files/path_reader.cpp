@@ -208,7 +208,7 @@ std::vector<PartPoint> read_points(const JsonNode& node, const PartNumbers& numb
     std::vector<PartPoint> out;
     for (const JsonNode& element : node.elements()) out.push_back(read_point(element, numbers));
     if (node.is_array() && out.size() < fewest)
-        node.fail(ErrorCode::out_of_range, "at least " + std::to_string(fewest) + " points are wanted, found " + node.shown());
+        node.fail(ErrorCode::out_of_range, "expected at least " + std::to_string(fewest) + " points, found " + node.shown());
     return out;
 }
 

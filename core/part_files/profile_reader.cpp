@@ -148,7 +148,8 @@ ProfileMaker ProfileReader::reference(const JsonNode& node) {
 ProfileMaker ProfileReader::read_object(const JsonNode& node, const std::string& name) {
     if (!node.is_object()) {
         if (node.exists())
-            node.fail(ErrorCode::wrong_type, "a profile is wanted: an object, or the name of one of `profiles`; found " + node.shown());
+            node.fail(ErrorCode::wrong_type,
+                      "expected a profile, which is an object or the name of one of `profiles`; found " + node.shown());
         return {};
     }
     std::vector<std::string_view> known;
@@ -254,7 +255,7 @@ ProfileMaker ProfileReader::polygon(const JsonNode& node, const std::string& nam
 ProfileMaker ProfileReader::slot(const JsonNode& node, const std::string& name) {
     const auto ends = read_points(node["slot"], numbers_, 2);
     if (ends.size() != 2) {
-        node["slot"].fail(ErrorCode::wrong_type, "the two points about which a slot is round are wanted, found " + node["slot"].shown());
+        node["slot"].fail(ErrorCode::wrong_type, "expected the two points about which a slot is round, found " + node["slot"].shown());
         return {};
     }
     const PartNumber radius = numbers_.length(node.require("radius"));

@@ -151,7 +151,7 @@ SolidMaker SolidReader::reference(const JsonNode& node) {
 SolidMaker SolidReader::read_object(const JsonNode& node, const std::string& name) {
     if (!node.is_object()) {
         if (node.exists())
-            node.fail(ErrorCode::wrong_type, "a solid is wanted: an object, or the name of one of `solids`; found " + node.shown());
+            node.fail(ErrorCode::wrong_type, "expected a solid, which is an object or the name of one of `solids`; found " + node.shown());
         return {};
     }
     std::vector<std::string_view> known;
