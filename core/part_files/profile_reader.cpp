@@ -27,6 +27,7 @@ struct ProfileReader::Verb {
 namespace {
 
 constexpr std::size_t most_segments = 100'000;
+constexpr std::size_t most_holes = 2'000;         // each is looked at with each
 constexpr std::size_t most_cut_segments = 5'000;  // of figures that cut each other: each is looked at with each
 
 std::size_t size_of(const Profile& profile) {
@@ -297,12 +298,16 @@ ProfileMaker ProfileReader::spline(const JsonNode& node, const std::string& name
 ProfileMaker ProfileReader::holes(const JsonNode& node, const std::string& name) {
     const ProfilesMaker list = read_list(node["holes"], name + " hole");
     const ProfileMaker in = read(node.require("in"), name);
-    return [=](Sheet& sheet) -> Result<Profile> {
+    return [=, where = node.where()](Sheet& sheet) -> Result<Profile> {
         const Result<Profile> figure = in(sheet);
         if (!figure) return figure;
         const Result<std::vector<Profile>> made = list(sheet);
         if (!made) return made.errors();
-        return parts::with_holes(*figure, loops_of(*made));
+        const std::vector<Loop> loops = loops_of(*made);
+        if (loops.size() > most_holes)
+            return Error{ErrorCode::out_of_range, where,
+                         "there would be " + std::to_string(loops.size()) + " holes; at most " + std::to_string(most_holes) + " are drawn"};
+        return parts::with_holes(*figure, loops);
     };
 }
 

@@ -16,6 +16,7 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
+#include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -169,6 +170,16 @@ void read_urdf(std::string_view bytes) {
     if (scene && bytes.size() < 10'000) (void)core::scene_files::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
 }
 
+void read_part(std::string_view bytes) {
+    const auto part = core::part_files::PartFile::parse(std::string(bytes), "a.part.json");
+    if (!part) return;
+    std::vector<double> values;
+    for (const auto& dimension : part->dimensions()) values.push_back(dimension.value);
+    core::parts::Facets coarse;
+    coarse.segments = 8;
+    (void)part->drawn(values, coarse);
+}
+
 void read_expression(std::string_view bytes) {
     using namespace core::expression;
     Scope scope;
@@ -219,6 +230,7 @@ const std::vector<Reader>& readers() {
         {"poses_json", [](std::string_view bytes) { read_poses_as("a.poses.json", bytes); }},
         {"urdf", read_urdf},
         {"expression", read_expression},
+        {"part", read_part},
         {"ccd", read_ccd},
         {"result", read_result},
         {"exploration", read_exploration},
