@@ -166,9 +166,8 @@ double bend_over(const Curve& curve, double from, double to, bool& proven) {
 int bend_side(const Curve& curve, double from, double to) {
     if (const auto* bezier = std::get_if<Bezier>(&curve)) {
         // The control points of the part: all on one side of its chord, the curve is too.
-        Bezier part = split(*bezier, 1.0)[0];
         std::array<Vector2, 4> p;
-        for (std::size_t k = 0; k < 4; ++k) p[k] = value(part.points[k]);
+        for (std::size_t k = 0; k < 4; ++k) p[k] = value(bezier->points[k]);
         const auto cut = [](std::array<Vector2, 4> q, double u, bool first) {
             const Vector2 a0 = q[0] + u * (q[1] - q[0]), a1 = q[1] + u * (q[2] - q[1]), a2 = q[2] + u * (q[3] - q[2]);
             const Vector2 b0 = a0 + u * (a1 - a0), b1 = a1 + u * (a2 - a1), c = b0 + u * (b1 - b0);
@@ -177,6 +176,8 @@ int bend_side(const Curve& curve, double from, double to) {
         p = cut(p, to, true);
         if (from > 0) p = cut(p, from / to, false);
         const Vector2 chord = p[3] - p[0];
+        // One that turns back along its chord may be on the other side of its neighbours'.
+        if (!((p[1] - p[0]).dot(chord) >= 0 && (p[2] - p[1]).dot(chord) >= 0 && (p[3] - p[2]).dot(chord) >= 0)) return 0;
         const double a = cross_of(chord, p[1] - p[0]), b = cross_of(chord, p[2] - p[0]);
         if (a <= 0 && b <= 0) return 1;  // to the right of the chord: it turns left
         return a >= 0 && b >= 0 ? -1 : 0;

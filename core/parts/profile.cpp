@@ -84,6 +84,26 @@ Wall thinnest_wall(const Profile& profile, const Loop& hole) {
     return wall;
 }
 
+// Whether the loop and the profile have a point in common.
+bool meet(const Profile& profile, const Loop& loop, double tolerance) {
+    std::vector<std::pair<Curve, Box2>> pieces;
+    Box2 all{Vector2::Constant(INFINITY), Vector2::Constant(-INFINITY)};
+    for (const Segment& segment : loop.segments) {
+        pieces.push_back({frozen(segment.curve), box_of(segment.curve)});
+        all = {all.low.cwiseMin(pieces.back().second.low), all.high.cwiseMax(pieces.back().second.high)};
+    }
+    for (const Loop& other : profile.loops) {
+        for (const Segment& segment : other.segments) {
+            const Box2 box = box_of(segment.curve);
+            if (!box.meets(all)) continue;
+            const Curve curve = frozen(segment.curve);
+            for (const auto& [piece, its_box] : pieces)
+                if (box.meets(its_box) && !meetings(piece, curve, tolerance).empty()) return true;
+        }
+    }
+    return false;
+}
+
 Placement2 turn_by(const Point2& d, const Point2& about) { return {d, left_of(d), about - turned(about, d), false}; }
 
 Loop placed(const Loop& loop, const Placement2& placement) {
@@ -142,8 +162,9 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
             errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted(name) + " is in nothing: the profile is empty"});
             continue;
         }
-        const Wall wall = thinnest_wall(out, inwards);
-        if (!(wall.thickness > same_place * SampledLoops(out.loops).size())) {
+        const SampledLoops around(out.loops);
+        if (!around.contains(at(inwards.segments.front().curve, 0.3).position) || meet(out, inwards, same_place * around.size())) {
+            const Wall wall = thinnest_wall(out, inwards);
             const Vector2 from_middle = wall.place - middle_of(inwards);
             errors.push_back({ErrorCode::inconsistent, name,
                               "hole " + quoted(name) + " breaks through " + quoted(wall.feature) + ": wall " + millimetres(wall.thickness) +

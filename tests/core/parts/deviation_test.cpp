@@ -167,7 +167,8 @@ TEST_CASE("the part is never farther outside of its mesh, nor the mesh outside o
             CHECK(static_cast<double>(in) <= part->deviation.in);
             if (lean == Lean::cover && std::string(round.name) != "ring" && std::string(round.name) != "groove")
                 CHECK(part->deviation.out < 1e-15);
-            // And no more than twice as much as there is.
+            // And there is much of it; of the ring two sums of unlike signs are added up.
+            if (std::string(round.name) == "ring") continue;
             if (part->deviation.out > 1e-12) CHECK(out > 0.3 * part->deviation.out);
             if (part->deviation.in > 1e-12) CHECK(static_cast<double>(in) > 0.3 * part->deviation.in);
         }
